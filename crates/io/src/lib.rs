@@ -1,0 +1,13 @@
+//! Files: gmsh's meshes in, ParaView's results out; no scene, no physics.
+
+mod atomic;
+pub mod gmsh;
+pub mod msh;
+mod pvd;
+mod vtu;
+
+pub use atomic::write_atomically;
+pub use gmsh::{Meshing, mesh_geometry};
+pub use msh::{load_msh, parse_msh, read_msh};
+pub use pvd::write_pvd;
+pub use vtu::{Field, Grid, Values, write_vtu};

@@ -1,0 +1,80 @@
+//! Older `.msh` files, by way of gmsh.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use lie_mesh::{Defect, Draft, Elements, TaggedElements};
+
+use super::header::{self, Format};
+use super::source::Source;
+use super::{bytes_of, parse_msh};
+use crate::gmsh::convert_mesh;
+
+/// Reads an MSH file of any version; gmsh converts those before 4.1 to a file in `scratch_dir`,
+/// which is removed again.
+///
+/// # Errors
+/// As [`super::read_msh`], and what gmsh says against the file.
+pub fn load_msh(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
+    let name = path.display().to_string();
+    let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
+    let source = Source {
+        name: &name,
+        bytes: &bytes,
+    };
+    match header::read(source).map_err(|defect| vec![defect])? {
+        Format::Current(_) => parse_msh(&bytes, &name),
+        Format::Older(version) => {
+            drop(bytes);
+            let mut draft = load_older(path, scratch_dir)?;
+            if version < 4.0 {
+                drop_repeated(&mut draft.cells);
+                drop_repeated(&mut draft.facets);
+            }
+            Ok(draft)
+        }
+    }
+}
+
+fn load_older(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
+    let converted = scratch_name(path, scratch_dir);
+    let draft = convert_mesh(path, &converted)
+        .and_then(|()| bytes_of(&converted).map_err(|defect| vec![defect]))
+        .and_then(|bytes| parse_msh(&bytes, &path.display().to_string()));
+    // It may not exist, and the answer does not depend on its removal.
+    let _ = std::fs::remove_file(&converted);
+    draft
+}
+
+fn scratch_name(path: &Path, scratch_dir: &Path) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    scratch_dir.join(format!(".{stem}.{}.msh41.msh", std::process::id()))
+}
+
+/// Version 2 lists an element once for each of its physical groups, turned round where the group
+/// sees the surface reversed; gmsh keeps all the copies, each with all groups.
+fn drop_repeated(elements: &mut TaggedElements) {
+    let mut seen: HashSet<(u32, Vec<u32>)> = HashSet::with_capacity(elements.tags.len());
+    let mut kept = TaggedElements::new();
+    for index in 0..elements.elements.len() {
+        let mut nodes = elements.elements.nodes_of(index).to_vec();
+        nodes.sort_unstable();
+        let set = elements.group_set[index];
+        if seen.insert((set, nodes)) {
+            keep_element(
+                &mut kept,
+                &elements.elements,
+                index,
+                elements.tags[index],
+                set,
+            );
+        }
+    }
+    *elements = kept;
+}
+
+fn keep_element(kept: &mut TaggedElements, from: &Elements, index: usize, tag: u64, set: u32) {
+    kept.elements.push(from.shapes[index], from.nodes_of(index));
+    kept.tags.push(tag);
+    kept.group_set.push(set);
+}

@@ -1,0 +1,216 @@
+//! From mshio's data and the guard's survey to a [`Draft`].
+
+use std::collections::BTreeMap;
+
+use lie_mesh::{Defect, Draft, Shape, TaggedElements, sample};
+use mshio::{ElementBlock, ElementType};
+
+use super::elements::Block;
+use super::entities::{EntityKey, entity_name};
+use super::groups::Groups;
+use super::guard::{Survey, keep};
+use super::tags::TagIndex;
+use super::{mshio_calls, nodes};
+
+/// The shapes that can be solved on.
+fn shape_of(kind: ElementType) -> Option<Shape> {
+    match kind {
+        ElementType::Tri3 => Some(Shape::Tri3),
+        ElementType::Tet4 => Some(Shape::Tet4),
+        _ => None,
+    }
+}
+
+/// Builds the draft, or lists everything that stands against it.
+pub(super) fn build(survey: Survey) -> Result<Draft, Vec<Defect>> {
+    let groups = Groups::new(survey.names.clone(), &survey.entities);
+    let mut defects = nodes::defects(survey.source, &survey.nodes);
+    defects.extend(too_large(&survey));
+    defects.extend(unknown_entities(&survey));
+    defects.extend(unsupported_elements(&survey, &groups));
+    let mut draft = Draft {
+        source: survey.source.name.to_owned(),
+        cells: TaggedElements::new(),
+        facets: TaggedElements::new(),
+        ..Draft::default()
+    };
+    if survey.nodes_are_readable() {
+        draft.nodes = keep(&mut defects, coordinates(&survey)).unwrap_or_default();
+    }
+    if survey.elements_are_readable() {
+        keep(&mut defects, fill_elements(&survey, groups, &mut draft));
+    }
+    draft.node_tags = survey.nodes.tags;
+    if defects.is_empty() {
+        Ok(draft)
+    } else {
+        Err(defects)
+    }
+}
+
+fn coordinates(survey: &Survey) -> Result<Vec<[f64; 3]>, Defect> {
+    let parsed = mshio_calls::nodes(survey.source, survey.encoding, survey.nodes_body)?;
+    let nodes = parsed.node_blocks.iter().flat_map(|block| &block.nodes);
+    let nodes: Vec<[f64; 3]> = nodes.map(|node| [node.x, node.y, node.z]).collect();
+    if nodes.len() != survey.nodes.tags.len() {
+        return Err(disagreement(survey, "nodes"));
+    }
+    Ok(nodes)
+}
+
+fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Result<(), Defect> {
+    let parsed = mshio_calls::elements(survey.source, survey.encoding, survey.elements_body)?;
+    if parsed.element_blocks.len() != survey.blocks.len() {
+        return Err(disagreement(survey, "element blocks"));
+    }
+    let index = TagIndex::new(&survey.nodes.tags);
+    let mut dangling = Dangling::default();
+    for (block, walked) in parsed.element_blocks.iter().zip(&survey.blocks) {
+        let target = match (walked.entity.0, shape_of(walked.kind)) {
+            (3, Some(shape)) => Some((&mut draft.cells, shape)),
+            (2, Some(shape)) => Some((&mut draft.facets, shape)),
+            _ => None,
+        };
+        if let Some((elements, shape)) = target {
+            let set = groups.set_of(walked.entity, &survey.entities);
+            append(elements, block, shape, set, &index, &mut dangling);
+        }
+    }
+    draft.groups = groups.groups;
+    draft.group_sets = groups.sets;
+    dangling.check(survey.source.name)
+}
+
+fn append(
+    target: &mut TaggedElements,
+    block: &ElementBlock<u64, i32>,
+    shape: Shape,
+    set: u32,
+    index: &TagIndex,
+    dangling: &mut Dangling,
+) {
+    let mut nodes = Vec::with_capacity(shape.node_count());
+    for element in &block.elements {
+        nodes.clear();
+        nodes.extend(element.nodes.iter().filter_map(|&tag| index.get(tag)));
+        if nodes.len() == shape.node_count() {
+            target.elements.push(shape, &nodes);
+            target.tags.push(element.element_tag);
+            target.group_set.push(set);
+        } else {
+            let missing = element
+                .nodes
+                .iter()
+                .filter(|&&tag| index.get(tag).is_none());
+            dangling.nodes.extend(missing);
+            dangling.elements.push(element.element_tag);
+        }
+    }
+}
+
+/// Elements whose nodes the file does not hold.
+#[derive(Default)]
+struct Dangling {
+    elements: Vec<u64>,
+    nodes: Vec<u64>,
+}
+
+impl Dangling {
+    fn check(mut self, source: &str) -> Result<(), Defect> {
+        if self.elements.is_empty() {
+            return Ok(());
+        }
+        self.nodes.sort_unstable();
+        self.nodes.dedup();
+        Err(Defect::new(
+            format!("{source}, elements {}", sample(&self.elements)),
+            format!(
+                "they refer to nodes that are not there: {}",
+                sample(&self.nodes)
+            ),
+            "the file was cut or edited wrongly: write it again with gmsh",
+        ))
+    }
+}
+
+/// Node indices and the flat lists of element nodes are 32 bits wide.
+fn too_large(survey: &Survey) -> Option<Defect> {
+    const LIMIT: usize = u32::MAX as usize;
+    let width = |block: &Block| shape_of(block.kind).map_or(0, Shape::node_count);
+    let element_nodes: usize = survey.blocks.iter().map(|b| b.count * width(b)).sum();
+    (survey.nodes.tags.len() >= LIMIT || element_nodes >= LIMIT).then(|| {
+        let remedy = "mesh more coarsely";
+        survey
+            .source
+            .defect("the mesh is too large for 32-bit indices", remedy)
+    })
+}
+
+/// Elements of an entity that is not listed would silently lose their groups.
+fn unknown_entities(survey: &Survey) -> Option<Defect> {
+    let listed = |key: &EntityKey| survey.entities.contains_key(key);
+    let has_any = |dimension| survey.entities.keys().any(|key| key.0 == dimension);
+    let (surfaces, volumes) = (has_any(2), has_any(3));
+    let expected = |key: &EntityKey| (key.0 == 2 && surfaces) || (key.0 == 3 && volumes);
+    let entities = survey.blocks.iter().map(|block| block.entity);
+    let unknown = entities.filter(|key| expected(key) && !listed(key));
+    let names: Vec<String> = unknown.map(entity_name).collect();
+    let first = names[..names.len().min(5)].join(", ");
+    (!names.is_empty()).then(|| {
+        Defect::new(
+            format!("{}, {first}", survey.source.name),
+            format!(
+                "{} entities have elements but are not listed in $Entities",
+                names.len()
+            ),
+            "open the file in gmsh and save it again as MSH 4.1",
+        )
+    })
+}
+
+/// One defect for each element type of dimension 2 or 3 that has no shape here.
+fn unsupported_elements(survey: &Survey, groups: &Groups) -> Vec<Defect> {
+    let mut by_kind: BTreeMap<i32, Vec<&Block>> = BTreeMap::new();
+    let solid = |block: &&Block| block.entity.0 >= 2 && block.count > 0;
+    let fits =
+        |block: &Block| shape_of(block.kind).is_some_and(|s| s.dimension() == block.entity.0);
+    for block in survey
+        .blocks
+        .iter()
+        .filter(solid)
+        .filter(|block| !fits(block))
+    {
+        by_kind.entry(block.kind as i32).or_default().push(block);
+    }
+    by_kind
+        .values()
+        .map(|blocks| unsupported(survey, groups, blocks))
+        .collect()
+}
+
+fn unsupported(survey: &Survey, groups: &Groups, blocks: &[&Block]) -> Defect {
+    const SHOWN: usize = 5;
+    let mut places: Vec<String> = blocks
+        .iter()
+        .map(|block| groups.describe(block.entity, &survey.entities))
+        .collect();
+    places.dedup();
+    places.truncate(SHOWN);
+    let count: usize = blocks.iter().map(|block| block.count).sum();
+    let kind = blocks[0].kind;
+    Defect::new(
+        format!("{}, {}", survey.source.name, places.join(", ")),
+        format!(
+            "{count} elements are of gmsh type {} ({kind:?}), which cannot be used here",
+            kind as i32
+        ),
+        "mesh with linear tetrahedra: Mesh.ElementOrder = 1, no Recombine",
+    )
+}
+
+fn disagreement(survey: &Survey, what: &str) -> Defect {
+    survey.source.defect(
+        format!("mshio finds another number of {what} than the file says"),
+        "open the file in gmsh and save it again as MSH 4.1",
+    )
+}

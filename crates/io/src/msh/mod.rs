@@ -1,0 +1,83 @@
+//! Reads gmsh's `.msh` files, of version 4.1 with the crate `mshio` behind a guard.
+
+mod convert;
+mod cursor;
+mod draft;
+mod elements;
+mod entities;
+mod groups;
+mod guard;
+mod header;
+mod mshio_calls;
+mod names;
+mod nodes;
+mod sections;
+mod source;
+mod tags;
+
+use std::path::Path;
+
+use lie_mesh::{Defect, Draft};
+
+use header::Format;
+use source::Source;
+
+pub use convert::load_msh;
+
+/// Reads an MSH 4.1 file, text or binary; coordinates are taken as metres.
+///
+/// # Errors
+/// Every kind of defect of the file: unreadable, damaged, another version, element types that
+/// cannot be used, nodes that are missing or have no unique tag.
+pub fn read_msh(path: &Path) -> Result<Draft, Vec<Defect>> {
+    let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
+    parse_msh(&bytes, &path.display().to_string())
+}
+
+/// Parses the bytes of an MSH 4.1 file; `source` names the file in messages.
+///
+/// # Errors
+/// As [`read_msh`].
+pub fn parse_msh(bytes: &[u8], source: &str) -> Result<Draft, Vec<Defect>> {
+    let source = Source {
+        name: source,
+        bytes,
+    };
+    match header::read(source) {
+        Ok(Format::Current(encoding)) => draft::build(guard::survey(source, encoding)?),
+        Ok(Format::Older(version)) => Err(vec![older(source, version)]),
+        Err(defect) => Err(vec![defect]),
+    }
+}
+
+/// Whether an MSH 4.1 file holds elements of dimension 3.
+pub(crate) fn holds_cells(path: &Path) -> Result<bool, Defect> {
+    let bytes = bytes_of(path)?;
+    let name = path.display().to_string();
+    let source = Source {
+        name: &name,
+        bytes: &bytes,
+    };
+    match header::read(source)? {
+        Format::Current(encoding) => guard::holds_cells(source, encoding),
+        Format::Older(version) => Err(older(source, version)),
+    }
+}
+
+fn older(source: Source, version: f64) -> Defect {
+    source.defect(
+        format!("this is an MSH file of version {version}, not 4.1"),
+        "convert it: `gmsh IN.msh -save -save_all -format msh41 -bin -o OUT.msh`",
+    )
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
+    std::fs::read(path).map_err(|error| {
+        let problem = format!("cannot be read: {error}");
+        Defect::new(
+            path.display().to_string(),
+            problem,
+            "check the path and the permissions",
+        )
+    })
+}

@@ -1,0 +1,40 @@
+//! The method at one point and on one element: laws, elements, the two kernels, the enrichment.
+//! No files, no threads, no global matrix.
+//!
+//! # Conventions
+//!
+//! | quantity | sign and unit |
+//! |---|---|
+//! | stress, traction | tension positive [Pa] |
+//! | normal of a fracture `n` | from its minus to its plus side |
+//! | traction of a fracture `t` | `stress . n` [Pa] |
+//! | jump `w` | `u(plus) - u(minus)` [m] |
+//! | opening `w_n` | `w . n` [m], positive when the walls part |
+//! | slip `w_s` | `w - w_n n` [m] |
+//! | aperture `b` | `b0 + w_n` [m] |
+//!
+//! # The closure law
+//!
+//! ```
+//! use lie_core::{Closure, ClosureKind};
+//!
+//! let closure = Closure {
+//!     aperture: 1e-4,
+//!     normal_stiffness: 1e11,
+//!     kind: ClosureKind::Logarithmic { cutoff: None },
+//! };
+//! let half_closed = closure.at_aperture(0.5e-4);
+//! assert!((half_closed.traction / -1e7 - 0.740227).abs() < 1e-6);
+//! ```
+
+mod closure;
+mod element;
+pub mod enrichment;
+mod fracture_law;
+pub mod kernel;
+mod rock;
+
+pub use closure::{Closure, ClosureKind, NormalResponse};
+pub use element::{ElementRule, RulePoint, facet_node_centroids, facet_node_weights, rule};
+pub use fracture_law::{FractureLaw, Response};
+pub use rock::{Rock, SymmetricStress};

@@ -1,0 +1,236 @@
+//! Everything that may be wrong with a mesh.
+
+use glam::DVec3;
+
+use crate::adjacency::{Adjacency, NONE};
+use crate::defect::{Defect, sample};
+use crate::draft::Draft;
+use crate::geometry::{cell_volume, corners};
+use crate::mesh::SurfaceRole;
+
+/// A cell is flat when its volume is this small against the cube of its longest edge: there the
+/// sign of the volume is rounding.
+const FLAT: f64 = 1e-13;
+
+/// A fracture facet of the draft and the two cell faces it lies between.
+pub(crate) struct DraftFacet {
+    /// Index into [`Surfaces::fractures`].
+    pub(crate) fracture: u32,
+    /// The two cell faces, in no particular order.
+    pub(crate) faces: [u32; 2],
+    /// The number the facet has in the file.
+    pub(crate) tag: u64,
+}
+
+/// The surfaces of a draft, matched to faces of cells.
+pub(crate) struct Surfaces {
+    /// Groups that are fractures.
+    pub(crate) fractures: Vec<usize>,
+    /// Their facets.
+    pub(crate) facets: Vec<DraftFacet>,
+    /// Groups that are boundaries, with their cell faces.
+    pub(crate) boundaries: Vec<(usize, Vec<u32>)>,
+}
+
+/// Tags of the elements that share one kind of defect.
+fn report(defects: &mut Vec<Defect>, place: &str, what: &str, tags: &[u64], problem: &str, remedy: &str) {
+    if !tags.is_empty() {
+        defects.push(Defect::new(
+            format!("{place}, {what} {}", sample(tags)),
+            problem,
+            remedy,
+        ));
+    }
+}
+
+/// Defects of the nodes and cells by themselves.
+pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
+    let mut defects = Vec::new();
+    let cells = &draft.cells.elements;
+    if cells.is_empty() {
+        defects.push(Defect::new(
+            &draft.source,
+            "nothing to solve: the mesh has no cells of dimension 3",
+            "give the rock a Physical Volume and mesh it in 3D (gmsh -3)",
+        ));
+    }
+    let tagged = |bad: &dyn Fn(usize) -> bool| -> Vec<u64> {
+        let of_bad = (0..cells.len()).filter(|&cell| bad(cell));
+        of_bad.map(|cell| draft.cells.tags[cell]).collect()
+    };
+    let broken: Vec<u64> = (0..nodes.len())
+        .filter(|&node| !nodes[node].is_finite())
+        .map(|node| draft.node_tags[node])
+        .collect();
+    report(&mut defects, &draft.source, "node", &broken, "a coordinate is not a finite number",
+        "mesh the geometry again; if it stays, look for 0/0 in the .geo expressions");
+    if !broken.is_empty() {
+        return defects;
+    }
+    let volumes: Vec<f64> = (0..cells.len())
+        .map(|cell| relative_volume(draft, nodes, cell))
+        .collect();
+    let flat = tagged(&|cell| volumes[cell].abs() <= FLAT);
+    report(&mut defects, &draft.source, "cell", &flat, "the cell has no volume",
+        "let gmsh optimise the mesh (Mesh.Optimize = 1) or remove the sliver from the geometry");
+    let inverted = tagged(&|cell| volumes[cell] < -FLAT);
+    report(&mut defects, &draft.source, "cell", &inverted, "the cell is inside out (negative volume)",
+        "write the cell's nodes in gmsh's order, or mesh the geometry again");
+    defects
+}
+
+/// Volume over the cube of the longest distance between corners.
+fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
+    let cells = &draft.cells.elements;
+    let corners = corners(cells, cell, nodes);
+    let longest = corners.iter().flat_map(|a| corners.iter().map(move |b| a.distance_squared(*b)));
+    let longest = longest.fold(0.0, f64::max).sqrt();
+    if longest == 0.0 {
+        return 0.0;
+    }
+    cell_volume(cells.shapes[cell], &corners) / longest.powi(3)
+}
+
+/// Defects in how the cells fit together.
+pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
+    let mut defects = Vec::new();
+    let tag = |cell: u32| draft.cells.tags[cell as usize];
+    let crowded: Vec<u64> = adjacency.crowded_cells.iter().map(|&cell| tag(cell)).collect();
+    report(&mut defects, &draft.source, "cell", &crowded, "a face is shared by more than two cells",
+        "remove the cells that lie on top of others");
+    let overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
+        .filter(|&face| {
+            let other = adjacency.neighbour[face as usize];
+            other != NONE && face < other && runs_alike(draft, adjacency, face, other)
+        })
+        .map(|face| tag(adjacency.cell_of_face[face as usize]))
+        .collect();
+    report(&mut defects, &draft.source, "cell", &overlapping, "the cell overlaps its neighbour or stands in the file twice",
+        "remove the copy; volumes must be fragmented against each other (BooleanFragments)");
+    defects
+}
+
+/// Whether two faces with the same corners run the same way round, so that both cells lie on one
+/// side.
+fn runs_alike(draft: &Draft, adjacency: &Adjacency, face: u32, other: u32) -> bool {
+    let cells = &draft.cells.elements;
+    let corners = |face: u32| -> Vec<u32> {
+        let count = adjacency.shape_of(cells, face).corners().len();
+        let slots = adjacency.slots(cells, face).take(count);
+        slots.map(|slot| cells.nodes[slot]).collect()
+    };
+    let (own, twin) = (corners(face), corners(other));
+    let start = twin.iter().position(|node| *node == own[0]);
+    start.is_some_and(|start| twin[(start + 1) % twin.len()] == own[1])
+}
+
+/// Matches the surfaces to faces of cells and collects what does not fit.
+pub(crate) fn surfaces(
+    draft: &Draft,
+    roles: &[SurfaceRole],
+    adjacency: &Adjacency,
+) -> (Surfaces, Vec<Defect>) {
+    let mut surfaces = Surfaces { fractures: Vec::new(), facets: Vec::new(), boundaries: Vec::new() };
+    let mut defects = Vec::new();
+    let mut taken = vec![NONE; adjacency.face_count()];
+    for group in 0..draft.groups.len() {
+        if draft.groups[group].dimension != 2 {
+            continue;
+        }
+        match roles[group] {
+            SurfaceRole::Fracture => fracture(draft, adjacency, group, &mut taken, &mut surfaces, &mut defects),
+            SurfaceRole::Boundary => boundary(draft, adjacency, group, &mut surfaces, &mut defects),
+            SurfaceRole::Unused => {}
+        }
+    }
+    (surfaces, defects)
+}
+
+/// Facets of a group and the cell faces at each.
+fn facets_of<'a>(draft: &'a Draft, adjacency: &'a Adjacency, group: usize) -> impl Iterator<Item = (u64, Vec<u32>)> + 'a {
+    let facets = &draft.facets;
+    let member: Vec<bool> = draft.group_sets.iter().map(|set| set.contains(&group)).collect();
+    (0..facets.elements.len())
+        .filter(move |&facet| member[facets.group_set[facet] as usize])
+        .map(move |facet| {
+            let count = facets.elements.shapes[facet].corner_count();
+            let corners = &facets.elements.nodes_of(facet)[..count];
+            (facets.tags[facet], adjacency.faces_at(corners).collect())
+        })
+}
+
+/// A facet that two fractures share belongs to the first; one that a fracture lists twice is a
+/// defect.
+fn fracture(
+    draft: &Draft,
+    adjacency: &Adjacency,
+    group: usize,
+    taken: &mut [u32],
+    surfaces: &mut Surfaces,
+    defects: &mut Vec<Defect>,
+) {
+    let number = surfaces.fractures.len() as u32;
+    surfaces.fractures.push(group);
+    let (mut loose, mut outer, mut double) = (Vec::new(), Vec::new(), Vec::new());
+    for (tag, faces) in facets_of(draft, adjacency, group) {
+        match faces[..] {
+            [] => loose.push(tag),
+            [_] => outer.push(tag),
+            [a, ..] if taken[a as usize] == number => double.push(tag),
+            [a, ..] if taken[a as usize] != NONE => {}
+            [a, b, ..] => {
+                taken[a as usize] = number;
+                taken[b as usize] = number;
+                surfaces.facets.push(DraftFacet { fracture: number, faces: [a, b], tag });
+            }
+        }
+    }
+    let place = format!("fracture `{}`", draft.groups[group].name);
+    report(defects, &place, "facet", &loose, "the facet is not a face of any cell: the surface is not embedded in the volume",
+        "cut the volume with the surface in the .geo file: BooleanFragments (OpenCASCADE) or Surface{..} In Volume{..}");
+    report(defects, &place, "facet", &outer, "the facet lies on the outer boundary: there is rock on one side only",
+        "a fracture must lie inside the rock; take this surface out of the fracture's group");
+    report(defects, &place, "facet", &double, "the facet stands in the file twice",
+        "remove the copy (gmsh: Coherence; or BooleanFragments so that surfaces are shared)");
+    empty(draft, group, surfaces.facets.iter().all(|f| f.fracture != number) && loose.is_empty() && outer.is_empty(), defects);
+}
+
+fn boundary(
+    draft: &Draft,
+    adjacency: &Adjacency,
+    group: usize,
+    surfaces: &mut Surfaces,
+    defects: &mut Vec<Defect>,
+) {
+    let (mut loose, mut inner, mut double) = (Vec::new(), Vec::new(), Vec::new());
+    let mut faces_seen = std::collections::HashSet::new();
+    let mut faces_kept = Vec::new();
+    for (tag, faces) in facets_of(draft, adjacency, group) {
+        match faces[..] {
+            [] => loose.push(tag),
+            [face] if faces_seen.insert(face) => faces_kept.push(face),
+            [_] => double.push(tag),
+            [..] => inner.push(tag),
+        }
+    }
+    let place = format!("boundary `{}`", draft.groups[group].name);
+    report(defects, &place, "facet", &loose, "the facet is not a face of any cell",
+        "mesh volume and surface together, and put the volume in a Physical Volume");
+    report(defects, &place, "facet", &inner, "the facet lies inside the rock: there are cells on both sides",
+        "conditions act on the outer surface; give a fracture a [fracture] entry instead");
+    report(defects, &place, "facet", &double, "the facet stands in the file twice and would be loaded twice",
+        "remove the copy from the file");
+    let nothing = faces_kept.is_empty() && loose.is_empty() && inner.is_empty();
+    empty(draft, group, nothing, defects);
+    surfaces.boundaries.push((group, faces_kept));
+}
+
+fn empty(draft: &Draft, group: usize, nothing: bool, defects: &mut Vec<Defect>) {
+    if nothing {
+        defects.push(Defect::new(
+            format!("physical surface `{}`", draft.groups[group].name),
+            "the group holds no facets of its own",
+            "check that its surfaces still exist after fragments were made, and that no other fracture holds the same facets",
+        ));
+    }
+}

@@ -1,0 +1,49 @@
+//! What is wrong with an input, where, and how to mend it.
+
+use std::fmt;
+
+/// One defect of an input: every reader and check in the workspace reports through this type.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Defect {
+    /// Where it is: a file and line, a group, an element or a node by the tag it has in the file.
+    pub place: String,
+    /// What is wrong there.
+    pub problem: String,
+    /// What the user can do about it.
+    pub remedy: String,
+}
+
+impl Defect {
+    /// Puts the three parts together.
+    pub fn new(
+        place: impl Into<String>,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            place: place.into(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+impl fmt::Display for Defect {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            out,
+            "{}: {}\n    remedy: {}",
+            self.place, self.problem, self.remedy
+        )
+    }
+}
+
+/// Names the first few of `tags` and counts the rest: `12, 13, 14 and 40 more`.
+pub fn sample(tags: &[u64]) -> String {
+    const SHOWN: usize = 5;
+    let first: Vec<String> = tags.iter().take(SHOWN).map(u64::to_string).collect();
+    match tags.len().saturating_sub(SHOWN) {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}

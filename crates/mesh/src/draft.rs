@@ -1,0 +1,109 @@
+//! A mesh as read from a file, before anything about it has been checked.
+
+use crate::shape::Shape;
+
+/// A physical group of the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// Dimension of its elements: 0 to 3.
+    pub dimension: usize,
+    /// Its number in the file.
+    pub tag: i32,
+    /// Its name; the number as text where the file gives none.
+    pub name: String,
+}
+
+/// Elements of one dimension, of mixed shapes, in one flat list.
+#[derive(Debug, Clone, Default)]
+pub struct Elements {
+    /// Shape of each element.
+    pub shapes: Vec<Shape>,
+    /// Start of each element's nodes in `nodes`; one entry more than there are elements.
+    pub offsets: Vec<u32>,
+    /// Node indices (not tags) of all elements, one after the other.
+    pub nodes: Vec<u32>,
+}
+
+impl Elements {
+    /// No elements.
+    pub fn new() -> Self {
+        Self {
+            shapes: Vec::new(),
+            offsets: vec![0],
+            nodes: Vec::new(),
+        }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.shapes.is_empty()
+    }
+
+    /// Node indices of element `index`.
+    pub fn nodes_of(&self, index: usize) -> &[u32] {
+        &self.nodes[self.range(index)]
+    }
+
+    /// Where the nodes of element `index` stand in the flat list.
+    pub fn range(&self, index: usize) -> std::ops::Range<usize> {
+        self.offsets[index] as usize..self.offsets[index + 1] as usize
+    }
+
+    /// Appends an element.
+    ///
+    /// # Panics
+    /// If the number of nodes is not that of the shape, or the flat list outgrows 32 bits.
+    pub fn push(&mut self, shape: Shape, nodes: &[u32]) {
+        assert_eq!(nodes.len(), shape.node_count(), "nodes of a {shape:?}");
+        self.shapes.push(shape);
+        self.nodes.extend_from_slice(nodes);
+        let end = u32::try_from(self.nodes.len()).expect("fewer than 2^32 element nodes");
+        self.offsets.push(end);
+    }
+}
+
+/// Elements as they stand in the file: with their tags and physical groups.
+#[derive(Debug, Clone, Default)]
+pub struct TaggedElements {
+    /// Shapes and nodes.
+    pub elements: Elements,
+    /// The number each element has in the file, for messages.
+    pub tags: Vec<u64>,
+    /// Index into [`Draft::group_sets`] for each element.
+    pub group_set: Vec<u32>,
+}
+
+impl TaggedElements {
+    /// No elements.
+    pub fn new() -> Self {
+        Self {
+            elements: Elements::new(),
+            ..Self::default()
+        }
+    }
+}
+
+/// A mesh as read: nodes, cells, facets and all their tags. Nothing is checked
+/// except that node indices are valid. [`crate::Mesh::build`] turns it into a [`crate::Mesh`].
+#[derive(Debug, Clone, Default)]
+pub struct Draft {
+    /// Where it came from, for messages.
+    pub source: String,
+    /// Coordinates of the nodes [m].
+    pub nodes: Vec<[f64; 3]>,
+    /// The number each node has in the file, for messages.
+    pub node_tags: Vec<u64>,
+    /// All physical groups.
+    pub groups: Vec<Group>,
+    /// The distinct sets of groups that elements belong to: indices into `groups`, ascending.
+    pub group_sets: Vec<Vec<usize>>,
+    /// Elements of dimension 3.
+    pub cells: TaggedElements,
+    /// Elements of dimension 2.
+    pub facets: TaggedElements,
+}

@@ -1,0 +1,37 @@
+//! Shape and tags of a meshed, fractured body; no physics and no file formats.
+//!
+//! A [`Draft`] is what a file holds. [`Mesh::build`] checks it and answers either with every
+//! [`Defect`] at once or with a [`Mesh`], which promises:
+//!
+//! - every cell has a positive volume, no two cells share more than a face;
+//! - every fracture facet lies between exactly two cells, its `minus` and its `plus` cell, and its
+//!   nodes run counter-clockwise seen from the plus side: the normal points from minus to plus;
+//! - the facets of one connected fracture surface agree in orientation;
+//! - every boundary facet belongs to exactly one cell, its nodes run counter-clockwise seen from
+//!   outside;
+//! - around every node, the cells that reach each other without crossing a fracture facet form one
+//!   *sector*, and every cell knows the sector of each of its nodes.
+//!
+//! Which side of a fracture is plus is decided here, once.
+
+mod adjacency;
+mod check;
+mod defect;
+mod disjoint_sets;
+mod draft;
+mod blocks;
+mod geometry;
+mod mesh;
+mod orient;
+mod roles;
+mod sectors;
+mod shape;
+pub mod structured;
+
+pub use defect::{Defect, sample};
+pub use draft::{Draft, Elements, Group, TaggedElements};
+pub use geometry::{cell_volume, facet_area_vector, facet_centre};
+pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};
+pub use roles::inner_surfaces;
+pub use sectors::Sectors;
+pub use shape::{Face, Shape};

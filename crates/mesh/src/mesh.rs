@@ -1,0 +1,234 @@
+//! The checked mesh.
+
+use glam::DVec3;
+
+use crate::adjacency::Adjacency;
+use crate::defect::Defect;
+use crate::draft::{Draft, Elements, Group};
+use crate::sectors::{self, Sectors};
+use crate::{blocks, check, orient};
+
+/// What the scene makes of a physical surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SurfaceRole {
+    /// A fracture: it lies inside the rock and its walls can move apart.
+    Fracture,
+    /// A part of the outer surface that carries a condition.
+    Boundary,
+    /// Not used: welded where it is inside, free where it is outside.
+    Unused,
+}
+
+/// Facets of all fractures. The `slots` say where a facet's nodes stand in the flat node list of
+/// the cells, and thereby (through [`Sectors::of_cell_node`]) in which sector each side lies.
+#[derive(Debug, Clone, Default)]
+pub struct Facets {
+    /// Shapes and nodes; the right-hand normal points from minus to plus.
+    pub elements: Elements,
+    /// Index into [`Mesh::fractures`].
+    pub fracture: Vec<u32>,
+    /// The cell on the minus side.
+    pub minus: Vec<u32>,
+    /// The cell on the plus side.
+    pub plus: Vec<u32>,
+    /// Slots of the facet nodes in the minus cell, parallel to `elements.nodes`.
+    pub minus_slots: Vec<u32>,
+    /// Slots of the facet nodes in the plus cell, parallel to `elements.nodes`.
+    pub plus_slots: Vec<u32>,
+}
+
+/// Facets of one named part of the outer surface.
+#[derive(Debug, Clone)]
+pub struct Boundary {
+    /// Name of the physical group.
+    pub name: String,
+    /// Shapes and nodes; the right-hand normal points out of the body.
+    pub elements: Elements,
+    /// The cell behind each facet.
+    pub cell: Vec<u32>,
+    /// Slots of the facet nodes in that cell, parallel to `elements.nodes`.
+    pub slots: Vec<u32>,
+}
+
+/// A checked, fractured mesh; see the crate documentation for what it promises.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// Where it came from, for messages.
+    pub source: String,
+    /// Coordinates of the nodes [m].
+    pub nodes: Vec<DVec3>,
+    /// Numbers of the nodes in the file.
+    pub node_tags: Vec<u64>,
+    /// Shapes and nodes of the cells.
+    pub cells: Elements,
+    /// Numbers of the cells in the file.
+    pub cell_tags: Vec<u64>,
+    /// Index into `group_sets` for each cell.
+    pub cell_group_set: Vec<u32>,
+    /// The distinct sets of groups that elements belong to.
+    pub group_sets: Vec<Vec<usize>>,
+    /// All physical groups.
+    pub groups: Vec<Group>,
+    /// Names of the fractures.
+    pub fractures: Vec<String>,
+    /// Their facets.
+    pub facets: Facets,
+    /// The named parts of the outer surface.
+    pub boundaries: Vec<Boundary>,
+    /// Sectors of all nodes.
+    pub sectors: Sectors,
+    /// The block of each cell: blocks hang together without crossing a fracture.
+    pub block: Vec<u32>,
+    /// Number of blocks.
+    pub block_count: usize,
+}
+
+impl Mesh {
+    /// Checks `draft` and builds the mesh; `roles` has one entry for each group of the draft, of
+    /// which only those of surfaces count.
+    ///
+    /// # Errors
+    /// Every defect found: cells without volume or inside out, faces that do not fit together,
+    /// fractures that are not embedded, lie on the outer boundary, hold a facet twice or have only
+    /// one side.
+    pub fn build(draft: Draft, roles: &[SurfaceRole]) -> Result<Self, Vec<Defect>> {
+        let nodes: Vec<DVec3> = draft.nodes.iter().copied().map(DVec3::from).collect();
+        let mut defects = check::cells(&draft, &nodes);
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        let cells = &draft.cells.elements;
+        let adjacency = Adjacency::of(cells, nodes.len());
+        defects.extend(check::faces(&draft, &adjacency));
+        let (surfaces, found) = check::surfaces(&draft, roles, &adjacency);
+        defects.extend(found);
+        let (faces, found) = orient::fractures(&draft, &nodes, &adjacency, &surfaces);
+        defects.extend(found);
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        let mut is_fractured = vec![false; adjacency.face_count()];
+        for &(minus, plus) in &faces {
+            is_fractured[minus as usize] = true;
+            is_fractured[plus as usize] = true;
+        }
+        let sectors = sectors::find(cells, nodes.len(), &adjacency, &is_fractured);
+        let (block, block_count) = blocks::find(cells.len(), &adjacency, &is_fractured);
+        let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
+        let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
+        let fractures = surfaces.fractures.iter();
+        Ok(Self {
+            fractures: fractures.map(|&g| draft.groups[g].name.clone()).collect(),
+            nodes,
+            facets,
+            boundaries,
+            sectors,
+            block,
+            block_count,
+            source: draft.source,
+            node_tags: draft.node_tags,
+            cells: draft.cells.elements,
+            cell_tags: draft.cells.tags,
+            cell_group_set: draft.cells.group_set,
+            group_sets: draft.group_sets,
+            groups: draft.groups,
+        })
+    }
+
+    /// Coordinates of the corners of an element of this mesh [m].
+    pub fn corners(&self, elements: &Elements, index: usize) -> Vec<DVec3> {
+        crate::geometry::corners(elements, index, &self.nodes)
+    }
+
+    /// Area vectors of all fracture facets [m^2], from minus to plus.
+    pub fn facet_areas(&self) -> Vec<DVec3> {
+        (0..self.facets.elements.len())
+            .map(|facet| {
+                crate::facet_area_vector(&self.corners(&self.facets.elements, facet))
+            })
+            .collect()
+    }
+
+    /// Lowest and highest coordinates of the nodes that are in cells [m].
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let used = self.cells.nodes.iter().map(|&node| self.nodes[node as usize]);
+        used.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        })
+    }
+}
+
+/// Appends the cell face `face` to `elements` and its slots to `slots`.
+fn push_face(
+    cells: &Elements,
+    adjacency: &Adjacency,
+    face: u32,
+    elements: &mut Elements,
+    slots: &mut Vec<u32>,
+) {
+    let own: Vec<usize> = adjacency.slots(cells, face).collect();
+    let nodes: Vec<u32> = own.iter().map(|&slot| cells.nodes[slot]).collect();
+    elements.push(adjacency.shape_of(cells, face).shape, &nodes);
+    slots.extend(own.iter().map(|&slot| slot as u32));
+}
+
+fn collect_facets(
+    cells: &Elements,
+    adjacency: &Adjacency,
+    surfaces: &check::Surfaces,
+    faces: &[(u32, u32)],
+) -> Facets {
+    let mut facets = Facets {
+        elements: Elements::new(),
+        ..Facets::default()
+    };
+    for (facet, &(minus, plus)) in surfaces.facets.iter().zip(faces) {
+        push_face(
+            cells,
+            adjacency,
+            minus,
+            &mut facets.elements,
+            &mut facets.minus_slots,
+        );
+        for slot in adjacency.slots(cells, minus) {
+            let node = cells.nodes[slot];
+            let twin = adjacency
+                .slots(cells, plus)
+                .find(|&slot| cells.nodes[slot] == node);
+            facets.plus_slots.extend(twin.map(|slot| slot as u32));
+        }
+        facets.fracture.push(facet.fracture);
+        facets.minus.push(adjacency.cell_of_face[minus as usize]);
+        facets.plus.push(adjacency.cell_of_face[plus as usize]);
+    }
+    facets
+}
+
+fn collect_boundaries(
+    draft: &Draft,
+    adjacency: &Adjacency,
+    surfaces: &check::Surfaces,
+) -> Vec<Boundary> {
+    let cells = &draft.cells.elements;
+    let collect = |(group, faces): &(usize, Vec<u32>)| {
+        let mut boundary = Boundary {
+            name: draft.groups[*group].name.clone(),
+            elements: Elements::new(),
+            cell: Vec::new(),
+            slots: Vec::new(),
+        };
+        for &face in faces {
+            let cell = adjacency.cell_of_face[face as usize];
+            boundary.cell.push(cell);
+            push_face(
+                cells,
+                adjacency,
+                face,
+                &mut boundary.elements,
+                &mut boundary.slots,
+            );
+        }
+        boundary
+    };
+    surfaces.boundaries.iter().map(collect).collect()
+}

@@ -1,0 +1,35 @@
+//! From a problem to a solution: unknowns, parallel assembly, linear solver, Newton.
+//!
+//! [`Problem`] -> [`Discretisation`] -> [`System`] -> [`Newton`] -> [`Solution`].
+//!
+//! Everything nonlinear lives on the jumps: the stiffness of the rock is assembled once, and a
+//! Newton iteration changes only the blocks of nodes on fractures. No result depends on the number
+//! of threads: every sum has a fixed order.
+
+mod assembly;
+mod interface;
+mod linear;
+mod loads;
+mod matrix;
+mod newton;
+mod pattern;
+mod points;
+mod problem;
+mod rigid_modes;
+mod solution;
+mod supports;
+mod system;
+
+pub use interface::{FacetPoint, Interface};
+pub use linear::{DirectSolver, LinearFailure};
+pub use loads::Loads;
+pub use matrix::BlockMatrix;
+pub use newton::{Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
+pub use pattern::{Lists, Pattern};
+pub use points::Points;
+pub use problem::{
+    Condition, FixedPoint, Fracture, InitialStress, Problem, Profile, Support, SurfaceLoad,
+};
+pub use solution::{FacetResult, FacetState, Solution, solution};
+pub use supports::{Hold, Supports};
+pub use system::{Discretisation, FacetPointState, State, System, norm};

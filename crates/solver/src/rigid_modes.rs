@@ -1,0 +1,209 @@
+//! Blocks of rock that nothing holds.
+//!
+//! Every block moves rigidly in six ways. Supports and stiff fractures forbid some of them; what
+//! is left over is the null space of a small matrix, and would make the stiffness singular.
+
+use faer::{Mat, Side};
+use glam::DVec3;
+use lie_mesh::{Defect, Mesh};
+
+use crate::interface::Interface;
+use crate::points::Points;
+use crate::problem::Problem;
+use crate::supports::Supports;
+
+/// Below this share of the largest eigenvalue a motion counts as unresisted; the others are far
+/// above it, because all lengths are in units of the body.
+const FREE: f64 = 1e-11;
+/// The eigenproblem is dense; with more loose blocks than this the check is left to the
+/// factorisation.
+const MOST_BLOCKS: usize = 400;
+
+const MOTIONS: [&str; 6] = [
+    "translation along x",
+    "translation along y",
+    "translation along z",
+    "rotation about x",
+    "rotation about y",
+    "rotation about z",
+];
+
+/// Names every group of blocks that can move freely.
+pub(crate) fn find(
+    problem: &Problem,
+    points: &Points,
+    supports: &Supports,
+    interface: &Interface,
+) -> Vec<Defect> {
+    let mesh = &problem.mesh;
+    let (body_of_block, body_count) = tie_blocks(problem, interface, points);
+    if body_count > MOST_BLOCKS {
+        return Vec::new();
+    }
+    let body_of_point = bodies_of_points(mesh, points, &body_of_block);
+    let constraints = Constraints {
+        problem,
+        points,
+        body_of_point: &body_of_point,
+        bounds: mesh.bounds(),
+    };
+    let resistance = constraints.resistance(supports, interface, body_count);
+    let Ok(eigen) = resistance.self_adjoint_eigen(Side::Lower) else {
+        return Vec::new();
+    };
+    let values = eigen.S().column_vector();
+    let largest = (0..values.nrows()).map(|i| values[i]).fold(0.0, f64::max);
+    let free: Vec<usize> = (0..values.nrows())
+        .filter(|&i| values[i] <= FREE * largest)
+        .collect();
+    let share = |body: usize, motion: usize| -> f64 {
+        free.iter().map(|&i| eigen.U()[(6 * body + motion, i)].powi(2)).sum()
+    };
+    (0..body_count)
+        .filter_map(|body| {
+            let shares: Vec<f64> = (0..6).map(|motion| share(body, motion)).collect();
+            describe(mesh, &body_of_block, body, &shares)
+        })
+        .collect()
+}
+
+/// Blocks joined by fractures stiff in normal and shear move as one body.
+fn tie_blocks(problem: &Problem, interface: &Interface, points: &Points) -> (Vec<u32>, usize) {
+    let mesh = &problem.mesh;
+    let mut body: Vec<u32> = (0..mesh.block_count as u32).collect();
+    let block_of_point = bodies_of_points(mesh, points, &body);
+    loop {
+        let mut changed = false;
+        for point in &interface.points {
+            let law = &problem.fractures[point.fracture as usize].law;
+            let stiff = law.closure.normal_stiffness > 0.0 && law.shear_stiffness > 0.0;
+            let [a, b] = [point.plus, point.minus].map(|p| block_of_point[p as usize] as usize);
+            if stiff && body[a] != body[b] {
+                let low = body[a].min(body[b]);
+                (body[a], body[b]) = (low, low);
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    let mut names = body.clone();
+    names.sort_unstable();
+    names.dedup();
+    for body in &mut body {
+        *body = names.partition_point(|name| name < body) as u32;
+    }
+    (body, names.len())
+}
+
+fn bodies_of_points(mesh: &Mesh, points: &Points, body_of_block: &[u32]) -> Vec<u32> {
+    let mut body = vec![0; points.len()];
+    for cell in 0..mesh.cells.len() {
+        for &point in &points.of_cell_node[mesh.cells.range(cell)] {
+            body[point as usize] = body_of_block[mesh.block[cell] as usize];
+        }
+    }
+    body
+}
+
+struct Constraints<'a> {
+    problem: &'a Problem,
+    points: &'a Points,
+    body_of_point: &'a [u32],
+    bounds: (DVec3, DVec3),
+}
+
+impl Constraints<'_> {
+    /// Sum over all constraints of `v v^T`, `v` being what each rigid motion does against one.
+    fn resistance(&self, supports: &Supports, interface: &Interface, bodies: usize) -> Mat<f64> {
+        let mut sum = Mat::zeros(6 * bodies, 6 * bodies);
+        for point in 0..self.points.len() {
+            if let Some(hold) = supports.hold(point) {
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    add(&mut sum, &[self.motion(point, axis - hold.free * axis)]);
+                }
+            }
+        }
+        for facet_point in &interface.points {
+            let [plus, minus] = [facet_point.plus as usize, facet_point.minus as usize];
+            if self.body_of_point[plus] == self.body_of_point[minus] {
+                continue;
+            }
+            let law = &self.problem.fractures[facet_point.fracture as usize].law;
+            let normal = facet_point.normal;
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let across = axis.dot(normal) * normal;
+                let mut resisted = DVec3::ZERO;
+                if law.closure.normal_stiffness > 0.0 {
+                    resisted += across;
+                }
+                if law.shear_stiffness > 0.0 {
+                    resisted += axis - across;
+                }
+                let opposite = self.motion(minus, -resisted);
+                add(&mut sum, &[self.motion(plus, resisted), opposite]);
+            }
+        }
+        sum
+    }
+
+    /// What the six motions of a point's body do along `direction` at the point; rotations about
+    /// the middle of the mesh, lengths in units of its size.
+    fn motion(&self, point: usize, direction: DVec3) -> (usize, [f64; 6]) {
+        let mesh = &self.problem.mesh;
+        let (low, high) = self.bounds;
+        let arm = (mesh.nodes[self.points.node[point] as usize] - 0.5 * (low + high))
+            / (high - low).length();
+        let turn = arm.cross(direction);
+        let d = direction;
+        (
+            self.body_of_point[point] as usize,
+            [d.x, d.y, d.z, turn.x, turn.y, turn.z],
+        )
+    }
+}
+
+fn add(sum: &mut Mat<f64>, parts: &[(usize, [f64; 6])]) {
+    for (body, row) in parts {
+        for (other, column) in parts {
+            for (i, a) in row.iter().enumerate() {
+                for (j, b) in column.iter().enumerate() {
+                    sum[(6 * body + i, 6 * other + j)] += a * b;
+                }
+            }
+        }
+    }
+}
+
+/// A motion is named if half of it or more is free; if none is, the block turns about some other
+/// axis.
+fn describe(mesh: &Mesh, body_of_block: &[u32], body: usize, shares: &[f64]) -> Option<Defect> {
+    if shares.iter().all(|share| *share < 1e-6) {
+        return None;
+    }
+    let named: Vec<&str> = std::iter::zip(MOTIONS, shares)
+        .filter(|(_, share)| **share > 0.5)
+        .map(|(name, _)| name)
+        .collect();
+    let motions = if named.is_empty() {
+        "rotation about an axis through its supports".to_owned()
+    } else {
+        named.join(", ")
+    };
+    let cells = (0..mesh.cells.len())
+        .filter(|&cell| body_of_block[mesh.block[cell] as usize] as usize == body);
+    let nodes = cells.flat_map(|cell| mesh.cells.nodes_of(cell).iter());
+    let (low, high) = nodes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &node| {
+        let x = mesh.nodes[node as usize];
+        (low.min(x), high.max(x))
+    });
+    Some(Defect::new(
+        format!(
+            "the rock between ({:.4}, {:.4}, {:.4}) and ({:.4}, {:.4}, {:.4})",
+            low.x, low.y, low.z, high.x, high.y, high.z
+        ),
+        format!("nothing holds it: {motions} is free"),
+        "add a [boundary.NAME] with displacement or symmetry, a [[fixed_point]], or stiffness on the fractures around it",
+    ))
+}

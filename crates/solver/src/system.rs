@@ -1,0 +1,242 @@
+//! The discrete problem: unknowns, stiffness, loads, and what they make of a state.
+
+use glam::{DMat3, DVec3};
+use lie_core::{FractureLaw, Response};
+use lie_mesh::Defect;
+use rayon::prelude::*;
+
+use crate::assembly::{self, Frame};
+use crate::interface::{FacetPoint, Interface};
+use crate::loads::{Loads, on_unknowns};
+use crate::matrix::BlockMatrix;
+use crate::pattern::Pattern;
+use crate::points::Points;
+use crate::problem::Problem;
+use crate::rigid_modes;
+use crate::supports::Supports;
+
+/// Numbering and topology of a problem, before any value is computed.
+#[derive(Debug, Clone)]
+pub struct Discretisation {
+    /// Copies of nodes, and unknowns.
+    pub points: Points,
+    /// What is held.
+    pub supports: Supports,
+    /// Pattern of the matrix.
+    pub pattern: Pattern,
+    /// The fractures.
+    pub interface: Interface,
+}
+
+impl Discretisation {
+    /// Enriches and numbers a problem.
+    ///
+    /// # Errors
+    /// Conditions that contradict each other, and blocks of rock that nothing holds, each named
+    /// with the motions left free.
+    pub fn of(problem: &Problem) -> Result<Self, Vec<Defect>> {
+        let points = Points::of(&problem.mesh);
+        let supports = Supports::of(problem, &points)?;
+        let interface = Interface::of(problem, &points);
+        let defects = rigid_modes::find(problem, &points, &supports, &interface);
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        let pattern = Pattern::of(&problem.mesh, &points);
+        Ok(Self {
+            points,
+            supports,
+            pattern,
+            interface,
+        })
+    }
+
+    /// Number of scalar unknowns, held directions left out.
+    pub fn unknown_count(&self) -> usize {
+        3 * self.points.len() - self.supports.held_directions
+    }
+}
+
+/// The state of a run: what a load step starts from and leaves behind.
+///
+/// Apertures and tractions are kept beside the unknowns and follow them by increments. Computed
+/// anew from displacements, a stiff fracture would multiply the rounding of the displacements by
+/// its stiffness.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// Load factor at which the state stands.
+    pub load: f64,
+    /// Unknown 3-vectors [m].
+    pub unknowns: Vec<DVec3>,
+    /// State of each facet point.
+    pub facet_points: Vec<FacetPointState>,
+}
+
+/// State of one facet point.
+#[derive(Debug, Clone, Copy)]
+pub struct FacetPointState {
+    /// Aperture `b` at which the law is linearised [m].
+    pub aperture: f64,
+    /// Opening of the walls beyond that aperture [m]; rounding once converged.
+    pub mismatch: f64,
+    /// Shear traction [Pa].
+    pub shear: DVec3,
+}
+
+/// The discrete problem, assembled.
+#[derive(Debug, Clone)]
+pub struct System<'a> {
+    /// What is solved.
+    pub problem: &'a Problem,
+    /// Numbering and topology.
+    pub discretisation: Discretisation,
+    /// Stiffness of the rock over all unknowns; it never changes.
+    pub rock: BlockMatrix,
+    /// Forces.
+    pub loads: Loads,
+}
+
+impl<'a> System<'a> {
+    /// Assembles rock and loads.
+    pub fn assemble(problem: &'a Problem, discretisation: Discretisation) -> Self {
+        let frame = Frame {
+            problem,
+            points: &discretisation.points,
+            supports: &discretisation.supports,
+            pattern: &discretisation.pattern,
+        };
+        let rock = assembly::rock_stiffness(frame);
+        let loads = Loads::of(frame, &discretisation.interface);
+        Self {
+            problem,
+            rock,
+            loads,
+            discretisation,
+        }
+    }
+
+    /// The state before any load: no displacement, apertures and shear as the initial stress
+    /// leaves them.
+    pub fn initial_state(&self) -> State {
+        let facet_points = self.discretisation.interface.points.iter().map(|point| {
+            let law = &self.problem.fractures[point.fracture as usize].law;
+            let opening = point.initial_jump.dot(point.normal);
+            FacetPointState {
+                aperture: law.closure.aperture + opening,
+                mismatch: 0.0,
+                shear: law.shear_stiffness * (point.initial_jump - opening * point.normal),
+            }
+        });
+        State {
+            load: 0.0,
+            unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
+            facet_points: facet_points.collect(),
+        }
+    }
+
+    /// Law of a facet point.
+    pub fn law(&self, point: &FacetPoint) -> &FractureLaw {
+        &self.problem.fractures[point.fracture as usize].law
+    }
+
+    /// Traction of the law of a facet point in its state [Pa].
+    pub fn law_traction(&self, point: &FacetPoint, state: &FacetPointState) -> DVec3 {
+        let across = self.law(point).closure.at_aperture(state.aperture).traction;
+        across * point.normal + state.shear
+    }
+
+    /// Responses of the laws to the jumps of `unknowns`.
+    pub fn responses(&self, unknowns: &[DVec3], factor: f64) -> Vec<Response> {
+        let interface = &self.discretisation.interface;
+        let jumps = interface.jumps(&self.displacements(unknowns, factor));
+        let points = interface.points.par_iter().zip(jumps);
+        points
+            .map(|(point, jump)| {
+                let seen = point.initial_jump + jump;
+                self.law(point).response(seen, point.normal)
+            })
+            .collect()
+    }
+
+    /// Displacement of all points [m] at load factor `factor`.
+    pub fn displacements(&self, unknowns: &[DVec3], factor: f64) -> Vec<DVec3> {
+        let Discretisation {
+            points, supports, ..
+        } = &self.discretisation;
+        (0..points.len())
+            .into_par_iter()
+            .map(|point| supports.apply(point, points.displacement(unknowns, point), factor))
+            .collect()
+    }
+
+    /// Forces of the loads on all unknowns [N].
+    pub fn load_forces(&self, factor: f64) -> Vec<DVec3> {
+        let loads = &self.loads;
+        (0..loads.applied.len())
+            .into_par_iter()
+            .map(|i| factor * (loads.applied[i] + loads.prescribed[i]) + loads.initial[i])
+            .collect()
+    }
+
+    /// Forces on all unknowns by which the fractures resist, from their tractions [N].
+    pub fn fracture_forces(&self, tractions: &[DVec3]) -> Vec<DVec3> {
+        let Discretisation {
+            points,
+            supports,
+            interface,
+            ..
+        } = &self.discretisation;
+        on_unknowns(points, supports, &interface.forces(tractions, points.len()))
+    }
+
+    /// Out-of-balance forces `loads - K y - fractures` [N] for given tractions of the fractures.
+    pub fn residual(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> Vec<DVec3> {
+        let rock = self.rock.times(&self.discretisation.pattern, unknowns);
+        let loads = self.load_forces(factor);
+        let fractures = self.fracture_forces(tractions);
+        (0..rock.len())
+            .into_par_iter()
+            .map(|i| loads[i] - rock[i] - fractures[i])
+            .collect()
+    }
+
+    /// Largest of the forces that must balance [N], as Euclidean norms over all unknowns: the
+    /// measure for "small" in a residual.
+    pub fn force_scale(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> f64 {
+        let loads = &self.loads;
+        [
+            factor.abs() * norm(&loads.applied),
+            factor.abs() * norm(&loads.prescribed),
+            norm(&loads.initial),
+            norm(&self.rock.times(&self.discretisation.pattern, unknowns)),
+            norm(&self.fracture_forces(tractions)),
+        ]
+        .into_iter()
+        .fold(0.0, f64::max)
+    }
+
+    /// `K + fractures`: the whole tangent for given tangents of the fractures.
+    pub fn tangent(&self, tangents: &[DMat3]) -> BlockMatrix {
+        let mut whole = self.rock.clone();
+        let Discretisation {
+            points,
+            supports,
+            pattern,
+            interface,
+        } = &self.discretisation;
+        let stiffness = interface.stiffness(tangents, points, supports);
+        for (rows, blocks) in interface.addresses(points, pattern).iter().zip(&stiffness) {
+            for ((_, start), row) in rows.iter().zip(blocks.chunks(rows.len())) {
+                for (l, block) in row.iter().enumerate() {
+                    whole.blocks[start + l] += *block;
+                }
+            }
+        }
+        whole
+    }
+}
+
+/// Euclidean norm, summed in a fixed order.
+pub fn norm(vector: &[DVec3]) -> f64 {
+    vector.iter().map(|v| v.length_squared()).sum::<f64>().sqrt()
+}

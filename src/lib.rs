@@ -1,0 +1,229 @@
+//! A run of Kluft, told as a story: read the scene, mesh, enrich, assemble, solve, write.
+
+mod decisions;
+mod output;
+mod report;
+mod scene;
+mod summary;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use lie_io::{Meshing, load_msh, mesh_geometry};
+use lie_mesh::{Draft, Mesh, SurfaceRole, inner_surfaces};
+use lie_solver::{
+    Discretisation, Newton, NewtonSettings, Problem, State, StepRecord, System, solution,
+};
+
+pub use report::{Failure, Verbosity, print_failure};
+pub use scene::{
+    Binding, BoundaryEntry, FixedPointEntry, MeshSource, Named, Scene, bind, surface_roles,
+};
+pub use summary::{FractureSummary, Spread, Summary};
+
+use output::Output;
+use report::Report;
+
+/// How to run a scene.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Folder for the results; `out` beside the scene if not given.
+    pub out: Option<PathBuf>,
+    /// Number of threads; all cores if not given.
+    pub threads: Option<usize>,
+    /// How much to tell.
+    pub verbosity: Verbosity,
+}
+
+/// Runs a scene.
+///
+/// # Errors
+/// [`Failure::BadInput`] with every defect found, or [`Failure::NotConverged`] with where and why;
+/// the results of converged steps and `summary.json` are kept then.
+pub fn run(scene_file: &Path, options: &Options) -> Result<(), Failure> {
+    let start = Instant::now();
+    let threads = options.threads.unwrap_or(0);
+    // Fails only if a pool exists already, as in a program that runs many scenes.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let mut report = Report::new(options.verbosity);
+    let scene = Scene::read(scene_file)?;
+    let beside = scene_file.parent().unwrap_or(Path::new(".")).join("out");
+    let mut output = Output::prepare(options.out.as_deref().unwrap_or(&beside))
+        .map_err(|defect| vec![defect])?;
+    let mut summary = Summary {
+        kluft: env!("CARGO_PKG_VERSION"),
+        title: scene.title.clone(),
+        threads: rayon::current_num_threads(),
+        ..Summary::default()
+    };
+    report.entry("kluft", &format!("{}  {}", summary.kluft, scene.title));
+    let problem = prepare(&scene, &output, &mut report, &mut summary)?;
+    let result = solve(&problem, &mut output, &mut report, &mut summary);
+    summary.seconds.total = start.elapsed().as_secs_f64();
+    summary.peak_memory_bytes = summary::peak_memory_bytes();
+    if !matches!(result, Err(Failure::BadInput(_))) {
+        let path = output.path("summary.json");
+        summary.write(&path).map_err(|defect| vec![defect])?;
+        closing_lines(&report, &summary, &output);
+    }
+    result
+}
+
+/// From the scene to a checked problem.
+fn prepare(
+    scene: &Scene,
+    output: &Output,
+    report: &mut Report,
+    summary: &mut Summary,
+) -> Result<Problem, Failure> {
+    let file = match &scene.mesh {
+        MeshSource::File(file) => file.clone(),
+        MeshSource::Geometry(geometry, parameters) => {
+            let file = output.path("mesh.msh");
+            let meshing = Meshing {
+                geometry,
+                parameters,
+                order: 1,
+                output: &file,
+            };
+            let (warnings, took) = report.stage("meshing (gmsh)", |_| mesh_geometry(&meshing));
+            for warning in warnings? {
+                report.detail("gmsh", &warning);
+            }
+            summary.seconds.mesh = took.as_secs_f64();
+            report.entry("meshed", &timed(&geometry.display().to_string(), took));
+            file
+        }
+    };
+    let (problem, took) = report.stage("reading", |_| {
+        let scratch = output.path("");
+        let draft = load_msh(&file, &scratch)?;
+        build_problem(scene, draft, summary)
+    });
+    summary.seconds.read = took.as_secs_f64();
+    let problem = problem?;
+    let mesh = &summary.mesh;
+    let size = format!(
+        "{} nodes, {} cells, {} fracture facets, at most {} sectors at a node",
+        mesh.nodes, mesh.cells, mesh.fracture_facets, mesh.max_sectors
+    );
+    report.entry("read", &timed(&size, took));
+    Ok(problem)
+}
+
+fn build_problem(
+    scene: &Scene,
+    draft: Draft,
+    summary: &mut Summary,
+) -> Result<Problem, Vec<lie_mesh::Defect>> {
+    let inner = inner_surfaces(&draft);
+    let roles = surface_roles(scene, &draft, |group| inner[group])?;
+    for (group, role) in draft.groups.iter().zip(&roles) {
+        if group.dimension == 2 && *role == SurfaceRole::Unused {
+            summary.decisions.push(decisions::unused_surface(&group.name));
+        }
+    }
+    let binding = bind(scene, Mesh::build(draft, &roles)?)?;
+    summary.decisions.extend(binding.decisions);
+    let mesh = &binding.problem.mesh;
+    summary.mesh = summary::MeshSummary {
+        nodes: mesh.sectors.count.iter().filter(|&&count| count > 0).count(),
+        cells: mesh.cells.len(),
+        fracture_facets: mesh.facets.elements.len(),
+        max_sectors: mesh.sectors.count.iter().copied().max().unwrap_or(0),
+    };
+    Ok(binding.problem)
+}
+
+/// From the problem to the written results of all load steps.
+fn solve(
+    problem: &Problem,
+    output: &mut Output,
+    report: &mut Report,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
+    let (discretisation, took) = report.stage("enriching", |_| Discretisation::of(problem));
+    let discretisation = discretisation?;
+    summary.seconds.enrich = took.as_secs_f64();
+    summary.unknowns = summary::UnknownSummary {
+        total: discretisation.unknown_count(),
+        jump: 3 * discretisation.points.jump_count(),
+    };
+    let unknowns = &summary.unknowns;
+    let text = format!("{} unknowns, {} of them jumps", unknowns.total, unknowns.jump);
+    report.entry("enriched", &timed(&text, took));
+    let (system, took) = report.stage("assembling", |_| System::assemble(problem, discretisation));
+    summary.seconds.assemble = took.as_secs_f64();
+    report.entry("assembled", &timed("rock and loads, once for the run", took));
+    let (newton, took) =
+        report.stage("ordering", |_| Newton::new(&system, NewtonSettings::default()));
+    summary.seconds.factorise = took.as_secs_f64();
+    let mut newton = newton.map_err(|failure| {
+        Failure::NotConverged(decisions::linear_failure(problem, &system, &failure))
+    })?;
+    let entries = newton.factor_entries();
+    report.entry("ordered", &timed(&format!("{entries} entries in the factor"), took));
+    summary.decisions.extend(decisions::of_problem(problem));
+    for decision in &summary.decisions {
+        report.entry("decided", decision);
+    }
+    let mut state = system.initial_state();
+    for (number, &load) in problem.steps.iter().enumerate() {
+        report.step(number + 1, problem.steps.len(), load);
+        let record = solve_step(&mut newton, &mut state, load, report);
+        summary.seconds.factorise += record.factorise_seconds;
+        summary.seconds.solve += record.solve_seconds;
+        summary.steps.push((&record).into());
+        if !record.converged() {
+            let why = decisions::not_converged(problem, &system, number + 1, &record);
+            return Err(Failure::NotConverged(why));
+        }
+        let (written, took) = report.stage("writing", |_| {
+            let solution = solution(&system, &state);
+            let interface = &system.discretisation.interface;
+            summary.fractures = summary::fractures(problem, interface, &solution);
+            output.write_step(&system, &solution)
+        });
+        written.map_err(|defect| vec![defect])?;
+        summary.seconds.write += took.as_secs_f64();
+    }
+    summary.warnings = decisions::warnings(&summary.fractures);
+    Ok(())
+}
+
+fn solve_step(
+    newton: &mut Newton<'_>,
+    state: &mut State,
+    load: f64,
+    report: &mut Report,
+) -> StepRecord {
+    let (record, _) = report.stage("factorising and solving", |report| {
+        newton.step(state, load, |number, iteration| {
+            report.iteration(number, iteration);
+        })
+    });
+    record
+}
+
+fn timed(text: &str, took: Duration) -> String {
+    format!("{text} ({:.2} s)", took.as_secs_f64())
+}
+
+fn closing_lines(report: &Report, summary: &Summary, output: &Output) {
+    report.fractures(&summary.fractures);
+    for warning in &summary.warnings {
+        report.entry("warning", warning);
+    }
+    let megabytes = summary.peak_memory_bytes as f64 / 1e6;
+    let text = format!(
+        "{:.2} s, {megabytes:.0} MB at most, {} threads",
+        summary.seconds.total, summary.threads
+    );
+    report.entry("took", &text);
+    if !summary.steps.is_empty() {
+        let rock = output.path("rock.pvd");
+        let fractures = output.path("fractures.pvd");
+        let text = format!("{} and {}", rock.display(), fractures.display());
+        report.entry("open", &text);
+    }
+}

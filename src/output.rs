@@ -1,0 +1,128 @@
+//! From a solution to the files that ParaView opens.
+
+use std::path::{Path, PathBuf};
+
+use lie_io::{Field, Grid, Values, write_pvd, write_vtu};
+use lie_mesh::Defect;
+use lie_solver::{Solution, System};
+
+/// Writes the results of a run into one folder, step by step; the collections always list exactly
+/// the steps that are complete.
+pub struct Output {
+    folder: PathBuf,
+    rock: Vec<(f64, String)>,
+    fractures: Vec<(f64, String)>,
+}
+
+impl Output {
+    /// Prepares the folder.
+    ///
+    /// # Errors
+    /// If it cannot be made or written to.
+    pub fn prepare(folder: &Path) -> Result<Self, Defect> {
+        let refused = |error: std::io::Error| {
+            Defect::new(
+                folder.display().to_string(),
+                format!("the results cannot be written here: {error}"),
+                "name a folder you may write to with --out DIR",
+            )
+        };
+        std::fs::create_dir_all(folder).map_err(refused)?;
+        let probe = folder.join(".kluft-probe");
+        std::fs::write(&probe, b"").map_err(refused)?;
+        std::fs::remove_file(&probe).map_err(refused)?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            rock: Vec::new(),
+            fractures: Vec::new(),
+        })
+    }
+
+    /// A path in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Writes one load step; ParaView's time is its number.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write_step(&mut self, system: &System<'_>, solution: &Solution) -> Result<(), Defect> {
+        let number = self.rock.len() + 1;
+        let (rock, fractures) = (
+            format!("rock_{number:04}.vtu"),
+            format!("fractures_{number:04}.vtu"),
+        );
+        write_vtu(&self.path(&rock), &rock_grid(system, solution))?;
+        write_vtu(&self.path(&fractures), &fracture_grid(system, solution))?;
+        self.rock.push((number as f64, rock));
+        self.fractures.push((number as f64, fractures));
+        write_pvd(&self.path("rock.pvd"), &self.rock)?;
+        write_pvd(&self.path("fractures.pvd"), &self.fractures)
+    }
+}
+
+/// The rock, with one copy of a node for each of its sectors.
+fn rock_grid(system: &System<'_>, solution: &Solution) -> Grid {
+    let mesh = &system.problem.mesh;
+    let points = &system.discretisation.points;
+    let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
+    let displacements = solution.displacements.iter().flat_map(|u| u.to_array());
+    Grid {
+        points: points.node.iter().map(|&node| mesh.nodes[node as usize].to_array()).collect(),
+        shapes: mesh.cells.shapes.clone(),
+        offsets: mesh.cells.offsets.clone(),
+        nodes: points.of_cell_node.clone(),
+        point_fields: vec![real("displacement", 3, displacements)],
+        cell_fields: vec![
+            real("stress", 6, solution.stresses.iter().flatten().copied()),
+            integer("rock", rocks),
+        ],
+    }
+}
+
+/// The fractures; every facet has its own points, so that fields may jump between facets.
+fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
+    let mesh = &system.problem.mesh;
+    let elements = &mesh.facets.elements;
+    let results = &solution.facet_points;
+    let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
+        results.iter().flat_map(move |result| of(result).to_array())
+    };
+    let normals = mesh.facet_areas().into_iter().flat_map(|area| area.normalize().to_array());
+    Grid {
+        points: elements.nodes.iter().map(|&node| mesh.nodes[node as usize].to_array()).collect(),
+        shapes: elements.shapes.clone(),
+        offsets: elements.offsets.clone(),
+        nodes: (0..elements.nodes.len() as u32).collect(),
+        point_fields: vec![
+            real("aperture", 1, results.iter().map(|result| result.aperture)),
+            real("opening", 1, results.iter().map(|result| result.opening)),
+            real("slip", 3, vectors(|result| result.slip)),
+            real("jump", 3, vectors(|result| result.jump)),
+            real("traction", 3, vectors(|result| result.traction)),
+            real("normal_traction", 1, results.iter().map(|result| result.normal_traction)),
+            integer("state", results.iter().map(|result| result.state as i32)),
+        ],
+        cell_fields: vec![
+            real("normal", 3, normals),
+            integer("fracture", mesh.facets.fracture.iter().map(|&fracture| fracture as i32)),
+        ],
+    }
+}
+
+fn real(name: &'static str, components: u32, values: impl Iterator<Item = f64>) -> Field {
+    Field {
+        name,
+        components,
+        values: Values::Real(values.collect()),
+    }
+}
+
+fn integer(name: &'static str, values: impl Iterator<Item = i32>) -> Field {
+    Field {
+        name,
+        components: 1,
+        values: Values::Integer(values.collect()),
+    }
+}

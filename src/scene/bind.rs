@@ -1,0 +1,272 @@
+//! Where a scene meets a mesh: names become groups, groups become parts of a problem.
+
+use glam::DVec3;
+use lie_core::Rock;
+use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
+use lie_solver::{Condition, FixedPoint, Fracture, Problem};
+
+use super::reader::nearest;
+use super::{Named, Scene};
+
+/// Name under which a section serves all groups without one of their own.
+const DEFAULT: &str = "default";
+
+/// A problem and what was decided on the way to it.
+pub struct Binding {
+    /// The problem.
+    pub problem: Problem,
+    /// One line a decision, for the user.
+    pub decisions: Vec<String>,
+}
+
+/// What each group of the draft is, going by the scene. Surfaces that the scene does not name are
+/// fractures if there is a `[fracture.default]` and they lie inside the rock, and unused otherwise.
+///
+/// # Errors
+/// Names of the scene that are no group of the mesh, or one of the wrong dimension.
+pub fn surface_roles(
+    scene: &Scene,
+    draft: &Draft,
+    is_inside: impl Fn(usize) -> bool,
+) -> Result<Vec<SurfaceRole>, Vec<Defect>> {
+    let mut defects = Vec::new();
+    let mut roles = vec![SurfaceRole::Unused; draft.groups.len()];
+    let mut assign = |name: &str, place: &str, role: SurfaceRole, roles: &mut Vec<SurfaceRole>| {
+        match find_group(&draft.groups, name, 2, place) {
+            Ok(group) if roles[group] == SurfaceRole::Unused => roles[group] = role,
+            Ok(_) => defects.push(Defect::new(
+                place,
+                format!("surface `{name}` is both a fracture and a boundary"),
+                "a fracture lies inside the rock, a boundary outside; remove one of the sections",
+            )),
+            Err(defect) => defects.push(defect),
+        }
+    };
+    for entry in scene.fractures.iter().filter(|entry| entry.name != DEFAULT) {
+        assign(&entry.name, &entry.place, SurfaceRole::Fracture, &mut roles);
+    }
+    for entry in &scene.boundaries {
+        assign(&entry.name, &entry.place, SurfaceRole::Boundary, &mut roles);
+    }
+    defects.extend(volume_names(scene, &draft.groups));
+    if scene.fractures.iter().any(|entry| entry.name == DEFAULT) {
+        for (group, role) in roles.iter_mut().enumerate() {
+            let unnamed = *role == SurfaceRole::Unused && draft.groups[group].dimension == 2;
+            if unnamed && is_inside(group) {
+                *role = SurfaceRole::Fracture;
+            }
+        }
+    }
+    if defects.is_empty() { Ok(roles) } else { Err(defects) }
+}
+
+fn volume_names(scene: &Scene, groups: &[Group]) -> Vec<Defect> {
+    let named = scene.rocks.iter().filter(|entry| entry.name != DEFAULT);
+    named
+        .filter_map(|entry| find_group(groups, &entry.name, 3, &entry.place).err())
+        .collect()
+}
+
+fn kind(dimension: usize) -> &'static str {
+    ["point", "curve", "surface", "volume"][dimension.min(3)]
+}
+
+fn find_group(groups: &[Group], name: &str, dimension: usize, place: &str) -> Result<usize, Defect> {
+    let fits = |group: &Group| group.dimension == dimension;
+    if let Some(found) = groups.iter().position(|group| fits(group) && group.name == name) {
+        return Ok(found);
+    }
+    if let Some(other) = groups.iter().find(|group| group.name == name) {
+        let (found, wanted) = (kind(other.dimension), kind(dimension));
+        return Err(Defect::new(
+            place,
+            format!("`{name}` is a physical {found} of the mesh, not a physical {wanted}"),
+            format!("give the {wanted} a physical group: Physical {}(\"{name}\") = {{...}};", capital(wanted)),
+        ));
+    }
+    let known: Vec<&str> = groups.iter().filter(|g| fits(g)).map(|g| g.name.as_str()).collect();
+    let remedy = match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => format!("the mesh has no physical {}", kind(dimension)),
+        None => format!("physical {}s of the mesh: {}", kind(dimension), known.join(", ")),
+    };
+    Err(Defect::new(
+        place,
+        format!("the mesh has no physical {} `{name}`", kind(dimension)),
+        remedy,
+    ))
+}
+
+fn capital(word: &str) -> String {
+    let (first, rest) = word.split_at(1);
+    first.to_uppercase() + rest
+}
+
+/// Binds a scene to its mesh.
+///
+/// # Errors
+/// Volumes without or with several rocks, gravity without density, fixed points that are not in
+/// the body.
+pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
+    let mut defects = Vec::new();
+    let mut decisions = Vec::new();
+    let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
+    let fractures = bind_fractures(scene, &mesh, &mut decisions);
+    if scene.gravity != DVec3::ZERO {
+        defects.extend(missing_densities(scene));
+    }
+    let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
+    if !defects.is_empty() {
+        return Err(defects);
+    }
+    let conditions = scene.boundaries.iter().filter_map(|entry| {
+        let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
+        Some(Condition {
+            boundary,
+            load: entry.value.load,
+            support: entry.value.support,
+        })
+    });
+    Ok(Binding {
+        problem: Problem {
+            conditions: conditions.collect(),
+            rocks: scene.rocks.iter().map(|entry| entry.value).collect(),
+            rock_of_cell,
+            fractures,
+            fixed_points,
+            gravity: scene.gravity,
+            initial_stress: scene.initial_stress,
+            steps: scene.steps.clone(),
+            mesh,
+        },
+        decisions,
+    })
+}
+
+/// Rock of each cell, decided once for each set of groups that cells belong to.
+fn bind_rocks(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<u32> {
+    let default = scene.rocks.iter().position(|entry| entry.name == DEFAULT);
+    let mut used = vec![false; mesh.group_sets.len()];
+    for &set in &mesh.cell_group_set {
+        used[set as usize] = true;
+    }
+    let rock_of_set: Vec<u32> = mesh
+        .group_sets
+        .iter()
+        .zip(used)
+        .map(|(set, used)| {
+            let names: Vec<&str> = set.iter().map(|&g| mesh.groups[g].name.as_str()).collect();
+            let matches = |entry: &Named<Rock>| names.contains(&entry.name.as_str());
+            let found: Vec<usize> = (0..scene.rocks.len())
+                .filter(|&rock| matches(&scene.rocks[rock]))
+                .collect();
+            if let (true, Some(defect)) = (used, rock_defect(scene, &names, &found, default)) {
+                defects.push(defect);
+            }
+            found.first().copied().or(default).unwrap_or(0) as u32
+        })
+        .collect();
+    let sets = mesh.cell_group_set.iter();
+    sets.map(|&set| rock_of_set[set as usize]).collect()
+}
+
+fn rock_defect(
+    scene: &Scene,
+    names: &[&str],
+    found: &[usize],
+    default: Option<usize>,
+) -> Option<Defect> {
+    let volume = match names {
+        [] => "the cells in no physical volume".to_owned(),
+        names => format!("physical volume `{}`", names.join("`, `")),
+    };
+    match (found, default) {
+        ([], None) => Some(Defect::new(
+            volume,
+            "no rock is given for it",
+            "add a [rock.NAME] section for it, or [rock.default] for all volumes not named",
+        )),
+        ([first, second, ..], _) => Some(Defect::new(
+            volume,
+            format!(
+                "two rocks are given for the same cells: `{}` and `{}`",
+                scene.rocks[*first].name, scene.rocks[*second].name
+            ),
+            "name only one of the volumes that overlap in the scene",
+        )),
+        _ => None,
+    }
+}
+
+fn bind_fractures(scene: &Scene, mesh: &Mesh, decisions: &mut Vec<String>) -> Vec<Fracture> {
+    let by_name = |name: &str| scene.fractures.iter().find(|entry| entry.name == name);
+    let mut by_default = Vec::new();
+    let laws = mesh.fractures.iter().filter_map(|name| {
+        by_name(name).or_else(|| {
+            by_default.push(name.as_str());
+            by_name(DEFAULT)
+        })
+    });
+    let laws = laws.map(|entry| entry.value).collect();
+    if !by_default.is_empty() {
+        decisions.push(format!("[fracture.default] serves {}", by_default.join(", ")));
+    }
+    laws
+}
+
+fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
+    let without = scene.rocks.iter().filter(|entry| entry.value.density == 0.0);
+    without.map(|entry| {
+        Defect::new(
+            &entry.place,
+            "gravity acts, but this rock has no density",
+            "add `density = 2700` (kg/m^3)",
+        )
+    })
+}
+
+fn bind_fixed_points(
+    scene: &Scene,
+    mesh: &Mesh,
+    decisions: &mut Vec<String>,
+    defects: &mut Vec<Defect>,
+) -> Vec<FixedPoint> {
+    let mut bound = Vec::new();
+    for entry in &scene.fixed_points {
+        let at = entry.value.at;
+        let Some((node, distance, reach)) = nearest_node(mesh, at) else {
+            continue;
+        };
+        let x = mesh.nodes[node];
+        let tag = mesh.node_tags[node];
+        if distance > reach {
+            defects.push(Defect::new(
+                &entry.place,
+                format!("({}, {}, {}) is outside the rock", at.x, at.y, at.z),
+                format!("the nearest node is {tag} at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z),
+            ));
+        } else if distance > 1e-6 * reach {
+            decisions.push(format!(
+                "{}: no node at ({}, {}, {}); node {tag} at ({:.6}, {:.6}, {:.6}) is held instead",
+                entry.name, at.x, at.y, at.z, x.x, x.y, x.z
+            ));
+        }
+        bound.push(FixedPoint {
+            node: node as u32,
+            displacement: entry.value.displacement,
+            name: entry.name.clone(),
+        });
+    }
+    bound
+}
+
+/// The nearest node that is in a cell, its distance, and the longest edge of a cell there.
+fn nearest_node(mesh: &Mesh, at: DVec3) -> Option<(usize, f64, f64)> {
+    let used = (0..mesh.nodes.len()).filter(|&node| mesh.sectors.count[node] > 0);
+    let distance = |&node: &usize| mesh.nodes[node].distance(at);
+    let node = used.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let cells = (0..mesh.cells.len()).map(|cell| mesh.cells.nodes_of(cell));
+    let around = cells.filter(|nodes| nodes.contains(&(node as u32))).flatten();
+    let reach = around.map(|&other| mesh.nodes[other as usize].distance(mesh.nodes[node]));
+    Some((node, distance(&node), reach.fold(0.0, f64::max)))
+}

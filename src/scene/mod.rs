@@ -1,0 +1,380 @@
+//! The scene file: what a user may say, before it meets a mesh.
+
+mod bind;
+mod reader;
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_mesh::Defect;
+use lie_solver::{Fracture, InitialStress, Profile, Support, SurfaceLoad};
+
+pub use bind::{Binding, bind, surface_roles};
+use reader::{Accept, Section, Source};
+
+/// Something the scene says about a named group, and where it says so.
+#[derive(Debug, Clone)]
+pub struct Named<T> {
+    /// Name of the group, or `default`.
+    pub name: String,
+    /// File and line.
+    pub place: String,
+    /// What it says.
+    pub value: T,
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Clone)]
+pub enum MeshSource {
+    /// A gmsh geometry and the values handed to it.
+    Geometry(PathBuf, Vec<(String, f64)>),
+    /// A mesh file.
+    File(PathBuf),
+}
+
+/// What acts on a part of the outer surface.
+#[derive(Debug, Clone, Copy)]
+pub struct BoundaryEntry {
+    /// Its load.
+    pub load: Option<SurfaceLoad>,
+    /// Its support.
+    pub support: Option<Support>,
+}
+
+/// A node held by itself.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedPointEntry {
+    /// Where the node is [m].
+    pub at: DVec3,
+    /// Prescribed components [m].
+    pub displacement: [Option<f64>; 3],
+}
+
+/// A scene, all values in SI units.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Its title.
+    pub title: String,
+    /// Its mesh.
+    pub mesh: MeshSource,
+    /// Rocks by physical volume.
+    pub rocks: Vec<Named<Rock>>,
+    /// Fractures by physical surface.
+    pub fractures: Vec<Named<Fracture>>,
+    /// Conditions by physical surface.
+    pub boundaries: Vec<Named<BoundaryEntry>>,
+    /// Nodes held by themselves.
+    pub fixed_points: Vec<Named<FixedPointEntry>>,
+    /// Acceleration of gravity [m/s^2].
+    pub gravity: DVec3,
+    /// Stress before any load.
+    pub initial_stress: Option<InitialStress>,
+    /// Load factors.
+    pub steps: Vec<f64>,
+}
+
+impl Scene {
+    /// Reads a scene file; paths in it are relative to its folder.
+    ///
+    /// # Errors
+    /// Every defect of the file, each with its line and a remedy.
+    pub fn read(path: &Path) -> Result<Self, Vec<Defect>> {
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            vec![Defect::new(
+                path.display().to_string(),
+                format!("the scene cannot be read: {error}"),
+                "give the path of a scene file, e.g. geometries/inclined-joint/scene.toml",
+            )]
+        })?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        Self::parse(&text, &path.display().to_string(), folder)
+    }
+
+    /// Reads a scene from its text; `name` is for messages, `folder` is where its paths start.
+    ///
+    /// # Errors
+    /// Every defect of the text, each with its line and a remedy.
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Vec<Defect>> {
+        let source = Source::new(name, text);
+        let table = source.parse();
+        let scene = {
+            let root = Section::new(&source, table.get_ref(), String::new(), 0..0);
+            let scene = read_scene(&source, &root, folder);
+            root.finish();
+            scene
+        };
+        let defects = source.into_defects();
+        match scene {
+            Some(scene) if defects.is_empty() => Ok(scene),
+            _ => Err(defects),
+        }
+    }
+}
+
+fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Option<Scene> {
+    let named = |key: &'static str| root.named_sections(key).into_iter();
+    let title = root.text("title").unwrap_or("untitled").to_owned();
+    root.require("mesh", "a section: [mesh]");
+    let mesh = root.section("mesh").and_then(|section| read_mesh(section, folder));
+    root.require("rock", "a section: [rock.default]");
+    let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
+    let rocks = rocks.collect();
+    let fractures = named("fracture").filter_map(|(name, s)| entry(source, name, s, read_fracture));
+    let fractures = fractures.collect();
+    let boundaries = named("boundary").filter_map(|(name, s)| entry(source, name, s, read_boundary));
+    let boundaries = boundaries.collect();
+    let fixed_points = root
+        .listed_sections("fixed_point")
+        .into_iter()
+        .filter_map(|section| {
+            let name = section.title.clone();
+            entry(source, name, section, read_fixed_point)
+        })
+        .collect();
+    Some(Scene {
+        gravity: read_gravity(root),
+        initial_stress: root.section("initial_stress").map(read_initial_stress),
+        steps: read_steps(root),
+        title,
+        rocks,
+        fractures,
+        boundaries,
+        fixed_points,
+        mesh: mesh?,
+    })
+}
+
+fn entry<'a, 'i, T>(
+    source: &Source<'i>,
+    name: String,
+    section: Section<'a, 'i>,
+    read: impl Fn(&Section<'a, 'i>) -> Option<T>,
+) -> Option<Named<T>> {
+    let place = format!("{} {}", source.place(&section.at), section.title);
+    let value = read(&section);
+    section.finish();
+    value.map(|value| Named { name, place, value })
+}
+
+fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
+    let geometry = section.text("geometry").map(|path| folder.join(path));
+    let file = section.text("file").map(|path| folder.join(path));
+    let parameters = section.free_numbers("parameters");
+    if let Some(order) = section.number("order", Accept::Positive)
+        && order != 1.0
+    {
+        section.refuse(
+            "order",
+            format!("elements of order {order} are not supported"),
+            "write order = 1 (linear tetrahedra)",
+        );
+    }
+    let mesh = match (geometry, file) {
+        (Some(geometry), None) => Some(MeshSource::Geometry(geometry, parameters)),
+        (None, Some(file)) if parameters.is_empty() => Some(MeshSource::File(file)),
+        (None, Some(_)) => {
+            section.refuse(
+                "parameters",
+                "`parameters` have no effect on a mesh file".into(),
+                "remove them, or give the geometry instead of the file",
+            );
+            None
+        }
+        (Some(_), Some(_)) => {
+            section.refuse(
+                "file",
+                "both `geometry` and `file` are given".into(),
+                "keep one of them",
+            );
+            None
+        }
+        (None, None) => {
+            section.require("geometry", "\"block.geo\"` or `file = \"block.msh\"");
+            None
+        }
+    };
+    section.finish();
+    mesh
+}
+
+fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
+    section.require("young_modulus", "50e9");
+    section.require("poisson_ratio", "0.25");
+    let young_modulus = section.number("young_modulus", Accept::Positive);
+    let poisson_ratio = section.number("poisson_ratio", Accept::Between(-1.0, 0.5));
+    let density = section.number("density", Accept::NotNegative);
+    Some(Rock {
+        young_modulus: young_modulus?,
+        poisson_ratio: poisson_ratio?,
+        density: density.unwrap_or(0.0),
+    })
+}
+
+fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
+    for (key, example) in [
+        ("aperture", "1e-4"),
+        ("normal_stiffness", "1e11"),
+        ("shear_stiffness", "1e10"),
+    ] {
+        section.require(key, example);
+    }
+    let aperture = section.number("aperture", Accept::Positive);
+    let normal_stiffness = section.number("normal_stiffness", Accept::NotNegative);
+    let shear_stiffness = section.number("shear_stiffness", Accept::NotNegative);
+    let cutoff = section.number("cutoff_aperture", Accept::Positive);
+    let fluid_pressure = section.number("fluid_pressure", Accept::Finite);
+    if let (Some(aperture), Some(cutoff)) = (aperture, cutoff)
+        && cutoff > aperture
+    {
+        section.refuse(
+            "cutoff_aperture",
+            format!("cutoff_aperture {cutoff} is above the aperture {aperture}"),
+            "the cutoff must lie between 0 and the aperture; leave it out for the exact law",
+        );
+    }
+    let kind = match section.text("closure") {
+        Some("logarithmic") => ClosureKind::Logarithmic { cutoff },
+        Some("linear") | None => linear_closure(section, cutoff),
+        Some(other) => {
+            let known = ["linear", "logarithmic"];
+            let remedy = reader::nearest(other, known.into_iter())
+                .map_or("write \"linear\" or \"logarithmic\"".into(), |near| {
+                    format!("did you mean \"{near}\"? (known: linear, logarithmic)")
+                });
+            section.refuse("closure", format!("unknown closure law \"{other}\""), remedy);
+            return None;
+        }
+    };
+    Some(Fracture {
+        law: FractureLaw {
+            closure: Closure {
+                aperture: aperture?,
+                normal_stiffness: normal_stiffness?,
+                kind,
+            },
+            shear_stiffness: shear_stiffness?,
+        },
+        fluid_pressure: fluid_pressure.unwrap_or(0.0),
+    })
+}
+
+fn linear_closure(section: &Section<'_, '_>, cutoff: Option<f64>) -> ClosureKind {
+    if cutoff.is_some() {
+        section.refuse(
+            "cutoff_aperture",
+            "a linear closure has no cutoff".into(),
+            "remove cutoff_aperture or write closure = \"logarithmic\"",
+        );
+    }
+    ClosureKind::Linear
+}
+
+fn read_boundary(section: &Section<'_, '_>) -> Option<BoundaryEntry> {
+    let traction = section.vector("traction");
+    let pressure = section.number("pressure", Accept::Finite);
+    let symmetry = section.flag("symmetry");
+    let displacement = section.section("displacement").map(read_components);
+    let load = match (traction, pressure) {
+        (Some(traction), None) => Some(SurfaceLoad::Traction(traction.into())),
+        (None, Some(pressure)) => Some(SurfaceLoad::Pressure(pressure)),
+        (Some(_), Some(_)) => {
+            let remedy = "keep one; a pressure p is the traction -p along the outward normal";
+            section.refuse("pressure", "both traction and pressure are given".into(), remedy);
+            None
+        }
+        (None, None) => None,
+    };
+    let support = match (symmetry, displacement) {
+        (Some(true), None) => Some(Support::Symmetry),
+        (Some(true), Some(_)) => {
+            let remedy = "keep one; symmetry already holds the normal direction";
+            section.refuse("symmetry", "both symmetry and displacement are given".into(), remedy);
+            None
+        }
+        (_, components) => components.map(Support::Displacement),
+    };
+    let names = ["traction", "pressure", "symmetry", "displacement"];
+    if !names.into_iter().any(|name| section.has(name)) {
+        section.refuse(
+            "traction",
+            format!("{} says nothing", section.title),
+            "add traction, pressure, displacement or symmetry, or remove the section",
+        );
+    }
+    Some(BoundaryEntry { load, support })
+}
+
+fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
+    let components = ["x", "y", "z"].map(|axis| section.number(axis, Accept::Finite));
+    if !["x", "y", "z"].into_iter().any(|axis| section.has(axis)) {
+        section.refuse(
+            "x",
+            format!("{} names no component", section.title),
+            "name at least one: { x = 0.0, y = 0.0, z = 0.0 }",
+        );
+    }
+    section.finish();
+    components
+}
+
+fn read_fixed_point(section: &Section<'_, '_>) -> Option<FixedPointEntry> {
+    section.require("at", "[0.0, 0.0, 0.0]");
+    section.require("displacement", "{ x = 0.0 }");
+    let at = section.vector("at");
+    let displacement = section.section("displacement").map(read_components);
+    Some(FixedPointEntry {
+        at: at?.into(),
+        displacement: displacement?,
+    })
+}
+
+fn read_gravity(root: &Section<'_, '_>) -> DVec3 {
+    let Some(section) = root.section("body") else {
+        return DVec3::ZERO;
+    };
+    section.require("gravity", "[0, 0, -9.81]");
+    let gravity = section.vector("gravity");
+    section.finish();
+    gravity.unwrap_or_default().into()
+}
+
+fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {
+    let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| read_profile(&section, name));
+    section.finish();
+    InitialStress { components }
+}
+
+fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Profile {
+    if !section.is_table(name) {
+        return Profile {
+            value: section.number(name, Accept::Finite).unwrap_or(0.0),
+            ..Profile::default()
+        };
+    }
+    let Some(profile) = section.section(name) else {
+        return Profile::default();
+    };
+    profile.require("value", "-10e6");
+    let number = |key| profile.number(key, Accept::Finite).unwrap_or(0.0);
+    let read = Profile {
+        at: number("at"),
+        value: number("value"),
+        per_metre: number("per_metre"),
+    };
+    profile.finish();
+    read
+}
+
+fn read_steps(root: &Section<'_, '_>) -> Vec<f64> {
+    let Some(section) = root.section("load") else {
+        return vec![1.0];
+    };
+    section.require("steps", "[0.5, 1.0]");
+    let steps = section.numbers("steps", Accept::Finite);
+    if steps.as_ref().is_some_and(Vec::is_empty) {
+        section.refuse("steps", "there are no load steps".into(), "write steps = [1.0]");
+    }
+    section.finish();
+    steps.unwrap_or_else(|| vec![1.0])
+}

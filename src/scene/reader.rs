@@ -1,0 +1,347 @@
+//! Walks a TOML file and collects every defect with its line.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use lie_mesh::Defect;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Names further from every known one than this (normalised similarity) get no suggestion.
+const ALIKE: f64 = 0.5;
+
+/// Which numbers a key accepts.
+#[derive(Clone, Copy)]
+pub(super) enum Accept {
+    /// Any finite number.
+    Finite,
+    /// Finite and greater than zero.
+    Positive,
+    /// Finite and zero or greater.
+    NotNegative,
+    /// Above the first bound and below the second.
+    Between(f64, f64),
+}
+
+impl Accept {
+    fn refusal(self, value: f64) -> Option<String> {
+        let fits = match self {
+            Accept::Finite => true,
+            Accept::Positive => value > 0.0,
+            Accept::NotNegative => value >= 0.0,
+            Accept::Between(low, high) => low < value && value < high,
+        };
+        if value.is_finite() && fits {
+            return None;
+        }
+        Some(match self {
+            Accept::Finite => "must be a finite number".into(),
+            Accept::Positive => "must be a finite number greater than 0".into(),
+            Accept::NotNegative => "must be a finite number, 0 or greater".into(),
+            Accept::Between(low, high) => format!("must lie between {low} and {high}"),
+        })
+    }
+}
+
+/// The file being read and the defects found so far.
+pub(super) struct Source<'a> {
+    name: &'a str,
+    text: &'a str,
+    defects: RefCell<Vec<Defect>>,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(name: &'a str, text: &'a str) -> Self {
+        Self {
+            name,
+            text,
+            defects: RefCell::default(),
+        }
+    }
+
+    pub(super) fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
+        self.defects
+            .borrow_mut()
+            .push(Defect::new(self.place(at), problem, remedy));
+    }
+
+    pub(super) fn place(&self, at: &Range<usize>) -> String {
+        format!("{}:{}", self.name, self.line(at.start))
+    }
+
+    fn line(&self, position: usize) -> usize {
+        let before = &self.text.as_bytes()[..position.min(self.text.len())];
+        before.iter().filter(|&&byte| byte == b'\n').count() + 1
+    }
+
+    pub(super) fn into_defects(self) -> Vec<Defect> {
+        self.defects.into_inner()
+    }
+
+    /// The whole file as a table; syntax errors are reported and skipped.
+    pub(super) fn parse(&self) -> Spanned<DeTable<'a>> {
+        let (table, errors) = DeTable::parse_recoverable(self.text);
+        for error in errors {
+            let at = error.span().unwrap_or(0..0);
+            let remedy = "correct the TOML syntax of this line (key = value, [section], \"text\")";
+            self.report(&at, error.message().to_owned(), remedy.into());
+        }
+        table
+    }
+}
+
+/// A table of the file. Keys that nobody asked for are defects when it is dropped by
+/// [`Section::finish`].
+pub(super) struct Section<'a, 'i> {
+    source: &'a Source<'i>,
+    table: &'a DeTable<'i>,
+    /// How messages call it, e.g. `[rock.granite]`.
+    pub(super) title: String,
+    /// Where it stands.
+    pub(super) at: Range<usize>,
+    asked: RefCell<BTreeSet<&'static str>>,
+}
+
+impl<'a, 'i> Section<'a, 'i> {
+    pub(super) fn new(
+        source: &'a Source<'i>,
+        table: &'a DeTable<'i>,
+        title: String,
+        at: Range<usize>,
+    ) -> Self {
+        Self {
+            source,
+            table,
+            title,
+            at,
+            asked: RefCell::default(),
+        }
+    }
+
+    fn get(&self, key: &'static str) -> Option<&'a Spanned<DeValue<'i>>> {
+        self.asked.borrow_mut().insert(key);
+        self.table.get(key)
+    }
+
+    fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
+        self.source.report(at, problem, remedy);
+    }
+
+    fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'i>>, wanted: &str) {
+        let found = value.get_ref().type_str();
+        self.report(
+            &value.span(),
+            format!("`{key}` in {} is of type {found}", self.title),
+            format!("write {wanted}"),
+        );
+    }
+
+    /// Whether the key is there.
+    pub(super) fn has(&self, key: &'static str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// Whether the key is there and holds a table.
+    pub(super) fn is_table(&self, key: &'static str) -> bool {
+        self.get(key).is_some_and(|value| value.get_ref().is_table())
+    }
+
+    /// Reports a key that must be there and is not.
+    pub(super) fn require(&self, key: &'static str, example: &str) {
+        if !self.has(key) && self.misspelt(key).is_none() {
+            self.report(
+                &self.at,
+                format!("`{key}` is missing in {}", self.title),
+                format!("add `{key} = {example}`"),
+            );
+        }
+    }
+
+    /// A key of the file that is probably meant to be `key`; reported as unknown anyway.
+    fn misspelt(&self, key: &str) -> Option<&str> {
+        let keys = self.table.iter().map(|(name, _)| name.get_ref().as_ref());
+        let others = keys.filter(|name| !self.asked.borrow().contains(name));
+        others.into_iter().find(|name| strsim::normalized_damerau_levenshtein(name, key) > 0.7)
+    }
+
+    pub(super) fn number(&self, key: &'static str, accept: Accept) -> Option<f64> {
+        let value = self.get(key)?;
+        self.as_number(key, value, accept)
+    }
+
+    fn as_number(&self, key: &str, value: &Spanned<DeValue<'i>>, accept: Accept) -> Option<f64> {
+        let Some(number) = plain_number(value.get_ref()) else {
+            self.wrong_type(key, value, "a number");
+            return None;
+        };
+        if let Some(refusal) = accept.refusal(number) {
+            self.report(
+                &value.span(),
+                format!("`{key}` = {number} in {}", self.title),
+                format!("{key} {refusal}"),
+            );
+            return None;
+        }
+        Some(number)
+    }
+
+    pub(super) fn flag(&self, key: &'static str) -> Option<bool> {
+        let value = self.get(key)?;
+        let flag = value.get_ref().as_bool();
+        if flag.is_none() {
+            self.wrong_type(key, value, "true or false");
+        }
+        flag
+    }
+
+    pub(super) fn text(&self, key: &'static str) -> Option<&'a str> {
+        let value = self.get(key)?;
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(key, value, "text in quotes");
+        }
+        text
+    }
+
+    /// Reports `key`'s value with a remedy.
+    pub(super) fn refuse(&self, key: &'static str, problem: String, remedy: impl Into<String>) {
+        let at = self.table.get(key).map_or(self.at.clone(), Spanned::span);
+        self.report(&at, problem, remedy.into());
+    }
+
+    pub(super) fn numbers(&self, key: &'static str, accept: Accept) -> Option<Vec<f64>> {
+        let value = self.get(key)?;
+        let Some(array) = value.get_ref().as_array() else {
+            self.wrong_type(key, value, "numbers in brackets, e.g. [0.5, 1.0]");
+            return None;
+        };
+        array.iter().map(|entry| self.as_number(key, entry, accept)).collect()
+    }
+
+    pub(super) fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
+        let numbers = self.numbers(key, Accept::Finite)?;
+        let vector = <[f64; 3]>::try_from(numbers).ok();
+        if vector.is_none() {
+            self.refuse(
+                key,
+                format!("`{key}` in {} has not three components", self.title),
+                "write [x, y, z]",
+            );
+        }
+        vector
+    }
+
+    pub(super) fn section(&self, key: &'static str) -> Option<Section<'a, 'i>> {
+        let value = self.get(key)?;
+        let Some(table) = value.get_ref().as_table() else {
+            self.wrong_type(key, value, &format!("a section: [{key}]"));
+            return None;
+        };
+        let title = self.child_title(key);
+        Some(Section::new(self.source, table, title, value.span()))
+    }
+
+    fn child_title(&self, key: &str) -> String {
+        if self.title.is_empty() {
+            format!("[{key}]")
+        } else {
+            format!("{}.{key}]", self.title.trim_end_matches(']'))
+        }
+    }
+
+    /// All sections `[key.NAME]`.
+    pub(super) fn named_sections(&self, key: &'static str) -> Vec<(String, Section<'a, 'i>)> {
+        let Some(parent) = self.section(key) else {
+            return Vec::new();
+        };
+        let mut children = Vec::new();
+        for (name, value) in parent.table.iter() {
+            match value.get_ref().as_table() {
+                Some(table) => {
+                    let title = format!("[{key}.{}]", name.get_ref());
+                    let child = Section::new(self.source, table, title, name.span());
+                    children.push((name.get_ref().to_string(), child));
+                }
+                None => self.report(
+                    &name.span(),
+                    format!("`{}` stands directly in [{key}]", name.get_ref()),
+                    format!("put it in a section with a name: [{key}.NAME] or [{key}.default]"),
+                ),
+            }
+        }
+        children
+    }
+
+    /// All sections `[[key]]`.
+    pub(super) fn listed_sections(&self, key: &'static str) -> Vec<Section<'a, 'i>> {
+        let Some(value) = self.get(key) else {
+            return Vec::new();
+        };
+        let Some(array) = value.get_ref().as_array() else {
+            self.wrong_type(key, value, &format!("[[{key}]] in double brackets"));
+            return Vec::new();
+        };
+        let mut sections = Vec::new();
+        for (number, entry) in array.iter().enumerate() {
+            match entry.get_ref().as_table() {
+                Some(table) => {
+                    let title = format!("[[{key}]] number {}", number + 1);
+                    sections.push(Section::new(self.source, table, title, entry.span()));
+                }
+                None => self.wrong_type(key, entry, &format!("[[{key}]] in double brackets")),
+            }
+        }
+        sections
+    }
+
+    /// All keys of a table of numbers whose names are free.
+    pub(super) fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
+        let Some(section) = self.section(key) else {
+            return Vec::new();
+        };
+        let entries = section.table.iter();
+        entries
+            .filter_map(|(name, value)| {
+                let number = section.as_number(name.get_ref(), value, Accept::Finite)?;
+                Some((name.get_ref().to_string(), number))
+            })
+            .collect()
+    }
+
+    /// Reports the keys that nobody asked for, each with the nearest known one.
+    pub(super) fn finish(self) {
+        let known = self.asked.borrow();
+        for (name, _) in self.table.iter() {
+            let key = name.get_ref().as_ref();
+            if known.contains(key) {
+                continue;
+            }
+            let remedy = nearest(key, known.iter().copied()).map_or_else(
+                || format!("known keys: {}", known.iter().copied().collect::<Vec<_>>().join(", ")),
+                |near| format!("did you mean `{near}`?"),
+            );
+            let title = if self.title.is_empty() { "the scene" } else { &self.title };
+            self.report(&name.span(), format!("unknown key `{key}` in {title}"), remedy);
+        }
+    }
+}
+
+fn plain_number(value: &DeValue<'_>) -> Option<f64> {
+    if let Some(float) = value.as_float() {
+        return float.as_str().parse().ok();
+    }
+    let integer = value.as_integer()?;
+    i64::from_str_radix(integer.as_str(), integer.radix())
+        .ok()
+        .map(|number| number as f64)
+}
+
+/// The known name most like `name`, if any is like it at all.
+pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .map(|known| (strsim::normalized_damerau_levenshtein(name, known), known))
+        .filter(|(alike, _)| *alike >= ALIKE)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, known)| known)
+}

@@ -1,0 +1,230 @@
+//! `summary.json`: the numbers of a run.
+
+use std::path::Path;
+
+use lie_io::write_atomically;
+use lie_mesh::Defect;
+use lie_solver::{FacetState, Interface, Problem, Solution, StepRecord};
+use serde::Serialize;
+
+/// Smallest, area-weighted mean and largest value of a field over a fracture.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Smallest.
+    pub min: f64,
+    /// Mean.
+    pub mean: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// Numbers of one fracture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FractureSummary {
+    /// Number of facets.
+    pub facets: usize,
+    /// Area [m^2].
+    pub area: f64,
+    /// Aperture [m].
+    pub aperture: Spread,
+    /// Normal traction [Pa], tension positive.
+    pub normal_traction: Spread,
+    /// Largest slip [m].
+    pub slip_max: f64,
+    /// Area that is open [m^2].
+    pub open_area: f64,
+    /// Area below the cutoff of the law [m^2].
+    pub below_cutoff_area: f64,
+    /// Number of facets with a node below the cutoff.
+    pub below_cutoff_facets: usize,
+    /// Area whose walls overlap (negative aperture) [m^2].
+    pub overlap_area: f64,
+}
+
+/// Numbers of the mesh.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct MeshSummary {
+    /// Number of nodes that are in cells.
+    pub nodes: usize,
+    /// Number of cells.
+    pub cells: usize,
+    /// Number of facets of all fractures.
+    pub fracture_facets: usize,
+    /// Largest number of sectors around a node.
+    pub max_sectors: u32,
+}
+
+/// Numbers of scalar unknowns.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct UnknownSummary {
+    /// All, held directions left out.
+    pub total: usize,
+    /// Components of jumps.
+    pub jump: usize,
+}
+
+/// Numbers of one load step.
+#[derive(Debug, Clone, Serialize)]
+pub struct StepSummary {
+    /// Factor on the loads.
+    pub load: f64,
+    /// Newton iterations, each with one linear solve.
+    pub newton_iterations: usize,
+    /// Iterations of an iterative linear solver; 0 with a direct one.
+    pub linear_iterations: usize,
+    /// Out-of-balance force at the end, against the largest force.
+    pub force_residual: f64,
+    /// Last change of displacement, against the largest displacement.
+    pub increment: f64,
+    /// Closure error at the end.
+    pub closure_error: f64,
+    /// Whether the step converged.
+    pub converged: bool,
+}
+
+impl From<&StepRecord> for StepSummary {
+    fn from(record: &StepRecord) -> Self {
+        let last = record.iterations.last();
+        let measure = |of: fn(&lie_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
+        Self {
+            load: record.load,
+            newton_iterations: record.iterations.len(),
+            linear_iterations: 0,
+            force_residual: measure(|last| last.force_residual),
+            increment: measure(|last| last.increment),
+            closure_error: measure(|last| last.closure_error),
+            converged: record.converged(),
+        }
+    }
+}
+
+/// Wall-clock time of each stage [s].
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Seconds {
+    /// gmsh.
+    pub mesh: f64,
+    /// Reading and checking the mesh.
+    pub read: f64,
+    /// Sectors, unknowns, pattern.
+    pub enrich: f64,
+    /// Stiffness and loads.
+    pub assemble: f64,
+    /// Ordering, analysis and factorisations.
+    pub factorise: f64,
+    /// Everything else of the nonlinear solution.
+    pub solve: f64,
+    /// Writing results.
+    pub write: f64,
+    /// The whole run.
+    pub total: f64,
+}
+
+/// Everything `summary.json` holds.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Summary {
+    /// Version of the program.
+    pub kluft: &'static str,
+    /// Title of the scene.
+    pub title: String,
+    /// What the program decided, and why.
+    pub decisions: Vec<String>,
+    /// What the user should know about the result.
+    pub warnings: Vec<String>,
+    /// The mesh.
+    pub mesh: MeshSummary,
+    /// The unknowns.
+    pub unknowns: UnknownSummary,
+    /// The fractures after the last converged step, by name.
+    #[serde(serialize_with = "as_map")]
+    pub fractures: Vec<(String, FractureSummary)>,
+    /// The load steps.
+    pub steps: Vec<StepSummary>,
+    /// Where the time went.
+    pub seconds: Seconds,
+    /// Largest resident memory of the process, gmsh left out.
+    pub peak_memory_bytes: u64,
+    /// Number of threads.
+    pub threads: usize,
+}
+
+fn as_map<S: serde::Serializer>(
+    fractures: &[(String, FractureSummary)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(fractures.iter().map(|(name, summary)| (name, summary)))
+}
+
+impl Summary {
+    /// Writes the summary as JSON.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Defect> {
+        write_atomically(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self)?;
+            std::io::Write::write_all(out, b"\n")
+        })
+    }
+}
+
+/// Sums up the fractures of a solution.
+pub fn fractures(
+    problem: &Problem,
+    interface: &Interface,
+    solution: &Solution,
+) -> Vec<(String, FractureSummary)> {
+    let mesh = &problem.mesh;
+    let names = mesh.fractures.iter().enumerate();
+    names
+        .map(|(fracture, name)| {
+            let summary = fracture_summary(problem, interface, solution, fracture as u32);
+            (name.clone(), summary)
+        })
+        .collect()
+}
+
+fn fracture_summary(
+    problem: &Problem,
+    interface: &Interface,
+    solution: &Solution,
+    fracture: u32,
+) -> FractureSummary {
+    let facets = &problem.mesh.facets;
+    let own: Vec<usize> = (0..interface.points.len())
+        .filter(|&i| interface.points[i].fracture == fracture)
+        .collect();
+    let results = || own.iter().map(|&i| &solution.facet_points[i]);
+    let weights = || own.iter().map(|&i| interface.points[i].area);
+    let area_where = |holds: &dyn Fn(&lie_solver::FacetResult) -> bool| -> f64 {
+        let chosen = results().zip(weights()).filter(|(result, _)| holds(result));
+        chosen.map(|(_, weight)| weight).sum()
+    };
+    let area: f64 = weights().sum();
+    let spread = |value: &dyn Fn(&lie_solver::FacetResult) -> f64| Spread {
+        min: results().map(value).fold(f64::INFINITY, f64::min),
+        mean: results().zip(weights()).map(|(r, w)| value(r) * w).sum::<f64>() / area,
+        max: results().map(value).fold(f64::NEG_INFINITY, f64::max),
+    };
+    let is_below = |i: usize| solution.facet_points[i].state == FacetState::BelowCutoff;
+    let of_fracture = (0..facets.elements.len()).filter(|&f| facets.fracture[f] == fracture);
+    let below = of_fracture.clone().filter(|&f| facets.elements.range(f).any(is_below));
+    FractureSummary {
+        facets: of_fracture.clone().count(),
+        area,
+        aperture: spread(&|result| result.aperture),
+        normal_traction: spread(&|result| result.normal_traction),
+        slip_max: results().map(|result| result.slip.length()).fold(0.0, f64::max),
+        open_area: area_where(&|result| result.state == FacetState::Open),
+        below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
+        below_cutoff_facets: below.count(),
+        overlap_area: area_where(&|result| result.aperture < 0.0),
+    }
+}
+
+/// Largest resident memory of this process so far, or 0 where the system does not tell.
+pub fn peak_memory_bytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok());
+    kilobytes.unwrap_or(0) * 1024
+}
