@@ -92,17 +92,25 @@ fn three_planes_converge() {
 
 #[test]
 fn dbg() {
-    let planes: [&dyn Fn([f64; 3]) -> bool; 1] = [&|x| x[0] == 0.5];
-    let patches: Vec<Patch<'_>> = ["x"].iter().zip(planes).map(|(name, contains)| Patch { name, contains }).collect();
-    let draft = scenes::box_draft([20; 3], [1.0; 3], &patches);
-    let mut problem = scenes::problem(scenes::build(draft), joint(scenes::EXACT));
-    for face in ["left", "front", "bottom"] {
-        scenes::support(&mut problem, face, Support::Symmetry);
+    for stiffness in [50e9, 1e9, 1e7] {
+        print!("K {stiffness:e} load:");
+        for q in LOADS {
+            let mut problem = column(scenes::EXACT, q);
+            problem.fractures[0].law.closure.normal_stiffness = stiffness;
+            problem.conditions.pop();
+            scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -q * stiffness * 1e-4));
+            print!(" {}", count(&problem, Linearisation::Balanced).0);
+        }
+        print!("  displacement:");
+        for q in LOADS {
+            let mut problem = column(scenes::EXACT, q);
+            problem.fractures[0].law.closure.normal_stiffness = stiffness;
+            problem.conditions.pop();
+            let x = problem.fractures[0].law.closure.balanced(0.0, -q * stiffness * 1e-4).aperture;
+            let u = (x - 1e-4) - q * stiffness * 1e-4 * 2.0 / 25e9;
+            scenes::support(&mut problem, "top", Support::Displacement([None, None, Some(u)]));
+            print!(" {}", count(&problem, Linearisation::Balanced).0);
+        }
+        println!();
     }
-    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -1e6));
-    scenes::load(&mut problem, "right", DVec3::new(-1e7, 0.0, 0.0));
-    let (r, s, _) = scenes::try_solve(&problem, NewtonSettings::default());
-    let mut h = 0u64;
-    for u in &s.displacements { for c in u.to_array() { h = h.wrapping_mul(1099511628211).wrapping_add(c.to_bits()); } }
-    println!("hash {h:x} {:?}", r);
 }

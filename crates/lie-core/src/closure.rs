@@ -27,6 +27,36 @@ pub enum ClosureKind {
     },
 }
 
+/// How far the walls of a fracture are apart, to full relative precision wherever that matters:
+/// the opening near the initial aperture, the aperture near closure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Separation {
+    /// Opening `w_n` [m].
+    pub opening: f64,
+    /// Aperture `b = b0 + w_n` [m].
+    pub aperture: f64,
+}
+
+impl Separation {
+    /// Moved apart by `opening` [m].
+    #[must_use]
+    pub fn moved(self, opening: f64) -> Self {
+        Self {
+            opening: self.opening + opening,
+            aperture: self.aperture + opening,
+        }
+    }
+
+    /// How much further apart than `other` [m].
+    pub fn beyond(self, other: Self) -> f64 {
+        if self.aperture.abs() < self.opening.abs() {
+            self.aperture - other.aperture
+        } else {
+            self.opening - other.opening
+        }
+    }
+}
+
 /// Normal closure law of a fracture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closure {
@@ -50,11 +80,27 @@ pub struct NormalResponse {
 }
 
 impl Closure {
-    /// Response at aperture `b` [m].
+    /// Separation at an opening [m].
+    pub fn opened(&self, opening: f64) -> Separation {
+        Separation {
+            opening,
+            aperture: self.aperture + opening,
+        }
+    }
+
+    /// Response at aperture `b` [m]; see [`Closure::at`].
+    pub fn at_aperture(&self, b: f64) -> NormalResponse {
+        self.at(Separation {
+            opening: b - self.aperture,
+            aperture: b,
+        })
+    }
+
+    /// Response at a separation.
     ///
     /// Without a cutoff the logarithmic law has no value at `b <= 0`: traction, tangent and
     /// potential are infinite there.
-    pub fn at_aperture(&self, b: f64) -> NormalResponse {
+    pub fn at(&self, separation: Separation) -> NormalResponse {
         if self.normal_stiffness == 0.0 {
             return NormalResponse {
                 traction: 0.0,
@@ -62,12 +108,13 @@ impl Closure {
                 potential: 0.0,
             };
         }
-        let x = b / self.aperture;
+        let x = separation.aperture / self.aperture;
+        let y = separation.opening / self.aperture;
         let (traction, tangent, potential) = match self.kind {
-            ClosureKind::Logarithmic { cutoff } if x < 1.0 => {
-                logarithmic(x, cutoff.map(|b_cut| b_cut / self.aperture))
+            ClosureKind::Logarithmic { cutoff } if y < 0.0 => {
+                logarithmic(x, y, cutoff.map(|b_cut| b_cut / self.aperture))
             }
-            _ => (x - 1.0, 1.0, 0.5 * (x - 1.0).powi(2)),
+            _ => (y, 1.0, 0.5 * y * y),
         };
         NormalResponse {
             traction: self.normal_stiffness * self.aperture * traction,
@@ -76,33 +123,38 @@ impl Closure {
         }
     }
 
-    /// Aperture [m] at which the law balances a spring: `sigma_n(w) + k w = load`, with
+    /// Separation at which the law balances a spring: `sigma_n(w) + k w = load`, with
     /// `spring` = `k >= 0` [Pa/m] and `load` [Pa].
     ///
     /// The left side grows monotonically, so there is one solution for any load. With a free crack
-    /// and no spring the aperture is `b0`.
-    pub fn balanced_aperture(&self, spring: f64, load: f64) -> f64 {
+    /// and no spring the opening is 0.
+    pub fn balanced(&self, spring: f64, load: f64) -> Separation {
         let total = self.normal_stiffness + spring;
         if total == 0.0 {
-            return self.aperture;
+            return self.opened(0.0);
         }
-        let linear = self.aperture + load / total;
         let ClosureKind::Logarithmic { cutoff } = self.kind else {
-            return linear;
+            return self.opened(load / total);
         };
         if load >= 0.0 || self.normal_stiffness == 0.0 {
-            return linear;
+            return self.opened(load / total);
         }
         let kappa = spring / self.normal_stiffness;
         let q = load / (self.normal_stiffness * self.aperture);
         let at_cutoff = cutoff
             .map(|b_cut| b_cut / self.aperture)
             .filter(|&x_c| (1.0 + x_c.ln().powi(2) + kappa) * (x_c - 1.0) > q);
-        let x = match at_cutoff {
+        let (x, y) = match at_cutoff {
             Some(x_c) => balance_below_cutoff(x_c, kappa, q),
-            None => balance_logarithm(kappa, q).exp(),
+            None => {
+                let s = balance_logarithm(kappa, q);
+                (s.exp(), s.exp_m1())
+            }
         };
-        self.aperture * x
+        Separation {
+            opening: self.aperture * y,
+            aperture: self.aperture * x,
+        }
     }
 
     /// The cutoff aperture [m], if the law has one.
@@ -120,19 +172,16 @@ impl Closure {
     }
 }
 
-/// `sigma_n`, its slope and `Psi` in units of `K_n0 b0`, `K_n0` and `K_n0 b0^2`, for `x < 1`.
-fn logarithmic(x: f64, cutoff: Option<f64>) -> (f64, f64, f64) {
+/// `sigma_n`, its slope and `Psi` in units of `K_n0 b0`, `K_n0` and `K_n0 b0^2`, for `x < 1`, with
+/// `y = x - 1`.
+fn logarithmic(x: f64, y: f64, cutoff: Option<f64>) -> (f64, f64, f64) {
     match cutoff {
         Some(x_c) if x <= x_c => below_cutoff(x, x_c),
         _ if x <= 0.0 => (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY),
         _ => {
-            let l = x.ln();
+            let l = if x > 0.5 { y.ln_1p() } else { x.ln() };
             let m = 1.0 + l * l;
-            (
-                m * (x - 1.0),
-                m + 2.0 * l * (x - 1.0) / x,
-                potential_of_logarithm(x),
-            )
+            (m * y, m + 2.0 * l * y / x, potential_of_logarithm(x))
         }
     }
 }
@@ -159,13 +208,15 @@ fn below_cutoff(x: f64, x_c: f64) -> (f64, f64, f64) {
     )
 }
 
-/// Root of `(m_c + slope d + kappa) (d - (1 - x_c)) = q`, a parabola in `d = x - x_c < 0`.
-fn balance_below_cutoff(x_c: f64, kappa: f64, q: f64) -> f64 {
+/// Root `(x, x - 1)` of `(m_c + slope d + kappa) (d - (1 - x_c)) = q`, a parabola in
+/// `d = x - x_c < 0`.
+fn balance_below_cutoff(x_c: f64, kappa: f64, q: f64) -> (f64, f64) {
     let l = x_c.ln();
     let (steepness, stiffness, a) = (-2.0 * l / x_c, 1.0 + l * l + kappa, 1.0 - x_c);
     let linear = stiffness + steepness * a;
     let excess = -a * stiffness - q;
-    x_c - 2.0 * excess / (linear + (linear * linear + 4.0 * steepness * excess).sqrt())
+    let d = -2.0 * excess / (linear + (linear * linear + 4.0 * steepness * excess).sqrt());
+    (x_c + d, d - a)
 }
 
 /// Root `s = ln x` of `(e^s - 1) (1 + s^2 + kappa) = q < 0`, by Newton kept inside a bracket.
@@ -186,7 +237,7 @@ fn balance_logarithm(kappa: f64, q: f64) -> f64 {
         let newton = s - excess / slope;
         let inside = newton > low && newton < high;
         let next = if inside { newton } else { 0.5 * (low + high) };
-        if (next - s).abs() <= f64::EPSILON * (1.0 + s.abs()) {
+        if (next - s).abs() <= 4.0 * f64::EPSILON * s.abs() {
             return next;
         }
         s = next;
@@ -231,7 +282,7 @@ mod tests {
             (100.0, 4.7722e-5, 4.171e5),
         ];
         for (q, x, tangent) in table {
-            let aperture = unit(None).balanced_aperture(0.0, -q);
+            let aperture = unit(None).balanced(0.0, -q).aperture;
             assert!((aperture / x - 1.0).abs() < 2e-5, "q = {q}: {aperture}");
             let slope = unit(None).at_aperture(aperture).tangent;
             assert!((slope / tangent - 1.0).abs() < 1e-3, "q = {q}: {slope}");
@@ -278,9 +329,10 @@ mod tests {
             for spring in [0.0, 1e-3, 1.0, 1e3] {
                 for load in [-1e5, -300.0, -20.0, -1.0, -1e-3, 0.0, 1e-3, 5.0] {
                     let law = unit(cutoff);
-                    let b = law.balanced_aperture(spring, load);
-                    let response = law.at_aperture(b);
-                    let rest = response.traction + spring * (b - 1.0) - load;
+                    let balance = law.balanced(spring, load);
+                    let b = balance.aperture;
+                    let response = law.at(balance);
+                    let rest = response.traction + spring * balance.opening - load;
                     // The tangent turns the rounding of b itself into traction.
                     let rounding = 1e-14 * (load.abs() + (response.tangent + spring) * b.abs());
                     assert!(
@@ -294,10 +346,19 @@ mod tests {
     }
 
     #[test]
+    fn tiny_openings_keep_their_digits() {
+        for load in [-1e-12, 1e-12, -1e-20] {
+            let balance = unit(None).balanced(0.0, load);
+            assert!((balance.opening / load - 1.0).abs() < 1e-12);
+            assert!((unit(None).at(balance).traction / load - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
     fn walls_meet_at_the_predicted_load() {
         for x_c in [0.1_f64, 0.01, 0.001] {
             let touching = (1.0 - x_c.ln()).powi(2);
-            assert!(unit(Some(x_c)).balanced_aperture(0.0, -touching).abs() < 1e-12);
+            assert!(unit(Some(x_c)).balanced(0.0, -touching).aperture.abs() < 1e-12);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::closure::Closure;
+use crate::closure::{Closure, Separation};
 
 /// Law of a fracture without friction: elastic in shear, [`Closure`] across.
 ///
@@ -31,13 +31,12 @@ impl FractureLaw {
     pub fn response(&self, jump: DVec3, normal: DVec3) -> Response {
         let opening = jump.dot(normal);
         let slip = jump - opening * normal;
-        self.at(self.closure.aperture + opening, slip, normal)
+        self.at(self.closure.opened(opening), slip, normal)
     }
 
-    /// Response at aperture `b` [m] and `slip` [m]. A small aperture given as such keeps all its
-    /// digits, which `b0 + opening` would lose.
-    pub fn at(&self, b: f64, slip: DVec3, normal: DVec3) -> Response {
-        let across = self.closure.at_aperture(b);
+    /// Response at a separation and `slip` [m].
+    pub fn at(&self, separation: Separation, slip: DVec3, normal: DVec3) -> Response {
+        let across = self.closure.at(separation);
         let shear = self.shear_stiffness;
         Response {
             traction: across.traction * normal + shear * slip,

@@ -34,7 +34,7 @@ mod fracture_law;
 pub mod kernel;
 mod rock;
 
-pub use closure::{Closure, ClosureKind, NormalResponse};
+pub use closure::{Closure, ClosureKind, NormalResponse, Separation};
 pub use element::{ElementRule, RulePoint, facet_node_centroids, facet_node_weights, rule};
 pub use fracture_law::{FractureLaw, Response};
 pub use rock::{Rock, SymmetricStress};

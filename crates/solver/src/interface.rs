@@ -33,6 +33,8 @@ pub struct FacetPoint {
     /// Jump [m] at which the law carries the initial stress. The law always sees
     /// `initial_jump + jump`.
     pub initial_jump: DVec3,
+    /// Aperture [m] that goes with it.
+    pub initial_aperture: f64,
 }
 
 /// All facet points and the nodes they sit on.
@@ -163,6 +165,7 @@ fn facet_points(problem: &Problem, points: &Points, facet: usize) -> Vec<FacetPo
             let at = std::iter::zip(nodes, *centroid)
                 .map(|(&node, share)| *share * mesh.nodes[node as usize])
                 .sum();
+            let (initial_jump, initial_aperture) = initial_jump(problem, law, at, normal);
             FacetPoint {
                 plus: points.of_cell_node[plus as usize],
                 minus: points.of_cell_node[minus as usize],
@@ -170,7 +173,8 @@ fn facet_points(problem: &Problem, points: &Points, facet: usize) -> Vec<FacetPo
                 normal,
                 fracture,
                 spring,
-                initial_jump: initial_jump(problem, law, at, normal),
+                initial_jump,
+                initial_aperture,
             }
         })
         .collect()
@@ -190,21 +194,26 @@ fn corners(mesh: &Mesh, cell: usize) -> Vec<DVec3> {
     mesh.corners(&mesh.cells, cell)
 }
 
-/// Where the law carries the initial stress. A fracture without stiffness carries none, so it
-/// relaxes what the initial stress would need of it.
-fn initial_jump(problem: &Problem, fracture: &Fracture, at: DVec3, normal: DVec3) -> DVec3 {
-    let Some(stress) = &problem.initial_stress else {
-        return DVec3::ZERO;
-    };
+/// Jump and aperture at which the law carries the initial stress. A fracture without stiffness
+/// carries none, so it relaxes what the initial stress would need of it.
+fn initial_jump(
+    problem: &Problem,
+    fracture: &Fracture,
+    at: DVec3,
+    normal: DVec3,
+) -> (DVec3, f64) {
     let law = &fracture.law;
+    let Some(stress) = &problem.initial_stress else {
+        return (DVec3::ZERO, law.closure.aperture);
+    };
     let traction = stress.at(at) * normal;
     let across = traction.dot(normal);
-    let opening = law.closure.balanced_aperture(0.0, across) - law.closure.aperture;
+    let separation = law.closure.balanced(0.0, across);
     let shear = traction - across * normal;
     let slip = if law.shear_stiffness > 0.0 {
         shear / law.shear_stiffness
     } else {
         DVec3::ZERO
     };
-    opening * normal + slip
+    (separation.opening * normal + slip, separation.aperture)
 }

@@ -3,12 +3,19 @@
 //! The law stiffens so fast that plain Newton, linearising at the opening where its last step
 //! landed, overshoots. Here each facet point is linearised at the aperture that balances the law
 //! with the rock around it: after the linear solve gives opening `w` and traction `t`, the monotone
-//! scalar equation `sigma_n(w~) + k w~ = t + k w`, with `k` about `E/h`, gives `w~`, and the tangent
-//! is taken there. The iteration sees loads and stiffnesses only, whatever the cutoff.
+//! scalar equation `sigma_n(w~) + k w~ = t + k w` gives `w~`, and the tangent is taken there. The
+//! iteration sees loads and stiffnesses only, whatever the cutoff.
+//!
+//! `k` is the stiffness of the rock as the facet point feels it, measured by the secant through the
+//! last two linear solves of the step, `-dt/dw`, between 0 and `E/h`; 0 for the first. Too large a
+//! `k` overshoots towards closure, where the tangent is enormous and the way back is long; too
+//! small a `k` comes down from the open side step by step. A fixed `E/h` fails for joints that are
+//! soft against their elements.
 
 use std::time::Instant;
 
 use glam::{DMat3, DVec3};
+use lie_core::Separation;
 use rayon::prelude::*;
 
 use crate::interface::{FacetPoint, Interface};
@@ -113,6 +120,26 @@ pub struct Newton<'a> {
     is_nonlinear: bool,
 }
 
+/// Where the last linear solve of a step put a facet point.
+#[derive(Debug, Clone, Copy, Default)]
+struct Landing {
+    /// Separation of the walls; none before the first solve.
+    separation: Option<Separation>,
+    /// Normal traction on the tangent plane [Pa].
+    traction: f64,
+}
+
+impl Landing {
+    /// Stiffness of the surrounding rock as two landings tell it, `-dt/dw`; 0 where they tell
+    /// nothing.
+    fn spring_to(&self, landed: Separation, traction: f64) -> f64 {
+        let spring = self
+            .separation
+            .map(|before| (self.traction - traction) / landed.beyond(before));
+        spring.filter(|spring| spring.is_finite()).unwrap_or(0.0)
+    }
+}
+
 impl<'a> Newton<'a> {
     /// Orders and analyses the system.
     ///
@@ -151,6 +178,7 @@ impl<'a> Newton<'a> {
         let start = Instant::now();
         let mut trial = state.clone();
         self.move_supports(&mut trial, load);
+        let mut landings = vec![Landing::default(); trial.facet_points.len()];
         let mut record = StepRecord {
             load,
             iterations: Vec::new(),
@@ -160,7 +188,7 @@ impl<'a> Newton<'a> {
             solve_seconds: 0.0,
         };
         while record.iterations.len() < self.settings.max_iterations {
-            match self.iterate(&mut trial, &mut record) {
+            match self.iterate(&mut trial, &mut landings, &mut record) {
                 Ok(iteration) => {
                     record.iterations.push(iteration);
                     observe(record.iterations.len(), &iteration);
@@ -190,6 +218,7 @@ impl<'a> Newton<'a> {
     fn iterate(
         &mut self,
         state: &mut State,
+        landings: &mut [Landing],
         record: &mut StepRecord,
     ) -> Result<Iteration, Outcome> {
         let tangents = self.tangents(state);
@@ -206,7 +235,7 @@ impl<'a> Newton<'a> {
             return Err(Outcome::NotFinite(None));
         }
         let change = self.system.displacements(&correction, 0.0);
-        let errors = self.follow(state, &self.interface().jumps(&change));
+        let errors = self.follow(state, landings, &self.interface().jumps(&change));
         self.assess(state, &change, &errors, record)
     }
 
@@ -238,7 +267,7 @@ impl<'a> Newton<'a> {
         points
             .map(|(point, state)| {
                 let law = self.system.law(point);
-                law.at(state.aperture, DVec3::ZERO, point.normal).tangent
+                law.at(state.separation, DVec3::ZERO, point.normal).tangent
             })
             .collect()
     }
@@ -280,32 +309,49 @@ impl<'a> Newton<'a> {
 
     /// Moves all facet points by the change of their jumps to where they are linearised next;
     /// returns their closure errors [Pa].
-    fn follow(&self, state: &mut State, changes: &[DVec3]) -> Vec<f64> {
+    fn follow(
+        &self,
+        state: &mut State,
+        landings: &mut [Landing],
+        changes: &[DVec3],
+    ) -> Vec<f64> {
         let points = self.interface().points.par_iter().zip(changes);
         points
-            .zip(&mut state.facet_points)
-            .map(|((point, change), state)| self.follow_point(point, *change, state))
+            .zip(state.facet_points.par_iter_mut().zip(landings))
+            .map(|((point, change), (state, landing))| {
+                self.follow_point(point, *change, state, landing)
+            })
             .collect()
     }
 
-    fn follow_point(&self, point: &FacetPoint, change: DVec3, state: &mut FacetPointState) -> f64 {
+    fn follow_point(
+        &self,
+        point: &FacetPoint,
+        change: DVec3,
+        state: &mut FacetPointState,
+        landing: &mut Landing,
+    ) -> f64 {
         let law = self.system.law(point);
         let closure = &law.closure;
         let opening = change.dot(point.normal);
         state.shear += law.shear_stiffness * (change - opening * point.normal);
-        let here = closure.at_aperture(state.aperture);
+        let here = closure.at(state.separation);
         let beyond = state.mismatch + opening;
         let traction = here.traction + here.tangent * beyond;
-        let landed = state.aperture + beyond;
-        state.aperture = match self.settings.linearisation {
-            Linearisation::Landed => landed,
-            Linearisation::Balanced => {
-                let load = traction + point.spring * (landed - closure.aperture);
-                closure.balanced_aperture(point.spring, load)
-            }
+        let landed = state.separation.moved(beyond);
+        let spring = landing.spring_to(landed, traction).clamp(0.0, point.spring);
+        *landing = Landing {
+            separation: Some(landed),
+            traction,
         };
-        state.mismatch = landed - state.aperture;
-        let of_law = closure.at_aperture(state.aperture).traction;
+        let balances = self.settings.linearisation == Linearisation::Balanced;
+        state.separation = if closure.is_linear() || !balances {
+            landed
+        } else {
+            closure.balanced(spring, traction + spring * landed.opening)
+        };
+        state.mismatch = landed.beyond(state.separation);
+        let of_law = closure.at(state.separation).traction;
         (traction - of_law).abs().max(point.spring * state.mismatch.abs())
     }
 
@@ -331,7 +377,7 @@ impl<'a> Newton<'a> {
         let displacements = self.system.displacements(&state.unknowns, state.load);
         let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
         record.worst_facet_point = worst;
-        let apertures = state.facet_points.iter().map(|point| point.aperture);
+        let apertures = state.facet_points.iter().map(|point| point.separation.aperture);
         Ok(Iteration {
             force_residual: ratio(residual, scale),
             increment: ratio(largest(change), largest(&displacements)),

@@ -100,7 +100,7 @@ fn facet_result(
     state: &FacetPointState,
 ) -> FacetResult {
     let closure = &system.law(point).closure;
-    let aperture = state.aperture;
+    let aperture = state.separation.aperture;
     let opening = jump.dot(point.normal);
     let traction = system.law_traction(point, state);
     let below = closure.cutoff().is_some_and(|cutoff| aperture < cutoff);

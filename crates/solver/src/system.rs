@@ -1,7 +1,7 @@
 //! The discrete problem: unknowns, stiffness, loads, and what they make of a state.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FractureLaw, Response};
+use lie_core::{FractureLaw, Response, Separation};
 use lie_mesh::Defect;
 use rayon::prelude::*;
 
@@ -75,9 +75,9 @@ pub struct State {
 /// State of one facet point.
 #[derive(Debug, Clone, Copy)]
 pub struct FacetPointState {
-    /// Aperture `b` at which the law is linearised [m].
-    pub aperture: f64,
-    /// Opening of the walls beyond that aperture [m]; rounding once converged.
+    /// Where the law is linearised, which is where the walls are once converged.
+    pub separation: Separation,
+    /// Opening of the walls beyond that [m]; rounding once converged.
     pub mismatch: f64,
     /// Shear traction [Pa].
     pub shear: DVec3,
@@ -122,7 +122,10 @@ impl<'a> System<'a> {
             let law = &self.problem.fractures[point.fracture as usize].law;
             let opening = point.initial_jump.dot(point.normal);
             FacetPointState {
-                aperture: law.closure.aperture + opening,
+                separation: Separation {
+                    opening,
+                    aperture: point.initial_aperture,
+                },
                 mismatch: 0.0,
                 shear: law.shear_stiffness * (point.initial_jump - opening * point.normal),
             }
@@ -141,7 +144,7 @@ impl<'a> System<'a> {
 
     /// Traction of the law of a facet point in its state [Pa].
     pub fn law_traction(&self, point: &FacetPoint, state: &FacetPointState) -> DVec3 {
-        let across = self.law(point).closure.at_aperture(state.aperture).traction;
+        let across = self.law(point).closure.at(state.separation).traction;
         across * point.normal + state.shear
     }
 
