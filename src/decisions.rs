@@ -15,7 +15,10 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
     let names = |holds: &dyn Fn(&lie_core::FractureLaw) -> bool| -> String {
         let pairs = problem.mesh.fractures.iter().zip(&problem.fractures);
         let chosen = pairs.filter(|(_, fracture)| holds(&fracture.law));
-        chosen.map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
+        chosen
+            .map(|(name, _)| name.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     if problem.fractures.is_empty() {
         lines.push("no fracture: plain elasticity, one linear solve a step".into());
@@ -24,7 +27,9 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
         if nonlinear.is_empty() {
             lines.push("no fracture is nonlinear: one linear solve a step".into());
         } else {
-            lines.push(format!("closure of {nonlinear} is nonlinear: Newton's method"));
+            lines.push(format!(
+                "closure of {nonlinear} is nonlinear: Newton's method"
+            ));
         }
     }
     if problem.steps.len() > 1 {
@@ -44,7 +49,9 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
 
 /// What the user should know of a result.
 pub fn warnings(fractures: &[(String, FractureSummary)]) -> Vec<String> {
-    let overlapping = fractures.iter().filter(|(_, summary)| summary.overlap_area > 0.0);
+    let overlapping = fractures
+        .iter()
+        .filter(|(_, summary)| summary.overlap_area > 0.0);
     overlapping
         .map(|(name, summary)| {
             format!(
@@ -64,7 +71,9 @@ pub fn not_converged(
 ) -> String {
     let count = record.iterations.len();
     let place = |point: Option<usize>| {
-        point.map_or("nowhere in particular".into(), |point| facet_place(problem, system, point))
+        point.map_or("nowhere in particular".into(), |point| {
+            facet_place(problem, system, point)
+        })
     };
     let why = match &record.outcome {
         Outcome::Converged => "nothing went wrong".to_owned(),
@@ -86,7 +95,10 @@ fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
     let node = problem.mesh.facets.elements.nodes[point] as usize;
     let x = problem.mesh.nodes[node];
     let fracture = &problem.mesh.fractures[facet_point.fracture as usize];
-    format!("fracture `{fracture}`, node {} ({:.4}, {:.4}, {:.4})", problem.mesh.node_tags[node], x.x, x.y, x.z)
+    format!(
+        "fracture `{fracture}`, node {} ({:.4}, {:.4}, {:.4})",
+        problem.mesh.node_tags[node], x.x, x.y, x.z
+    )
 }
 
 /// Why a linear system could not be solved.

@@ -44,7 +44,9 @@ pub fn run(scene_file: &Path, options: &Options) -> Result<(), Failure> {
     let start = Instant::now();
     let threads = options.threads.unwrap_or(0);
     // Fails only if a pool exists already, as in a program that runs many scenes.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let _ = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global();
     let mut report = Report::new(options.verbosity);
     let scene = Scene::read(scene_file)?;
     let beside = scene_file.parent().unwrap_or(Path::new(".")).join("out");
@@ -120,14 +122,21 @@ fn build_problem(
     let roles = surface_roles(scene, &draft, |group| inner[group])?;
     for (group, role) in draft.groups.iter().zip(&roles) {
         if group.dimension == 2 && *role == SurfaceRole::Unused {
-            summary.decisions.push(decisions::unused_surface(&group.name));
+            summary
+                .decisions
+                .push(decisions::unused_surface(&group.name));
         }
     }
     let binding = bind(scene, Mesh::build(draft, &roles)?)?;
     summary.decisions.extend(binding.decisions);
     let mesh = &binding.problem.mesh;
     summary.mesh = summary::MeshSummary {
-        nodes: mesh.sectors.count.iter().filter(|&&count| count > 0).count(),
+        nodes: mesh
+            .sectors
+            .count
+            .iter()
+            .filter(|&&count| count > 0)
+            .count(),
         cells: mesh.cells.len(),
         fracture_facets: mesh.facets.elements.len(),
         max_sectors: mesh.sectors.count.iter().copied().max().unwrap_or(0),
@@ -150,19 +159,29 @@ fn solve(
         jump: 3 * discretisation.points.jump_count(),
     };
     let unknowns = &summary.unknowns;
-    let text = format!("{} unknowns, {} of them jumps", unknowns.total, unknowns.jump);
+    let text = format!(
+        "{} unknowns, {} of them jumps",
+        unknowns.total, unknowns.jump
+    );
     report.entry("enriched", &timed(&text, took));
     let (system, took) = report.stage("assembling", |_| System::assemble(problem, discretisation));
     summary.seconds.assemble = took.as_secs_f64();
-    report.entry("assembled", &timed("rock and loads, once for the run", took));
-    let (newton, took) =
-        report.stage("ordering", |_| Newton::new(&system, NewtonSettings::default()));
+    report.entry(
+        "assembled",
+        &timed("rock and loads, once for the run", took),
+    );
+    let (newton, took) = report.stage("ordering", |_| {
+        Newton::new(&system, NewtonSettings::default())
+    });
     summary.seconds.factorise = took.as_secs_f64();
     let mut newton = newton.map_err(|failure| {
         Failure::NotConverged(decisions::linear_failure(problem, &system, &failure))
     })?;
     let entries = newton.factor_entries();
-    report.entry("ordered", &timed(&format!("{entries} entries in the factor"), took));
+    report.entry(
+        "ordered",
+        &timed(&format!("{entries} entries in the factor"), took),
+    );
     summary.decisions.extend(decisions::of_problem(problem));
     for decision in &summary.decisions {
         report.entry("decided", decision);

@@ -69,7 +69,11 @@ fn rock_grid(system: &System<'_>, solution: &Solution) -> Grid {
     let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
     let displacements = solution.displacements.iter().flat_map(|u| u.to_array());
     Grid {
-        points: points.node.iter().map(|&node| mesh.nodes[node as usize].to_array()).collect(),
+        points: points
+            .node
+            .iter()
+            .map(|&node| mesh.nodes[node as usize].to_array())
+            .collect(),
         shapes: mesh.cells.shapes.clone(),
         offsets: mesh.cells.offsets.clone(),
         nodes: points.of_cell_node.clone(),
@@ -89,9 +93,16 @@ fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
     let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
         results.iter().flat_map(move |result| of(result).to_array())
     };
-    let normals = mesh.facet_areas().into_iter().flat_map(|area| area.normalize().to_array());
+    let normals = mesh
+        .facet_areas()
+        .into_iter()
+        .flat_map(|area| area.normalize().to_array());
     Grid {
-        points: elements.nodes.iter().map(|&node| mesh.nodes[node as usize].to_array()).collect(),
+        points: elements
+            .nodes
+            .iter()
+            .map(|&node| mesh.nodes[node as usize].to_array())
+            .collect(),
         shapes: elements.shapes.clone(),
         offsets: elements.offsets.clone(),
         nodes: (0..elements.nodes.len() as u32).collect(),
@@ -101,12 +112,19 @@ fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
             real("slip", 3, vectors(|result| result.slip)),
             real("jump", 3, vectors(|result| result.jump)),
             real("traction", 3, vectors(|result| result.traction)),
-            real("normal_traction", 1, results.iter().map(|result| result.normal_traction)),
+            real(
+                "normal_traction",
+                1,
+                results.iter().map(|result| result.normal_traction),
+            ),
             integer("state", results.iter().map(|result| result.state as i32)),
         ],
         cell_fields: vec![
             real("normal", 3, normals),
-            integer("fracture", mesh.facets.fracture.iter().map(|&fracture| fracture as i32)),
+            integer(
+                "fracture",
+                mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
+            ),
         ],
     }
 }

@@ -105,7 +105,9 @@ impl Report {
         if self.speaks {
             let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}")
                 .unwrap_or_else(|_| ProgressStyle::default_spinner());
-            let spinner = ProgressBar::new_spinner().with_style(style).with_message(name);
+            let spinner = ProgressBar::new_spinner()
+                .with_style(style)
+                .with_message(name);
             spinner.enable_steady_tick(Duration::from_millis(120));
             self.spinner = Some(spinner);
         }
@@ -120,7 +122,9 @@ impl Report {
     /// Prints the head of an iteration table.
     pub fn step(&self, number: usize, count: usize, load: f64) {
         self.line(&format!("\nstep {number} of {count}, load {load}"));
-        self.line("  iteration  force balance      increment  closure error  smallest aperture [m]");
+        self.line(
+            "  iteration  force balance      increment  closure error  smallest aperture [m]",
+        );
     }
 
     /// Prints one iteration.
@@ -141,10 +145,20 @@ impl Report {
         if fractures.is_empty() {
             return;
         }
-        let width = fractures.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max(8);
+        let width = fractures
+            .iter()
+            .map(|(name, _)| name.len())
+            .max()
+            .unwrap_or(0)
+            .max(8);
         self.line(&format!(
             "\n{:<width$}  {:>7}  {:>33}  {:>12}  {:>10}  {:>9}",
-            "fracture", "facets", "aperture min / mean / max [m]", "below cutoff", "open [m2]", "of [m2]"
+            "fracture",
+            "facets",
+            "aperture min / mean / max [m]",
+            "below cutoff",
+            "open [m2]",
+            "of [m2]"
         ));
         for (name, summary) in fractures {
             let aperture = &summary.aperture;

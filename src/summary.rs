@@ -202,18 +202,26 @@ fn fracture_summary(
     let area: f64 = weights().sum();
     let spread = |value: &dyn Fn(&lie_solver::FacetResult) -> f64| Spread {
         min: results().map(value).fold(f64::INFINITY, f64::min),
-        mean: results().zip(weights()).map(|(r, w)| value(r) * w).sum::<f64>() / area,
+        mean: results()
+            .zip(weights())
+            .map(|(r, w)| value(r) * w)
+            .sum::<f64>()
+            / area,
         max: results().map(value).fold(f64::NEG_INFINITY, f64::max),
     };
     let is_below = |i: usize| solution.facet_points[i].state == FacetState::BelowCutoff;
     let of_fracture = (0..facets.elements.len()).filter(|&f| facets.fracture[f] == fracture);
-    let below = of_fracture.clone().filter(|&f| facets.elements.range(f).any(is_below));
+    let below = of_fracture
+        .clone()
+        .filter(|&f| facets.elements.range(f).any(is_below));
     FractureSummary {
         facets: of_fracture.clone().count(),
         area,
         aperture: spread(&|result| result.aperture),
         normal_traction: spread(&|result| result.normal_traction),
-        slip_max: results().map(|result| result.slip.length()).fold(0.0, f64::max),
+        slip_max: results()
+            .map(|result| result.slip.length())
+            .fold(0.0, f64::max),
         open_area: area_where(&|result| result.state == FacetState::Open),
         below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
         below_cutoff_facets: below.count(),
@@ -225,6 +233,12 @@ fn fracture_summary(
 pub fn peak_memory_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok());
+    let kilobytes = line.and_then(|line| {
+        line.trim()
+            .trim_end_matches("kB")
+            .trim()
+            .parse::<u64>()
+            .ok()
+    });
     kilobytes.unwrap_or(0) * 1024
 }

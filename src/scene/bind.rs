@@ -57,7 +57,11 @@ pub fn surface_roles(
             }
         }
     }
-    if defects.is_empty() { Ok(roles) } else { Err(defects) }
+    if defects.is_empty() {
+        Ok(roles)
+    } else {
+        Err(defects)
+    }
 }
 
 fn volume_names(scene: &Scene, groups: &[Group]) -> Vec<Defect> {
@@ -71,9 +75,17 @@ fn kind(dimension: usize) -> &'static str {
     ["point", "curve", "surface", "volume"][dimension.min(3)]
 }
 
-fn find_group(groups: &[Group], name: &str, dimension: usize, place: &str) -> Result<usize, Defect> {
+fn find_group(
+    groups: &[Group],
+    name: &str,
+    dimension: usize,
+    place: &str,
+) -> Result<usize, Defect> {
     let fits = |group: &Group| group.dimension == dimension;
-    if let Some(found) = groups.iter().position(|group| fits(group) && group.name == name) {
+    if let Some(found) = groups
+        .iter()
+        .position(|group| fits(group) && group.name == name)
+    {
         return Ok(found);
     }
     if let Some(other) = groups.iter().find(|group| group.name == name) {
@@ -81,14 +93,25 @@ fn find_group(groups: &[Group], name: &str, dimension: usize, place: &str) -> Re
         return Err(Defect::new(
             place,
             format!("`{name}` is a physical {found} of the mesh, not a physical {wanted}"),
-            format!("give the {wanted} a physical group: Physical {}(\"{name}\") = {{...}};", capital(wanted)),
+            format!(
+                "give the {wanted} a physical group: Physical {}(\"{name}\") = {{...}};",
+                capital(wanted)
+            ),
         ));
     }
-    let known: Vec<&str> = groups.iter().filter(|g| fits(g)).map(|g| g.name.as_str()).collect();
+    let known: Vec<&str> = groups
+        .iter()
+        .filter(|g| fits(g))
+        .map(|g| g.name.as_str())
+        .collect();
     let remedy = match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => format!("the mesh has no physical {}", kind(dimension)),
-        None => format!("physical {}s of the mesh: {}", kind(dimension), known.join(", ")),
+        None => format!(
+            "physical {}s of the mesh: {}",
+            kind(dimension),
+            known.join(", ")
+        ),
     };
     Err(Defect::new(
         place,
@@ -209,13 +232,19 @@ fn bind_fractures(scene: &Scene, mesh: &Mesh, decisions: &mut Vec<String>) -> Ve
     });
     let laws = laws.map(|entry| entry.value).collect();
     if !by_default.is_empty() {
-        decisions.push(format!("[fracture.default] serves {}", by_default.join(", ")));
+        decisions.push(format!(
+            "[fracture.default] serves {}",
+            by_default.join(", ")
+        ));
     }
     laws
 }
 
 fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
-    let without = scene.rocks.iter().filter(|entry| entry.value.density == 0.0);
+    let without = scene
+        .rocks
+        .iter()
+        .filter(|entry| entry.value.density == 0.0);
     without.map(|entry| {
         Defect::new(
             &entry.place,
@@ -243,7 +272,10 @@ fn bind_fixed_points(
             defects.push(Defect::new(
                 &entry.place,
                 format!("({}, {}, {}) is outside the rock", at.x, at.y, at.z),
-                format!("the nearest node is {tag} at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z),
+                format!(
+                    "the nearest node is {tag} at ({:.6}, {:.6}, {:.6})",
+                    x.x, x.y, x.z
+                ),
             ));
         } else if distance > 1e-6 * reach {
             decisions.push(format!(
@@ -266,7 +298,9 @@ fn nearest_node(mesh: &Mesh, at: DVec3) -> Option<(usize, f64, f64)> {
     let distance = |&node: &usize| mesh.nodes[node].distance(at);
     let node = used.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     let cells = (0..mesh.cells.len()).map(|cell| mesh.cells.nodes_of(cell));
-    let around = cells.filter(|nodes| nodes.contains(&(node as u32))).flatten();
+    let around = cells
+        .filter(|nodes| nodes.contains(&(node as u32)))
+        .flatten();
     let reach = around.map(|&other| mesh.nodes[other as usize].distance(mesh.nodes[node]));
     Some((node, distance(&node), reach.fold(0.0, f64::max)))
 }

@@ -116,13 +116,16 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let named = |key: &'static str| root.named_sections(key).into_iter();
     let title = root.text("title").unwrap_or("untitled").to_owned();
     root.require("mesh", "a section: [mesh]");
-    let mesh = root.section("mesh").and_then(|section| read_mesh(section, folder));
+    let mesh = root
+        .section("mesh")
+        .and_then(|section| read_mesh(section, folder));
     root.require("rock", "a section: [rock.default]");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
     let fractures = named("fracture").filter_map(|(name, s)| entry(source, name, s, read_fracture));
     let fractures = fractures.collect();
-    let boundaries = named("boundary").filter_map(|(name, s)| entry(source, name, s, read_boundary));
+    let boundaries =
+        named("boundary").filter_map(|(name, s)| entry(source, name, s, read_boundary));
     let boundaries = boundaries.collect();
     let fixed_points = root
         .listed_sections("fixed_point")
@@ -242,7 +245,11 @@ fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
                 .map_or("write \"linear\" or \"logarithmic\"".into(), |near| {
                     format!("did you mean \"{near}\"? (known: linear, logarithmic)")
                 });
-            section.refuse("closure", format!("unknown closure law \"{other}\""), remedy);
+            section.refuse(
+                "closure",
+                format!("unknown closure law \"{other}\""),
+                remedy,
+            );
             return None;
         }
     };
@@ -280,7 +287,11 @@ fn read_boundary(section: &Section<'_, '_>) -> Option<BoundaryEntry> {
         (None, Some(pressure)) => Some(SurfaceLoad::Pressure(pressure)),
         (Some(_), Some(_)) => {
             let remedy = "keep one; a pressure p is the traction -p along the outward normal";
-            section.refuse("pressure", "both traction and pressure are given".into(), remedy);
+            section.refuse(
+                "pressure",
+                "both traction and pressure are given".into(),
+                remedy,
+            );
             None
         }
         (None, None) => None,
@@ -289,7 +300,11 @@ fn read_boundary(section: &Section<'_, '_>) -> Option<BoundaryEntry> {
         (Some(true), None) => Some(Support::Symmetry),
         (Some(true), Some(_)) => {
             let remedy = "keep one; symmetry already holds the normal direction";
-            section.refuse("symmetry", "both symmetry and displacement are given".into(), remedy);
+            section.refuse(
+                "symmetry",
+                "both symmetry and displacement are given".into(),
+                remedy,
+            );
             None
         }
         (_, components) => components.map(Support::Displacement),
@@ -373,7 +388,11 @@ fn read_steps(root: &Section<'_, '_>) -> Vec<f64> {
     section.require("steps", "[0.5, 1.0]");
     let steps = section.numbers("steps", Accept::Finite);
     if steps.as_ref().is_some_and(Vec::is_empty) {
-        section.refuse("steps", "there are no load steps".into(), "write steps = [1.0]");
+        section.refuse(
+            "steps",
+            "there are no load steps".into(),
+            "write steps = [1.0]",
+        );
     }
     section.finish();
     steps.unwrap_or_else(|| vec![1.0])

@@ -144,7 +144,8 @@ impl<'a, 'i> Section<'a, 'i> {
 
     /// Whether the key is there and holds a table.
     pub(super) fn is_table(&self, key: &'static str) -> bool {
-        self.get(key).is_some_and(|value| value.get_ref().is_table())
+        self.get(key)
+            .is_some_and(|value| value.get_ref().is_table())
     }
 
     /// Reports a key that must be there and is not.
@@ -162,7 +163,9 @@ impl<'a, 'i> Section<'a, 'i> {
     fn misspelt(&self, key: &str) -> Option<&str> {
         let keys = self.table.iter().map(|(name, _)| name.get_ref().as_ref());
         let others = keys.filter(|name| !self.asked.borrow().contains(name));
-        others.into_iter().find(|name| strsim::normalized_damerau_levenshtein(name, key) > 0.7)
+        others
+            .into_iter()
+            .find(|name| strsim::normalized_damerau_levenshtein(name, key) > 0.7)
     }
 
     pub(super) fn number(&self, key: &'static str, accept: Accept) -> Option<f64> {
@@ -216,7 +219,10 @@ impl<'a, 'i> Section<'a, 'i> {
             self.wrong_type(key, value, "numbers in brackets, e.g. [0.5, 1.0]");
             return None;
         };
-        array.iter().map(|entry| self.as_number(key, entry, accept)).collect()
+        array
+            .iter()
+            .map(|entry| self.as_number(key, entry, accept))
+            .collect()
     }
 
     pub(super) fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
@@ -318,11 +324,24 @@ impl<'a, 'i> Section<'a, 'i> {
                 continue;
             }
             let remedy = nearest(key, known.iter().copied()).map_or_else(
-                || format!("known keys: {}", known.iter().copied().collect::<Vec<_>>().join(", ")),
+                || {
+                    format!(
+                        "known keys: {}",
+                        known.iter().copied().collect::<Vec<_>>().join(", ")
+                    )
+                },
                 |near| format!("did you mean `{near}`?"),
             );
-            let title = if self.title.is_empty() { "the scene" } else { &self.title };
-            self.report(&name.span(), format!("unknown key `{key}` in {title}"), remedy);
+            let title = if self.title.is_empty() {
+                "the scene"
+            } else {
+                &self.title
+            };
+            self.report(
+                &name.span(),
+                format!("unknown key `{key}` in {title}"),
+                remedy,
+            );
         }
     }
 }

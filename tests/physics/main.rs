@@ -1,4 +1,10 @@
 //! Physics against oracles that do not share code with the solver. One target, so it links once.
 
+mod closed_forms;
+mod conditions;
+mod junctions;
 mod newton;
+mod oracles;
+mod patch;
 mod scenes;
+mod tangent;

@@ -1,12 +1,15 @@
 //! Problems on structured meshes, and how to solve them.
 
-use glam::DVec3;
+use std::path::Path;
+
+use glam::{DMat3, DVec3};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_io::{Meshing, load_msh, mesh_geometry};
 use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Draft, Mesh, SurfaceRole};
+use lie_mesh::{Draft, Mesh, SurfaceRole, TaggedElements};
 use lie_solver::{
-    Condition, Discretisation, Fracture, Newton, NewtonSettings, Problem, Solution, State,
-    StepRecord, Support, SurfaceLoad, System, solution,
+    Condition, Discretisation, FixedPoint, Fracture, Newton, NewtonSettings, Problem, Solution,
+    State, StepRecord, Support, SurfaceLoad, System, solution,
 };
 
 /// Rock of the benchmarks: E = 25 GPa, nu = 0.25.
@@ -38,9 +41,8 @@ pub const FACES: [&str; 6] = ["left", "right", "front", "back", "bottom", "top"]
 
 /// A meshed box with its six faces as boundaries and the given fracture patches.
 pub fn box_draft(counts: [usize; 3], size: [f64; 3], fractures: &[Patch<'_>]) -> Draft {
-    let on = |axis: usize, high: bool| {
-        move |x: [f64; 3]| x[axis] == if high { size[axis] } else { 0.0 }
-    };
+    let on =
+        |axis: usize, high: bool| move |x: [f64; 3]| x[axis] == if high { size[axis] } else { 0.0 };
     let faces: Vec<_> = (0..6).map(|face| on(face / 2, face % 2 == 1)).collect();
     let mut patches: Vec<Patch<'_>> = FACES
         .iter()
@@ -128,4 +130,96 @@ pub fn solve(problem: &Problem) -> Solution {
     let (record, solution, _) = try_solve(problem, NewtonSettings::default());
     assert!(record.converged(), "{record:?}");
     solution
+}
+
+/// The mesh that gmsh makes of `geometries/NAME/NAME.geo`.
+pub fn geometry(name: &str, parameters: &[(&str, f64)]) -> Draft {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("mesh.msh");
+    let parameters: Vec<(String, f64)> = parameters
+        .iter()
+        .map(|&(name, value)| (name.to_owned(), value))
+        .collect();
+    mesh_geometry(&Meshing {
+        geometry: &root.join(format!("geometries/{name}/{name}.geo")),
+        parameters: &parameters,
+        order: 1,
+        output: &file,
+    })
+    .unwrap_or_else(|defects| panic!("{defects:?}"));
+    load_msh(&file, folder.path()).unwrap_or_else(|defects| panic!("{defects:?}"))
+}
+
+/// The same mesh with nodes, cells and facets in another order, and other first nodes.
+pub fn shuffled(draft: &Draft, seed: u64) -> Draft {
+    let new_of_old = permutation(draft.nodes.len(), seed);
+    let mut shuffled = draft.clone();
+    for (old, &new) in new_of_old.iter().enumerate() {
+        shuffled.nodes[new] = draft.nodes[old];
+        shuffled.node_tags[new] = draft.node_tags[old];
+    }
+    for (list, from) in [
+        (&mut shuffled.cells, &draft.cells),
+        (&mut shuffled.facets, &draft.facets),
+    ] {
+        *list = TaggedElements::new();
+        for index in permutation(from.tags.len(), seed + 1) {
+            let mut nodes: Vec<u32> = from.elements.nodes_of(index).to_vec();
+            // An even permutation keeps the sign of the volume.
+            nodes[..3].rotate_left(index % 3);
+            let nodes: Vec<u32> = nodes
+                .iter()
+                .map(|&node| new_of_old[node as usize] as u32)
+                .collect();
+            list.elements.push(from.elements.shapes[index], &nodes);
+            list.tags.push(from.tags[index]);
+            list.group_set.push(from.group_set[index]);
+        }
+    }
+    shuffled
+}
+
+fn permutation(count: usize, seed: u64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    for last in (1..count).rev() {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        order.swap(last, (state % (last as u64 + 1)) as usize);
+    }
+    order
+}
+
+/// Tractions of a uniform stress on all six faces.
+pub fn load_with_stress(problem: &mut Problem, stress: DMat3) {
+    for (face, name) in FACES.iter().enumerate() {
+        let mut normal = DVec3::ZERO;
+        normal[face / 2] = if face % 2 == 1 { 1.0 } else { -1.0 };
+        load(problem, name, stress * normal);
+    }
+}
+
+pub fn node_at(mesh: &Mesh, at: DVec3) -> u32 {
+    let found = mesh.nodes.iter().position(|x| x.distance(at) < 1e-9);
+    found.unwrap_or_else(|| panic!("no node at {at}")) as u32
+}
+
+pub fn fix(problem: &mut Problem, at: DVec3, displacement: [Option<f64>; 3]) {
+    let node = node_at(&problem.mesh, at);
+    let name = format!("fixed point at {at}");
+    problem.fixed_points.push(FixedPoint {
+        node,
+        displacement,
+        name,
+    });
+}
+
+/// Holds the six rigid motions at three nodes: all of the first, y and z of the second (on x from
+/// the first), z of the third (on y from the first).
+pub fn fix_rigid_motions(problem: &mut Problem, at: [DVec3; 3]) {
+    fix(problem, at[0], [Some(0.0); 3]);
+    fix(problem, at[1], [None, Some(0.0), Some(0.0)]);
+    fix(problem, at[2], [None, None, Some(0.0)]);
 }

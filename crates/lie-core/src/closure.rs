@@ -304,7 +304,10 @@ mod tests {
                 assert!((slope / here.tangent - 1.0).abs() < 1e-5, "{cutoff:?} {x}");
                 let force = (above.potential - below.potential) / (2.0 * h);
                 let scale = here.traction.abs().max(1e-3);
-                assert!((force - here.traction).abs() / scale < 1e-4, "{cutoff:?} {x}");
+                assert!(
+                    (force - here.traction).abs() / scale < 1e-4,
+                    "{cutoff:?} {x}"
+                );
             }
         }
     }

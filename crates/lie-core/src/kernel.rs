@@ -36,7 +36,13 @@ fn gradients(point: &RulePoint, nodes: &[DVec3]) -> Gradients {
 
 /// Adds row `a` of the stiffness of a cell with the given `nodes` [m] to `blocks[b]` [N/m]:
 /// `K_ab = int lambda g_a (x) g_b + mu g_b (x) g_a + mu (g_a . g_b) I dV`, `g = grad N`.
-pub fn add_stiffness_row(shape: Shape, nodes: &[DVec3], rock: &Rock, a: usize, blocks: &mut [DMat3]) {
+pub fn add_stiffness_row(
+    shape: Shape,
+    nodes: &[DVec3],
+    rock: &Rock,
+    a: usize,
+    blocks: &mut [DMat3],
+) {
     let (lambda, mu) = rock.lame();
     for point in &rule(shape).points {
         let Gradients { of_node: g, volume } = gradients(point, nodes);
@@ -102,7 +108,11 @@ pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
 }
 
 fn position(point: &RulePoint, nodes: &[DVec3]) -> DVec3 {
-    nodes.iter().zip(&point.shape).map(|(x, value)| *x * *value).sum()
+    nodes
+        .iter()
+        .zip(&point.shape)
+        .map(|(x, value)| *x * *value)
+        .sum()
 }
 
 #[cfg(test)]
@@ -136,7 +146,10 @@ mod tests {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             let spin: Vec<DVec3> = NODES.iter().map(|x| axis.cross(*x)).collect();
             for motion in [vec![axis; 4], spin] {
-                let largest = forces(&motion).iter().map(|f| f.length()).fold(0.0, f64::max);
+                let largest = forces(&motion)
+                    .iter()
+                    .map(|f| f.length())
+                    .fold(0.0, f64::max);
                 assert!(largest < 1e-5 * ROCK.young_modulus * 1e-9);
             }
         }
@@ -144,7 +157,10 @@ mod tests {
 
     #[test]
     fn stiffness_agrees_with_the_forces_of_its_stress() {
-        let displacement: Vec<DVec3> = NODES.iter().map(|x| DVec3::new(x.y, 2.0 * x.x, x.z)).collect();
+        let displacement: Vec<DVec3> = NODES
+            .iter()
+            .map(|x| DVec3::new(x.y, 2.0 * x.x, x.z))
+            .collect();
         let stress = ROCK.stress(mean_gradient(Shape::Tet4, &NODES, &displacement));
         let mut expected = [DVec3::ZERO; 4];
         add_stress_forces(Shape::Tet4, &NODES, |_| stress, &mut expected);

@@ -37,7 +37,6 @@ impl Rock {
     pub fn stress(&self, gradient: DMat3) -> DMat3 {
         let (lambda, mu) = self.lame();
         let trace = gradient.x_axis.x + gradient.y_axis.y + gradient.z_axis.z;
-        DMat3::from_diagonal(DVec3::splat(lambda * trace))
-            + (gradient + gradient.transpose()) * mu
+        DMat3::from_diagonal(DVec3::splat(lambda * trace)) + (gradient + gradient.transpose()) * mu
     }
 }

@@ -33,7 +33,14 @@ pub(crate) struct Surfaces {
 }
 
 /// Tags of the elements that share one kind of defect.
-fn report(defects: &mut Vec<Defect>, place: &str, what: &str, tags: &[u64], problem: &str, remedy: &str) {
+fn report(
+    defects: &mut Vec<Defect>,
+    place: &str,
+    what: &str,
+    tags: &[u64],
+    problem: &str,
+    remedy: &str,
+) {
     if !tags.is_empty() {
         defects.push(Defect::new(
             format!("{place}, {what} {}", sample(tags)),
@@ -62,8 +69,14 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
         .filter(|&node| !nodes[node].is_finite())
         .map(|node| draft.node_tags[node])
         .collect();
-    report(&mut defects, &draft.source, "node", &broken, "a coordinate is not a finite number",
-        "mesh the geometry again; if it stays, look for 0/0 in the .geo expressions");
+    report(
+        &mut defects,
+        &draft.source,
+        "node",
+        &broken,
+        "a coordinate is not a finite number",
+        "mesh the geometry again; if it stays, look for 0/0 in the .geo expressions",
+    );
     if !broken.is_empty() {
         return defects;
     }
@@ -71,11 +84,23 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
         .map(|cell| relative_volume(draft, nodes, cell))
         .collect();
     let flat = tagged(&|cell| volumes[cell].abs() <= FLAT);
-    report(&mut defects, &draft.source, "cell", &flat, "the cell has no volume",
-        "let gmsh optimise the mesh (Mesh.Optimize = 1) or remove the sliver from the geometry");
+    report(
+        &mut defects,
+        &draft.source,
+        "cell",
+        &flat,
+        "the cell has no volume",
+        "let gmsh optimise the mesh (Mesh.Optimize = 1) or remove the sliver from the geometry",
+    );
     let inverted = tagged(&|cell| volumes[cell] < -FLAT);
-    report(&mut defects, &draft.source, "cell", &inverted, "the cell is inside out (negative volume)",
-        "write the cell's nodes in gmsh's order, or mesh the geometry again");
+    report(
+        &mut defects,
+        &draft.source,
+        "cell",
+        &inverted,
+        "the cell is inside out (negative volume)",
+        "write the cell's nodes in gmsh's order, or mesh the geometry again",
+    );
     defects
 }
 
@@ -83,7 +108,9 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
 fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
     let cells = &draft.cells.elements;
     let corners = corners(cells, cell, nodes);
-    let longest = corners.iter().flat_map(|a| corners.iter().map(move |b| a.distance_squared(*b)));
+    let longest = corners
+        .iter()
+        .flat_map(|a| corners.iter().map(move |b| a.distance_squared(*b)));
     let longest = longest.fold(0.0, f64::max).sqrt();
     if longest == 0.0 {
         return 0.0;
@@ -95,9 +122,19 @@ fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
 pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
     let mut defects = Vec::new();
     let tag = |cell: u32| draft.cells.tags[cell as usize];
-    let crowded: Vec<u64> = adjacency.crowded_cells.iter().map(|&cell| tag(cell)).collect();
-    report(&mut defects, &draft.source, "cell", &crowded, "a face is shared by more than two cells",
-        "remove the cells that lie on top of others");
+    let crowded: Vec<u64> = adjacency
+        .crowded_cells
+        .iter()
+        .map(|&cell| tag(cell))
+        .collect();
+    report(
+        &mut defects,
+        &draft.source,
+        "cell",
+        &crowded,
+        "a face is shared by more than two cells",
+        "remove the cells that lie on top of others",
+    );
     let overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
         .filter(|&face| {
             let other = adjacency.neighbour[face as usize];
@@ -105,8 +142,14 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
         })
         .map(|face| tag(adjacency.cell_of_face[face as usize]))
         .collect();
-    report(&mut defects, &draft.source, "cell", &overlapping, "the cell overlaps its neighbour or stands in the file twice",
-        "remove the copy; volumes must be fragmented against each other (BooleanFragments)");
+    report(
+        &mut defects,
+        &draft.source,
+        "cell",
+        &overlapping,
+        "the cell overlaps its neighbour or stands in the file twice",
+        "remove the copy; volumes must be fragmented against each other (BooleanFragments)",
+    );
     defects
 }
 
@@ -130,7 +173,11 @@ pub(crate) fn surfaces(
     roles: &[SurfaceRole],
     adjacency: &Adjacency,
 ) -> (Surfaces, Vec<Defect>) {
-    let mut surfaces = Surfaces { fractures: Vec::new(), facets: Vec::new(), boundaries: Vec::new() };
+    let mut surfaces = Surfaces {
+        fractures: Vec::new(),
+        facets: Vec::new(),
+        boundaries: Vec::new(),
+    };
     let mut defects = Vec::new();
     let mut taken = vec![NONE; adjacency.face_count()];
     for group in 0..draft.groups.len() {
@@ -138,7 +185,14 @@ pub(crate) fn surfaces(
             continue;
         }
         match roles[group] {
-            SurfaceRole::Fracture => fracture(draft, adjacency, group, &mut taken, &mut surfaces, &mut defects),
+            SurfaceRole::Fracture => fracture(
+                draft,
+                adjacency,
+                group,
+                &mut taken,
+                &mut surfaces,
+                &mut defects,
+            ),
             SurfaceRole::Boundary => boundary(draft, adjacency, group, &mut surfaces, &mut defects),
             SurfaceRole::Unused => {}
         }
@@ -147,9 +201,17 @@ pub(crate) fn surfaces(
 }
 
 /// Facets of a group and the cell faces at each.
-fn facets_of<'a>(draft: &'a Draft, adjacency: &'a Adjacency, group: usize) -> impl Iterator<Item = (u64, Vec<u32>)> + 'a {
+fn facets_of<'a>(
+    draft: &'a Draft,
+    adjacency: &'a Adjacency,
+    group: usize,
+) -> impl Iterator<Item = (u64, Vec<u32>)> + 'a {
     let facets = &draft.facets;
-    let member: Vec<bool> = draft.group_sets.iter().map(|set| set.contains(&group)).collect();
+    let member: Vec<bool> = draft
+        .group_sets
+        .iter()
+        .map(|set| set.contains(&group))
+        .collect();
     (0..facets.elements.len())
         .filter(move |&facet| member[facets.group_set[facet] as usize])
         .map(move |facet| {
@@ -181,18 +243,47 @@ fn fracture(
             [a, b, ..] => {
                 taken[a as usize] = number;
                 taken[b as usize] = number;
-                surfaces.facets.push(DraftFacet { fracture: number, faces: [a, b], tag });
+                surfaces.facets.push(DraftFacet {
+                    fracture: number,
+                    faces: [a, b],
+                    tag,
+                });
             }
         }
     }
     let place = format!("fracture `{}`", draft.groups[group].name);
-    report(defects, &place, "facet", &loose, "the facet is not a face of any cell: the surface is not embedded in the volume",
-        "cut the volume with the surface in the .geo file: BooleanFragments (OpenCASCADE) or Surface{..} In Volume{..}");
-    report(defects, &place, "facet", &outer, "the facet lies on the outer boundary: there is rock on one side only",
-        "a fracture must lie inside the rock; take this surface out of the fracture's group");
-    report(defects, &place, "facet", &double, "the facet stands in the file twice",
-        "remove the copy (gmsh: Coherence; or BooleanFragments so that surfaces are shared)");
-    empty(draft, group, surfaces.facets.iter().all(|f| f.fracture != number) && loose.is_empty() && outer.is_empty(), defects);
+    report(
+        defects,
+        &place,
+        "facet",
+        &loose,
+        "the facet is not a face of any cell: the surface is not embedded in the volume",
+        "cut the volume with the surface in the .geo file: BooleanFragments (OpenCASCADE) or Surface{..} In Volume{..}",
+    );
+    report(
+        defects,
+        &place,
+        "facet",
+        &outer,
+        "the facet lies on the outer boundary: there is rock on one side only",
+        "a fracture must lie inside the rock; take this surface out of the fracture's group",
+    );
+    report(
+        defects,
+        &place,
+        "facet",
+        &double,
+        "the facet stands in the file twice",
+        "remove the copy (gmsh: Coherence; or BooleanFragments so that surfaces are shared)",
+    );
+    empty(
+        draft,
+        group,
+        surfaces.facets.iter().all(|f| f.fracture != number)
+            && loose.is_empty()
+            && outer.is_empty(),
+        defects,
+    );
 }
 
 fn boundary(
@@ -214,12 +305,30 @@ fn boundary(
         }
     }
     let place = format!("boundary `{}`", draft.groups[group].name);
-    report(defects, &place, "facet", &loose, "the facet is not a face of any cell",
-        "mesh volume and surface together, and put the volume in a Physical Volume");
-    report(defects, &place, "facet", &inner, "the facet lies inside the rock: there are cells on both sides",
-        "conditions act on the outer surface; give a fracture a [fracture] entry instead");
-    report(defects, &place, "facet", &double, "the facet stands in the file twice and would be loaded twice",
-        "remove the copy from the file");
+    report(
+        defects,
+        &place,
+        "facet",
+        &loose,
+        "the facet is not a face of any cell",
+        "mesh volume and surface together, and put the volume in a Physical Volume",
+    );
+    report(
+        defects,
+        &place,
+        "facet",
+        &inner,
+        "the facet lies inside the rock: there are cells on both sides",
+        "conditions act on the outer surface; give a fracture a [fracture] entry instead",
+    );
+    report(
+        defects,
+        &place,
+        "facet",
+        &double,
+        "the facet stands in the file twice and would be loaded twice",
+        "remove the copy from the file",
+    );
     let nothing = faces_kept.is_empty() && loose.is_empty() && inner.is_empty();
     empty(draft, group, nothing, defects);
     surfaces.boundaries.push((group, faces_kept));

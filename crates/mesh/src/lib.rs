@@ -15,11 +15,11 @@
 //! Which side of a fracture is plus is decided here, once.
 
 mod adjacency;
+mod blocks;
 mod check;
 mod defect;
 mod disjoint_sets;
 mod draft;
-mod blocks;
 mod geometry;
 mod mesh;
 mod orient;

@@ -143,15 +143,17 @@ impl Mesh {
     /// Area vectors of all fracture facets [m^2], from minus to plus.
     pub fn facet_areas(&self) -> Vec<DVec3> {
         (0..self.facets.elements.len())
-            .map(|facet| {
-                crate::facet_area_vector(&self.corners(&self.facets.elements, facet))
-            })
+            .map(|facet| crate::facet_area_vector(&self.corners(&self.facets.elements, facet)))
             .collect()
     }
 
     /// Lowest and highest coordinates of the nodes that are in cells [m].
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let used = self.cells.nodes.iter().map(|&node| self.nodes[node as usize]);
+        let used = self
+            .cells
+            .nodes
+            .iter()
+            .map(|&node| self.nodes[node as usize]);
         used.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| {
             (low.min(x), high.max(x))
         })

@@ -49,7 +49,10 @@ pub(crate) fn fractures(
         }
     }
     let pairs = surfaces.facets.iter().zip(&flipped);
-    (pairs.map(|(facet, &flip)| chosen(facet, flip)).collect(), defects)
+    (
+        pairs.map(|(facet, &flip)| chosen(facet, flip)).collect(),
+        defects,
+    )
 }
 
 fn chosen(facet: &DraftFacet, flip: Option<bool>) -> (u32, u32) {
@@ -61,7 +64,9 @@ fn placed_area(draft: &Draft, nodes: &[DVec3], adjacency: &Adjacency, face: u32)
     let cells = &draft.cells.elements;
     let count = adjacency.shape_of(cells, face).corners().len();
     let slots = adjacency.slots(cells, face).take(count);
-    let points: Vec<DVec3> = slots.map(|slot| nodes[cells.nodes[slot] as usize]).collect();
+    let points: Vec<DVec3> = slots
+        .map(|slot| nodes[cells.nodes[slot] as usize])
+        .collect();
     (facet_centre(&points), facet_area_vector(&points))
 }
 
@@ -77,7 +82,11 @@ fn links(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Vec<L
         for (i, &from) in nodes.iter().enumerate() {
             let to = nodes[(i + 1) % nodes.len()];
             let key = (entry.fracture, from.min(to), from.max(to));
-            edges.push(Edge { key, facet: facet as u32, forward: from < to });
+            edges.push(Edge {
+                key,
+                facet: facet as u32,
+                forward: from < to,
+            });
         }
     }
     edges.sort_by_key(|edge| (edge.key, edge.facet));

@@ -33,7 +33,14 @@ pub(crate) fn find(
     for (face, &other) in adjacency.neighbour.iter().enumerate() {
         let joins = other != NONE && (face as u32) < other && !is_fractured[face];
         if joins {
-            join_across(cells, adjacency, face as u32, other, &on_fracture, &mut sets);
+            join_across(
+                cells,
+                adjacency,
+                face as u32,
+                other,
+                &on_fracture,
+                &mut sets,
+            );
         }
     }
     number(cells, &on_fracture, &mut sets)

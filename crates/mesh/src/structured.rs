@@ -81,7 +81,8 @@ fn kuhn(cube: [usize; 3], counts: [usize; 3]) -> [[u32; 4]; 6] {
         [2, 1, 0],
         [1, 0, 2],
     ];
-    let number = |at: [usize; 3]| ((at[0] * (counts[1] + 1) + at[1]) * (counts[2] + 1) + at[2]) as u32;
+    let number =
+        |at: [usize; 3]| ((at[0] * (counts[1] + 1) + at[1]) * (counts[2] + 1) + at[2]) as u32;
     PATHS.map(|path| {
         let mut at = cube;
         let mut tet = [number(at); 4];

@@ -49,7 +49,11 @@ pub(crate) fn rock_stiffness(frame: Frame<'_>) -> BlockMatrix {
         .into_par_iter()
         .for_each(|(nodes, mut rest)| {
             for node in nodes {
-                let own: usize = frame.points.of_node(node).map(|row| frame.pattern.row(row).len()).sum();
+                let own: usize = frame
+                    .points
+                    .of_node(node)
+                    .map(|row| frame.pattern.row(row).len())
+                    .sum();
                 let (rows, tail) = rest.split_at_mut(own);
                 assemble_node(frame, node, rows);
                 rest = tail;
@@ -211,8 +215,16 @@ pub(crate) fn prescribed_forces(frame: Frame<'_>) -> Vec<DVec3> {
         let mut row = [DMat3::ZERO; MAX_NODES];
         for (a, force) in forces.iter_mut().enumerate() {
             row[..points.len()].fill(DMat3::ZERO);
-            kernel::add_stiffness_row(shape, positions, problem.rock(cell), a, &mut row[..points.len()]);
-            *force += (0..points.len()).map(|b| row[b] * prescribed(b)).sum::<DVec3>();
+            kernel::add_stiffness_row(
+                shape,
+                positions,
+                problem.rock(cell),
+                a,
+                &mut row[..points.len()],
+            );
+            *force += (0..points.len())
+                .map(|b| row[b] * prescribed(b))
+                .sum::<DVec3>();
         }
     })
 }

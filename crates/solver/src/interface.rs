@@ -120,7 +120,9 @@ impl Interface {
     pub fn addresses(&self, points: &Points, pattern: &Pattern) -> Vec<Vec<(usize, usize)>> {
         let rows = |&node: &u32| {
             let own = points.of_node(node as usize);
-            own.clone().map(|row| (row, pattern.address(row, own.start))).collect()
+            own.clone()
+                .map(|row| (row, pattern.address(row, own.start)))
+                .collect()
         };
         self.nodes.iter().map(rows).collect()
     }
@@ -196,12 +198,7 @@ fn corners(mesh: &Mesh, cell: usize) -> Vec<DVec3> {
 
 /// Jump and aperture at which the law carries the initial stress. A fracture without stiffness
 /// carries none, so it relaxes what the initial stress would need of it.
-fn initial_jump(
-    problem: &Problem,
-    fracture: &Fracture,
-    at: DVec3,
-    normal: DVec3,
-) -> (DVec3, f64) {
+fn initial_jump(problem: &Problem, fracture: &Fracture, at: DVec3, normal: DVec3) -> (DVec3, f64) {
     let law = &fracture.law;
     let Some(stress) = &problem.initial_stress else {
         return (DVec3::ZERO, law.closure.aperture);

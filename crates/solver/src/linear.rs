@@ -4,7 +4,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, Par, Side};
@@ -161,7 +162,13 @@ impl DirectSolver {
             MemStack::new(&mut memory),
         );
         (0..right.len())
-            .map(|i| DVec3::new(column[(3 * i, 0)], column[(3 * i + 1, 0)], column[(3 * i + 2, 0)]))
+            .map(|i| {
+                DVec3::new(
+                    column[(3 * i, 0)],
+                    column[(3 * i + 1, 0)],
+                    column[(3 * i + 2, 0)],
+                )
+            })
             .collect()
     }
 }
@@ -169,7 +176,9 @@ impl DirectSolver {
 /// Translates the failing pivot to the block row it belongs to.
 fn explain(symbolic: &SymbolicCholesky<usize>, error: &LltError) -> LinearFailure {
     let LltError::NonPositivePivot { index } = error;
-    let original = symbolic.perm().map_or(*index, |perm| perm.arrays().0[*index]);
+    let original = symbolic
+        .perm()
+        .map_or(*index, |perm| perm.arrays().0[*index]);
     LinearFailure::Indefinite(original / 3)
 }
 
@@ -185,7 +194,9 @@ fn upper_triangle(pattern: &Pattern, lower_blocks: &[usize]) -> (Vec<usize>, Vec
     for (row, &lower) in lower_blocks.iter().enumerate() {
         let columns = &pattern.columns[pattern.row(row)][..lower];
         for c in 0..3 {
-            let left = columns.iter().flat_map(|&block| (0..3).map(move |r| 3 * block as usize + r));
+            let left = columns
+                .iter()
+                .flat_map(|&block| (0..3).map(move |r| 3 * block as usize + r));
             row_index.extend(left);
             row_index.extend((0..=c).map(|r| 3 * row + r));
             column_offset.push(row_index.len());
@@ -211,7 +222,11 @@ fn scalar_ordering(
     let mut column_offset = vec![0_i32];
     let mut row_index = Vec::new();
     for &node in &used {
-        let others = pattern.neighbours.of(node).iter().filter(|&&other| other as usize != node);
+        let others = pattern
+            .neighbours
+            .of(node)
+            .iter()
+            .filter(|&&other| other as usize != node);
         row_index.extend(others.map(|&other| number[other as usize]));
         let end = i32::try_from(row_index.len()).map_err(|_| fault("node graph too large"))?;
         column_offset.push(end);

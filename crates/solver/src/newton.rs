@@ -39,8 +39,8 @@ pub struct NewtonSettings {
     pub linearisation: Linearisation,
     /// Largest out-of-balance force against the largest force.
     pub force: f64,
-    /// Largest change of displacement against the largest displacement. Newton's error is the
-    /// square of its last step, so this bound is the root of the others.
+    /// Largest change of displacement against the largest displacement or opening. Newton's error
+    /// is the square of its last step, so this bound is the root of the others.
     pub increment: f64,
     /// Largest closure error, see [`Iteration::closure_error`].
     pub closure: f64,
@@ -65,7 +65,7 @@ impl Default for NewtonSettings {
 pub struct Iteration {
     /// Out-of-balance force with the law's own tractions, against the largest force.
     pub force_residual: f64,
-    /// Change of displacement against the largest displacement.
+    /// Change of displacement against the largest displacement or opening.
     pub increment: f64,
     /// `max(|t_n - sigma_n(b)|, k |w_n - (b - b0)|) / max |sigma_n|`: how far the traction and
     /// opening of the linear solve are from one point of the law.
@@ -226,7 +226,9 @@ impl<'a> Newton<'a> {
         self.update_factor(&tangents).map_err(Outcome::Linear)?;
         record.factorise_seconds += start.elapsed().as_secs_f64();
         let tractions = self.linearised_tractions(state, &tangents);
-        let residual = self.system.residual(&state.unknowns, &tractions, state.load);
+        let residual = self
+            .system
+            .residual(&state.unknowns, &tractions, state.load);
         let correction = self.direct.solve(&residual);
         for (unknown, change) in state.unknowns.iter_mut().zip(&correction) {
             *unknown += *change;
@@ -309,12 +311,7 @@ impl<'a> Newton<'a> {
 
     /// Moves all facet points by the change of their jumps to where they are linearised next;
     /// returns their closure errors [Pa].
-    fn follow(
-        &self,
-        state: &mut State,
-        landings: &mut [Landing],
-        changes: &[DVec3],
-    ) -> Vec<f64> {
+    fn follow(&self, state: &mut State, landings: &mut [Landing], changes: &[DVec3]) -> Vec<f64> {
         let points = self.interface().points.par_iter().zip(changes);
         points
             .zip(state.facet_points.par_iter_mut().zip(landings))
@@ -352,7 +349,9 @@ impl<'a> Newton<'a> {
         };
         state.mismatch = landed.beyond(state.separation);
         let of_law = closure.at(state.separation).traction;
-        (traction - of_law).abs().max(point.spring * state.mismatch.abs())
+        (traction - of_law)
+            .abs()
+            .max(point.spring * state.mismatch.abs())
     }
 
     /// Measures how far the state is from a solution.
@@ -370,17 +369,30 @@ impl<'a> Newton<'a> {
         if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
             return Err(Outcome::NotFinite(Some(broken)));
         }
-        let normal = points().zip(&tractions).map(|((point, _), t)| t.dot(point.normal).abs());
+        let normal = points()
+            .zip(&tractions)
+            .map(|((point, _), t)| t.dot(point.normal).abs());
         let largest_normal = normal.fold(0.0, f64::max);
-        let residual = norm(&self.system.residual(&state.unknowns, &tractions, state.load));
-        let scale = self.system.force_scale(&state.unknowns, &tractions, state.load);
+        let residual = norm(
+            &self
+                .system
+                .residual(&state.unknowns, &tractions, state.load),
+        );
+        let scale = self
+            .system
+            .force_scale(&state.unknowns, &tractions, state.load);
         let displacements = self.system.displacements(&state.unknowns, state.load);
         let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
         record.worst_facet_point = worst;
-        let apertures = state.facet_points.iter().map(|point| point.separation.aperture);
+        let separations = || state.facet_points.iter().map(|point| point.separation);
+        let apertures = separations().map(|separation| separation.aperture);
+        // A body that does not move may still hold joints closed by its initial stress.
+        let opening = separations()
+            .map(|separation| separation.opening.abs())
+            .fold(0.0, f64::max);
         Ok(Iteration {
             force_residual: ratio(residual, scale),
-            increment: ratio(largest(change), largest(&displacements)),
+            increment: ratio(largest(change), largest(&displacements).max(opening)),
             closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), largest_normal),
             smallest_aperture: apertures.fold(f64::INFINITY, f64::min),
         })

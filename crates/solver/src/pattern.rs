@@ -65,7 +65,10 @@ impl Pattern {
         let around: Vec<Vec<u32>> = (0..mesh.nodes.len())
             .into_par_iter()
             .map(|node| {
-                let cells_here = slots.of(node).iter().map(|&slot| cell_of_slot[slot as usize]);
+                let cells_here = slots
+                    .of(node)
+                    .iter()
+                    .map(|&slot| cell_of_slot[slot as usize]);
                 let mut nodes: Vec<u32> = cells_here
                     .flat_map(|cell| cells.nodes_of(cell as usize).iter().copied())
                     .collect();

@@ -69,7 +69,10 @@ impl Points {
 
     /// Number of nodes that carry unknowns.
     pub fn node_count(&self) -> usize {
-        self.offset.windows(2).filter(|pair| pair[0] < pair[1]).count()
+        self.offset
+            .windows(2)
+            .filter(|pair| pair[0] < pair[1])
+            .count()
     }
 
     /// Displacement of one point: `u_i = sum_k coefficient(s, i, k) y_k`.

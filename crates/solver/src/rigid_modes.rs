@@ -57,7 +57,9 @@ pub(crate) fn find(
         .filter(|&i| values[i] <= FREE * largest)
         .collect();
     let share = |body: usize, motion: usize| -> f64 {
-        free.iter().map(|&i| eigen.U()[(6 * body + motion, i)].powi(2)).sum()
+        free.iter()
+            .map(|&i| eigen.U()[(6 * body + motion, i)].powi(2))
+            .sum()
     };
     (0..body_count)
         .filter_map(|body| {
@@ -194,10 +196,13 @@ fn describe(mesh: &Mesh, body_of_block: &[u32], body: usize, shares: &[f64]) -> 
     let cells = (0..mesh.cells.len())
         .filter(|&cell| body_of_block[mesh.block[cell] as usize] as usize == body);
     let nodes = cells.flat_map(|cell| mesh.cells.nodes_of(cell).iter());
-    let (low, high) = nodes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &node| {
-        let x = mesh.nodes[node as usize];
-        (low.min(x), high.max(x))
-    });
+    let (low, high) = nodes.fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), &node| {
+            let x = mesh.nodes[node as usize];
+            (low.min(x), high.max(x))
+        },
+    );
     Some(Defect::new(
         format!(
             "the rock between ({:.4}, {:.4}, {:.4}) and ({:.4}, {:.4}, {:.4})",

@@ -61,7 +61,14 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
     let interface = &system.discretisation.interface;
     let jumps = interface.jumps(&displacements);
     let facet_points = (0..jumps.len())
-        .map(|i| facet_result(system, &interface.points[i], jumps[i], &state.facet_points[i]))
+        .map(|i| {
+            facet_result(
+                system,
+                &interface.points[i],
+                jumps[i],
+                &state.facet_points[i],
+            )
+        })
         .collect();
     Solution {
         displacements,
@@ -82,10 +89,9 @@ fn cell_stress(system: &System<'_>, displacements: &[DVec3], cell: usize) -> Sym
         .map(|&point| displacements[point as usize])
         .collect();
     let shape = mesh.cells.shapes[cell];
-    let initial = system
-        .problem
-        .initial_stress
-        .map_or(DMat3::ZERO, |stress| stress.at(kernel::centre(shape, &nodes)));
+    let initial = system.problem.initial_stress.map_or(DMat3::ZERO, |stress| {
+        stress.at(kernel::centre(shape, &nodes))
+    });
     let gradient = kernel::mean_gradient(shape, &nodes, &moved);
     let s = system.problem.rock(cell).stress(gradient) + initial;
     [

@@ -240,7 +240,10 @@ fn hold<'a>(demands: &'a [Demand<'a>]) -> Result<(Hold, usize), (&'a Demand<'a>,
 }
 
 fn largest(demands: &[Demand<'_>]) -> f64 {
-    demands.iter().map(|demand| demand.value.abs()).fold(0.0, f64::max)
+    demands
+        .iter()
+        .map(|demand| demand.value.abs())
+        .fold(0.0, f64::max)
 }
 
 fn contradiction(tag: u64, first: &Demand<'_>, second: &Demand<'_>) -> Defect {

@@ -241,5 +241,9 @@ impl<'a> System<'a> {
 
 /// Euclidean norm, summed in a fixed order.
 pub fn norm(vector: &[DVec3]) -> f64 {
-    vector.iter().map(|v| v.length_squared()).sum::<f64>().sqrt()
+    vector
+        .iter()
+        .map(|v| v.length_squared())
+        .sum::<f64>()
+        .sqrt()
 }

@@ -1,0 +1,120 @@
+//! B2: the table of the logarithmic law by simulation. B3: the single joint of OpenGeoSys.
+
+use glam::DVec3;
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_mesh::structured::Patch;
+use lie_solver::{Fracture, Problem, Solution, Support};
+
+use crate::oracles::{LOG_LAW_TABLE, closed_aperture};
+use crate::scenes::{self, EXACT, joint};
+
+/// A column with a horizontal joint at mid-height under the closing load `q K_n0 b0`.
+pub fn column(kind: ClosureKind, q: f64) -> Problem {
+    let middle = |x: [f64; 3]| x[2] == 1.0;
+    let patch = Patch {
+        name: "joint",
+        contains: &middle,
+    };
+    let draft = scenes::box_draft([2, 2, 4], [1.0, 1.0, 2.0], &[patch]);
+    let mut problem = scenes::problem(scenes::build(draft), joint(kind));
+    for face in ["left", "front", "bottom"] {
+        scenes::support(&mut problem, face, Support::Symmetry);
+    }
+    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -q * 50e9 * 1e-4));
+    problem
+}
+
+#[test]
+fn log_law_table_by_simulation_of_a_column() {
+    for (q, x, slope) in LOG_LAW_TABLE {
+        let solution = scenes::solve(&column(EXACT, q));
+        // Secant over a small change of load, to compare the slope as well.
+        let step = 1e-5;
+        let further = scenes::solve(&column(EXACT, q * (1.0 + step)));
+        for (point, after) in solution.facet_points.iter().zip(&further.facet_points) {
+            let found = point.aperture / 1e-4;
+            assert!(
+                (found / closed_aperture(q) - 1.0).abs() < 1e-8,
+                "q = {q}: {found}"
+            );
+            assert!(
+                (found / x - 1.0).abs() < 2e-5,
+                "q = {q}: {found} against {x}"
+            );
+            let secant = q * step / ((point.aperture - after.aperture) / 1e-4);
+            assert!(
+                (secant / slope - 1.0).abs() < 1e-3,
+                "q = {q}: {secant} against {slope}"
+            );
+        }
+    }
+}
+
+/// The rock and joint of `single_joint_3D` (OpenGeoSys, Tests/Data/LIE/Mechanics), dip 50 degrees,
+/// -7 kPa on top.
+fn single_joint(normal: f64, shear: f64, kind: ClosureKind) -> (Problem, Solution) {
+    let draft = scenes::geometry("inclined-joint", &[("dip", 50.0), ("h", 0.3)]);
+    let fracture = Fracture {
+        law: FractureLaw {
+            closure: Closure {
+                aperture: 1e-5,
+                normal_stiffness: normal,
+                kind,
+            },
+            shear_stiffness: shear,
+        },
+        fluid_pressure: 0.0,
+    };
+    let mut problem = scenes::problem(scenes::build(draft), fracture);
+    problem.rocks[0] = Rock {
+        young_modulus: 170e6,
+        poisson_ratio: 0.22,
+        density: 0.0,
+    };
+    for face in ["front", "back", "bottom"] {
+        scenes::support(&mut problem, face, Support::Symmetry);
+    }
+    scenes::fix(&mut problem, DVec3::ZERO, [Some(0.0), None, None]);
+    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -7e3));
+    let solution = scenes::solve(&problem);
+    (problem, solution)
+}
+
+fn close(value: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (value / expected - 1.0).abs() < tolerance,
+        "{value:e} against {expected:e}"
+    );
+}
+
+#[test]
+fn single_joint_3d_linear() {
+    let (sin, cos) = 50_f64.to_radians().sin_cos();
+    let kind = ClosureKind::Logarithmic { cutoff: Some(1e-5) };
+    let (_, solution) = single_joint(1e12, 1e9, kind);
+    for point in &solution.facet_points {
+        close(point.slip.length(), 7e3 * sin * cos / 1e9, 1e-9);
+        close(point.slip.length(), 3.4468e-6, 1e-5);
+        close(point.opening, -7e3 * cos * cos / 1e12, 1e-6);
+        close(point.opening, -2.892e-9, 1e-3);
+    }
+}
+
+#[test]
+fn single_joint_negative_aperture() {
+    let kind = ClosureKind::Logarithmic { cutoff: Some(1e-7) };
+    let (_, solution) = single_joint(1e8, 1e12, kind);
+    let cos = 50_f64.to_radians().cos();
+    for point in &solution.facet_points {
+        close(
+            point.aperture,
+            1e-5 * closed_aperture(7e3 * cos * cos / 1e3),
+            1e-9,
+        );
+        close(point.aperture, 1.98792e-6, 5e-6);
+    }
+    let (_, linear) = single_joint(1e8, 1e12, ClosureKind::Linear);
+    for point in &linear.facet_points {
+        close(point.aperture, -1.892e-5, 1e-3);
+    }
+}

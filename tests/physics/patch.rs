@@ -1,0 +1,123 @@
+//! B1: a uniform stress passes through a planar joint of any orientation on a real gmsh mesh.
+//!
+//! Tractions of a uniform stress act on all faces; the exact solution is an affine displacement
+//! plus a rigid jump with the traction `sigma . n`. It must hold whatever the orientation of the
+//! facets and the numbering in the file.
+
+use glam::{DMat3, DVec3};
+use lie_core::ClosureKind;
+use lie_mesh::Draft;
+use lie_solver::{Fracture, Problem};
+
+use crate::oracles::closed_aperture;
+use crate::scenes::{self, EXACT, joint};
+
+/// Compression with shear on every plane [Pa].
+const STRESS: DMat3 = DMat3::from_cols(
+    DVec3::new(-4.0e6, 1.0e6, -0.5e6),
+    DVec3::new(1.0e6, -6.0e6, 0.7e6),
+    DVec3::new(-0.5e6, 0.7e6, -9.0e6),
+);
+
+fn uniform(draft: Draft, fracture: Fracture) -> Problem {
+    let mut problem = scenes::problem(scenes::build(draft), fracture);
+    scenes::load_with_stress(&mut problem, STRESS);
+    scenes::fix_rigid_motions(&mut problem, [DVec3::ZERO, DVec3::X, DVec3::Y]);
+    problem
+}
+
+fn check(problem: &Problem) {
+    let solution = scenes::solve(problem);
+    let scale = 9.0e6;
+    for stress in &solution.stresses {
+        let expected = [-4.0e6, -6.0e6, -9.0e6, 1.0e6, 0.7e6, -0.5e6];
+        for (value, expected) in stress.iter().zip(expected) {
+            assert!((value - expected).abs() < 1e-9 * scale, "{stress:?}");
+        }
+    }
+    let law = &problem.fractures[0].law;
+    let areas = problem.mesh.facet_areas();
+    for (facet, area) in areas.iter().enumerate() {
+        let normal = area.normalize();
+        let traction = STRESS * normal;
+        let across = traction.dot(normal);
+        let q = -across / (law.closure.normal_stiffness * law.closure.aperture);
+        let aperture = match law.closure.kind {
+            ClosureKind::Linear => law.closure.aperture * (1.0 - q),
+            ClosureKind::Logarithmic { .. } => law.closure.aperture * closed_aperture(q),
+        };
+        let slip = (traction - across * normal) / law.shear_stiffness;
+        let jump = (aperture - law.closure.aperture) * normal + slip;
+        for index in problem.mesh.facets.elements.range(facet) {
+            let point = &solution.facet_points[index];
+            assert!((point.traction - traction).length() < 1e-9 * scale);
+            assert!((point.aperture / aperture - 1.0).abs() < 1e-9);
+            assert!((point.jump - jump).length() < 1e-9 * jump.length());
+        }
+    }
+}
+
+/// Turns every other facet of the file around.
+fn with_wavy_facets(mut draft: Draft) -> Draft {
+    let facets = &mut draft.facets.elements;
+    for facet in (0..facets.len()).step_by(2) {
+        let range = facets.range(facet);
+        facets.nodes[range].reverse();
+    }
+    draft
+}
+
+#[test]
+fn uniform_stress_through_an_inclined_joint() {
+    for dip in [20.0, 50.0] {
+        let draft = scenes::geometry("inclined-joint", &[("dip", dip), ("h", 0.3)]);
+        for kind in [ClosureKind::Linear, EXACT] {
+            check(&uniform(draft.clone(), joint(kind)));
+            check(&uniform(with_wavy_facets(draft.clone()), joint(kind)));
+            check(&uniform(scenes::shuffled(&draft, 7), joint(kind)));
+        }
+    }
+}
+
+#[test]
+fn orientation_and_numbering_do_not_change_the_normals() {
+    let draft = scenes::geometry("inclined-joint", &[("h", 0.4)]);
+    let reference = scenes::build(draft.clone()).facet_areas();
+    for other in [with_wavy_facets(draft.clone()), scenes::shuffled(&draft, 3)] {
+        let normals = scenes::build(other).facet_areas();
+        for normal in &normals {
+            assert!(normal.normalize().dot(reference[0].normalize()) > 1.0 - 1e-12);
+        }
+    }
+}
+
+#[test]
+fn rotated_bodies_rotate_their_solution() {
+    let rotation = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
+    let draft = scenes::geometry("inclined-joint", &[("h", 0.4)]);
+    let solve = |turned: bool| {
+        let mut draft = draft.clone();
+        let mut load = DVec3::new(0.0, 0.0, -7e6);
+        if turned {
+            load = rotation * load;
+            for node in &mut draft.nodes {
+                *node = (rotation * DVec3::from(*node)).to_array();
+            }
+        }
+        let mut problem = scenes::problem(scenes::build(draft), joint(EXACT));
+        for face in ["left", "front", "bottom"] {
+            scenes::support(&mut problem, face, lie_solver::Support::Symmetry);
+        }
+        scenes::load(&mut problem, "top", load);
+        scenes::solve(&problem)
+    };
+    let (straight, turned) = (solve(false), solve(true));
+    let largest = straight
+        .displacements
+        .iter()
+        .map(|u| u.length())
+        .fold(0.0, f64::max);
+    for (u, v) in straight.displacements.iter().zip(&turned.displacements) {
+        assert!((rotation * *u - *v).length() < 1e-9 * largest);
+    }
+}
