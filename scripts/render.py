@@ -3,25 +3,28 @@
     python scripts/render.py OUT_DIR PICTURE.png [--warp FACTOR] [--step NUMBER]
 
 Rock and fractures are moved by the displacement times FACTOR; without one, the largest displacement
-becomes 5 % of the body's diagonal. Draws the last step unless another is named (the first is 1).
-
-Needs pyvista==0.49.1 and vtk==9.7.2 from PyPI. No X server is needed: VTK falls back to EGL, for
-which Debian has the packages libegl1 and libgl1-mesa-dri.
+becomes 6 % of the body's diagonal. Draws the last step unless another is named (the first is 1).
+`sh scripts/setup --pictures` installs what this needs in target/venv. No X server is needed: VTK
+then draws with EGL.
 """
 
 import argparse
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkLogger
 
-LARGEST_SHIFT = 0.05  # of the diagonal
+LARGEST_SHIFT = 0.06  # of the diagonal
 WIDE = 1e-3  # largest aperture from which on millimetres read better than micrometres
+MANY = 10.0  # ratio of the largest to the smallest aperture from which the colours are logarithmic
 VIEW = np.array([0.75, -1.0, 0.55])  # from the body's centre to the camera
+CUT_DEPTH = 0.51  # of the body's depth, measured from the front
 CUT = (0.0, -1.0, 0.0)  # normal of the cutting plane, into the half that is taken away
-ROCK_COLOURS = ["#d9d4cc", "#b9c4cf", "#cfc0a8", "#b7c7b3", "#c9b8c4"]
-SIZE = (1600, 1200)
+ROCK_COLOURS = ["#e3ded5", "#d3dbe2", "#e0d6c4", "#d3ddd0", "#ded3da"]
+SIZE = (1200, 720)
+ROOM = ((-0.95, 0.62), (-0.9, 0.94))  # for the body, of the picture's width and height, each -1 to 1
 
 
 def read_step(path, step):
@@ -37,7 +40,11 @@ def read_step(path, step):
 
 def automatic_factor(rock):
     largest = np.linalg.norm(rock["displacement"], axis=1).max(initial=0.0)
-    return LARGEST_SHIFT * rock.length / largest if largest > 0.0 else 1.0
+    return rounded(LARGEST_SHIFT * rock.length / largest, 2) if largest > 0.0 else 1.0
+
+
+def rounded(value, digits):
+    return float(f"{value:.{digits}g}")
 
 
 def fracture_displacement(fractures, rock):
@@ -52,19 +59,38 @@ def fracture_displacement(fractures, rock):
     return (sums / np.maximum(copies, 1)[:, None])[of_fracture]
 
 
+def blocks_of(rock):
+    """A number for each cell: cells of one rock that share points are one block."""
+    connected = rock.connectivity("all").cell_data["RegionId"]
+    return np.unique(np.stack([connected, rock["rock"]]), axis=1, return_inverse=True)[1].ravel()
+
+
 def moved(grid, displacement, factor):
     shifted = grid.copy()
     shifted.points = np.asarray(grid.points) + factor * displacement
     return shifted
 
 
-def aperture_in_unit(fractures):
-    """Adds the aperture in a readable unit and returns the title of its scalar bar."""
-    aperture = fractures["aperture"]
+def colouring(fractures):
+    """Adds the aperture in a readable unit, or its logarithm; title, limits and ticks of its bar."""
+    aperture = np.asarray(fractures["aperture"])
     unit, per_metre = ("mm", 1e3) if aperture.max() >= WIDE else ("µm", 1e6)
     title = f"Aperture ({unit})"
-    fractures[title] = aperture * per_metre
-    return title
+    low, high = colour_range(aperture * per_metre)
+    spread = low > 0.0 and high > MANY * low
+    scale = np.log10 if spread else np.asarray
+    fractures[title] = scale(aperture * per_metre)
+    limits = (float(scale(low)), float(scale(high)))
+    values, digits = (ticks(low, high), 2) if spread else (np.linspace(low, high, 5), 4)
+    return title, limits, {float(scale(value)): f"{rounded(value, digits):g}" for value in values}
+
+
+def ticks(low, high):
+    """The limits and, well apart from them, the numbers 1, 2, 5 of each decade between."""
+    decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
+    steps = (10.0**decades[:, None] * np.array([1.0, 2.0, 5.0])).ravel()
+    between = steps[(steps > 1.25 * low) & (steps < high / 1.25)]
+    return [low, *between, high]
 
 
 def colour_range(values):
@@ -76,24 +102,31 @@ def colour_range(values):
     return middle - half, middle + half
 
 
-def add_rock(plotter, rock, centre):
-    """The half behind a plane through the centre, and the edges of the whole."""
-    # Off the centre by a little, because a plane through cell faces cuts no cell.
-    origin = np.asarray(centre) + [0.0, 1e-3 * rock.length, 0.0]
-    for colour, number in enumerate(np.unique(rock["rock"])):
-        part = rock.extract_cells(np.flatnonzero(rock["rock"] == number))
-        face = part.slice(normal=CUT, origin=origin)
-        behind = outside(part).clip(normal=CUT, origin=origin)
-        for half, opacity in ((behind, 0.35), (face, 0.8)):
+def add_rock(plotter, rock, origin):
+    """The blocks behind a plane through `origin`, and the edges of the whole."""
+    for number in np.unique(rock["block"]):
+        block = rock.extract_cells(np.flatnonzero(rock["block"] == number))
+        shade = ROCK_COLOURS[number % len(ROCK_COLOURS)]
+        for half in (block.slice(normal=CUT, origin=origin), cut(outside(block), origin)):
             if half.n_cells:
-                shade = ROCK_COLOURS[colour % len(ROCK_COLOURS)]
-                plotter.add_mesh(half, color=shade, opacity=opacity, ambient=0.3)
+                plotter.add_mesh(half, color=shade, ambient=0.65, diffuse=0.4)
     walls = outside(rock)
     edges = walls.extract_feature_edges(feature_angle=30.0, non_manifold_edges=False)
     outline = walls.slice(normal=CUT, origin=origin)
-    for lines, width in ((edges, 2), (outline, 3)):
+    for lines, width in ((edges, 1.5), (outline, 2.5)):
         if lines.n_cells:
             plotter.add_mesh(lines, color="#404040", line_width=width)
+
+
+def cut_origin(bounds):
+    """Off the middle, where scenes like to have a joint: a plane through cell faces cuts no cell."""
+    middle = 0.5 * (np.array(bounds[::2]) + bounds[1::2])
+    middle[1] = bounds[2] + CUT_DEPTH * (bounds[3] - bounds[2])
+    return middle
+
+
+def cut(surface, origin):
+    return surface.clip(normal=CUT, origin=origin)
 
 
 def outside(grid):
@@ -101,26 +134,28 @@ def outside(grid):
     return grid.extract_surface(algorithm="dataset_surface")
 
 
-def add_fractures(plotter, fractures, title):
+def add_fractures(plotter, fractures):
+    title, limits, labels = colouring(fractures)
     plotter.add_mesh(
         fractures,
         scalars=title,
         cmap="viridis",
-        clim=colour_range(fractures[title]),
-        show_edges=False,
-        ambient=0.35,
+        clim=limits,
+        annotations=labels,
+        # Mostly flat, so that a colour means the same on every joint.
+        ambient=0.7,
+        diffuse=0.3,
         scalar_bar_args={
             "title": title + "\n",
             "color": "black",
-            "fmt": "%.4g",
-            "n_labels": 5,
-            "title_font_size": 34,
-            "label_font_size": 28,
+            "n_labels": 0,
+            "title_font_size": 26,
+            "label_font_size": 22,
             "vertical": True,
-            "position_x": 0.84,
-            "position_y": 0.2,
-            "width": 0.07,
-            "height": 0.6,
+            "position_x": 0.88,
+            "position_y": 0.18,
+            "width": 0.06,
+            "height": 0.64,
         },
     )
 
@@ -132,21 +167,34 @@ def draw(folder, picture, factor, step):
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
-    plotter.enable_depth_peeling(8)
-    warped = moved(rock, rock["displacement"], factor)
-    add_rock(plotter, warped, rock.center)
+    rock["block"] = blocks_of(rock)
+    add_rock(plotter, moved(rock, rock["displacement"], factor), cut_origin(rock.bounds))
     if fractures.n_cells:
-        title = aperture_in_unit(fractures)
         sheets = moved(fractures, fracture_displacement(fractures, rock), factor)
-        add_fractures(plotter, sheets, title)
-    caption = f"load {time:g}, displacement x {factor:.3g}"
-    plotter.add_text(caption, position=(40, 30), font_size=14, color="black")
-    plotter.add_axes(color="black", viewport=(0.0, 0.06, 0.16, 0.28))
+        add_fractures(plotter, sheets)
+    caption = f"step {time:g}, displacement x {factor:g}"
+    plotter.add_text(caption, position=(30, 20), font_size=11, color="black")
+    plotter.add_axes(color="black", viewport=(0.0, 0.06, 0.14, 0.28))
     plotter.view_vector(VIEW, viewup=(0.0, 0.0, 1.0))
-    # Leaves room for the scalar bar.
-    plotter.camera.SetWindowCenter(0.12, 0.0)
+    frame(plotter)
     plotter.screenshot(str(picture))
     plotter.close()
+
+
+def frame(plotter):
+    """Zooms and shifts the view so that what is drawn fills ROOM, left of the scalar bar."""
+    renderer = plotter.renderer
+    seen = []
+    for corner in product(*np.reshape(plotter.bounds, (3, 2))):
+        renderer.SetWorldPoint(*corner, 1.0)
+        renderer.WorldToView()
+        seen.append(renderer.GetViewPoint()[:2])
+    low, high = np.min(seen, axis=0), np.max(seen, axis=0)
+    room = np.array(ROOM)
+    zoom = ((room[:, 1] - room[:, 0]) / (high - low)).min()
+    plotter.camera.zoom(zoom)
+    shift = 0.5 * zoom * (low + high) - room.mean(axis=1)
+    plotter.camera.SetWindowCenter(*shift)
 
 
 def main():

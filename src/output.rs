@@ -43,11 +43,35 @@ impl Output {
         self.folder.join(name)
     }
 
+    /// Removes what [`Output::write_step`] has written in another run, so that the folder never
+    /// holds steps of two runs.
+    fn remove_former(&self) -> Result<(), Defect> {
+        let remove = || -> std::io::Result<()> {
+            let entries = std::fs::read_dir(&self.folder)?;
+            let names = entries.map(|entry| entry.map(|entry| entry.file_name()));
+            let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
+            names.retain(|name| name.to_str().is_some_and(is_result));
+            // Collections first, so that none ever lists a grid that is gone.
+            names.sort_by_key(|name| !name.as_encoded_bytes().ends_with(b".pvd"));
+            names.iter().try_for_each(|name| std::fs::remove_file(self.folder.join(name)))
+        };
+        remove().map_err(|error| {
+            Defect::new(
+                self.folder.display().to_string(),
+                format!("the results of a former run cannot be removed: {error}"),
+                "remove them, or name another folder with --out DIR",
+            )
+        })
+    }
+
     /// Writes one load step; ParaView's time is its number.
     ///
     /// # Errors
     /// If a file cannot be written.
     pub fn write_step(&mut self, system: &System<'_>, solution: &Solution) -> Result<(), Defect> {
+        if self.rock.is_empty() {
+            self.remove_former()?;
+        }
         let number = self.rock.len() + 1;
         let (rock, fractures) = (
             format!("rock_{number:04}.vtu"),
@@ -60,6 +84,19 @@ impl Output {
         write_pvd(&self.path("rock.pvd"), &self.rock)?;
         write_pvd(&self.path("fractures.pvd"), &self.fractures)
     }
+}
+
+/// Whether [`Output::write_step`] writes files of this name.
+fn is_result(name: &str) -> bool {
+    let of_kind = |kind: &str| {
+        let Some(rest) = name.strip_prefix(kind) else {
+            return false;
+        };
+        let number = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(".vtu"));
+        let is_number = |text: &str| text.len() >= 4 && text.bytes().all(|byte| byte.is_ascii_digit());
+        rest == ".pvd" || number.is_some_and(is_number)
+    };
+    of_kind("rock") || of_kind("fractures")
 }
 
 /// The rock, with one copy of a node for each of its sectors.

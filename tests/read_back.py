@@ -10,7 +10,8 @@ Prints to standard output:
 
     STEP = {"time", "file", "number_of_points", "number_of_cells", "cell_types": {NAME: count},
             "min_cell_measure", "total_measure", "duplicate_points",
-            "point_data": {NAME: ARRAY}, "cell_data": {NAME: ARRAY}, "fractures": {ID: FRACTURE}}
+            "point_data": {NAME: ARRAY}, "cell_data": {NAME: ARRAY}, "fractures": {ID: FRACTURE},
+            "walls": {"largest_jump", "largest_mismatch"}}
     ARRAY = {"components", "min": [...], "max": [...], "mean": [...], "any_nan", "any_infinite"}
     FRACTURE = {"facets", "area", "aperture": RANGE, "normal_traction": RANGE, "slip_max",
                 "open_area", "stuck_area", "slipping_area", "below_cutoff_area"}
@@ -19,7 +20,9 @@ Prints to standard output:
 The measure of a cell is its volume or its area; the volume of a tetrahedron is negative when its
 nodes run the wrong way round. Duplicate points are those beyond the first at bitwise equal
 coordinates. "fractures" is there when the cells carry an array `fracture`. The mean of an ARRAY is
-over its values, that of a RANGE over the area. What is not a finite number is null.
+over its values, that of a RANGE over the area. What is not a finite number is null. "walls" is
+there in the fractures' steps: it compares `jump` with the displacements of the two cells at each
+facet, plus side (where `normal` points) less minus side.
 
 Exit status 1, with the reason on standard error, when VTK complains or a file does not fit together.
 """
@@ -260,14 +263,61 @@ def describe_grid(grid, path):
     return described
 
 
-def describe_collection(path, complaints):
-    steps = []
-    for time, file in read_collection(path):
-        grid_path = path.parent / file
-        described = describe_grid(read_grid(grid_path, complaints), grid_path)
-        complaints.raise_any(grid_path)
-        steps.append({"time": time, "file": file, **described})
-    return {"steps": steps}
+def faces_of(cells, numbers):
+    """Cells by the place of a face: {three numbers, ascending: [cell, ...]}."""
+    faces = {}
+    tetrahedra = np.flatnonzero(np.isin(cells.types, TETRAHEDRA))
+    placed = numbers[cells.corners(tetrahedra, 4)]
+    for left_out in range(4):
+        for cell, face in zip(tetrahedra, np.sort(np.delete(placed, left_out, axis=1), axis=1)):
+            faces.setdefault(tuple(face), []).append(cell)
+    return faces
+
+
+def compare_walls(rock, fractures, path):
+    """The field `jump` against what the rock does on both sides of each facet."""
+    rock_cells, facets = Cells(rock, path), Cells(fractures, path)
+    count = len(rock_cells.points)
+    places = np.concatenate([rock_cells.points, facets.points])
+    numbers = np.unique(places, axis=0, return_inverse=True)[1].reshape(-1)
+    faces = faces_of(rock_cells, numbers[:count])
+    moved = vtk_to_numpy(rock.GetPointData().GetArray("displacement"))
+    jumps = vtk_to_numpy(fractures.GetPointData().GetArray("jump"))
+    normals = vtk_to_numpy(fractures.GetCellData().GetArray("normal"))
+    largest = mismatch = 0.0
+    for facet, corners in enumerate(facets.corners(np.full(len(facets.types), True), 3)):
+        own = numbers[count:][corners]
+        sides = faces.get(tuple(np.sort(own)), [])
+        if len(sides) != 2:
+            raise Broken(f"{path}: facet {facet} lies between {len(sides)} cells")
+        walls = {}
+        for cell in sides:
+            nodes = rock_cells.corners(np.array([cell]), 4)[0]
+            away = rock_cells.points[nodes].mean(axis=0) - facets.points[corners[0]]
+            by_place = dict(zip(numbers[nodes], moved[nodes]))
+            walls[away @ normals[facet] > 0] = np.array([by_place[place] for place in own])
+        if len(walls) != 2:
+            raise Broken(f"{path}: both cells at facet {facet} lie on one side")
+        error = np.abs(jumps[corners] - (walls[True] - walls[False])).max()
+        mismatch, largest = max(mismatch, error), max(largest, np.abs(jumps[corners]).max())
+    return {"largest_jump": finite(largest), "largest_mismatch": finite(mismatch)}
+
+
+def describe_collections(folder, complaints):
+    """Both collections, step by step; the fractures are compared with the rock of the same time."""
+    found, grids = {}, {}
+    for name in ("rock", "fractures"):
+        steps = []
+        for time, file in read_collection(folder / f"{name}.pvd"):
+            path = folder / file
+            grid = grids[name, time] = read_grid(path, complaints)
+            described = describe_grid(grid, path)
+            if name == "fractures" and grid.GetNumberOfCells():
+                described["walls"] = compare_walls(grids["rock", time], grid, path)
+            complaints.raise_any(path)
+            steps.append({"time": time, "file": file, **described})
+        found[name] = {"steps": steps}
+    return found
 
 
 def main(arguments):
@@ -276,10 +326,7 @@ def main(arguments):
         return 2
     complaints = Complaints()
     try:
-        found = {
-            name: describe_collection(Path(arguments[0]) / f"{name}.pvd", complaints)
-            for name in ("rock", "fractures")
-        }
+        found = describe_collections(Path(arguments[0]), complaints)
     except Broken as broken:
         print(broken, file=sys.stderr)
         return 1

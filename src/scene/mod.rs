@@ -98,12 +98,12 @@ impl Scene {
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Vec<Defect>> {
         let source = Source::new(name, text);
         let table = source.parse();
-        let scene = {
+        let scene = table.as_ref().and_then(|table| {
             let root = Section::new(&source, table.get_ref(), String::new(), 0..0);
             let scene = read_scene(&source, &root, folder);
             root.finish();
             scene
-        };
+        });
         let defects = source.into_defects();
         match scene {
             Some(scene) if defects.is_empty() => Ok(scene),

@@ -79,15 +79,17 @@ impl<'a> Source<'a> {
         self.defects.into_inner()
     }
 
-    /// The whole file as a table; syntax errors are reported and skipped.
-    pub(super) fn parse(&self) -> Spanned<DeTable<'a>> {
+    /// The whole file as a table. With a syntax error there is none: whatever stands behind the
+    /// error may have got lost or into another section, and would be reported for nothing.
+    pub(super) fn parse(&self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
+        let is_sound = errors.is_empty();
         for error in errors {
             let at = error.span().unwrap_or(0..0);
             let remedy = "correct the TOML syntax of this line (key = value, [section], \"text\")";
             self.report(&at, error.message().to_owned(), remedy.into());
         }
-        table
+        is_sound.then_some(table)
     }
 }
 

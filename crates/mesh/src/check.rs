@@ -180,53 +180,53 @@ pub(crate) fn surfaces(
     };
     let mut defects = Vec::new();
     let mut taken = vec![NONE; adjacency.face_count()];
-    for group in 0..draft.groups.len() {
+    let matches = match_facets(draft, adjacency);
+    for (group, role) in roles.iter().enumerate() {
         if draft.groups[group].dimension != 2 {
             continue;
         }
-        match roles[group] {
-            SurfaceRole::Fracture => fracture(
-                draft,
-                adjacency,
-                group,
-                &mut taken,
-                &mut surfaces,
-                &mut defects,
-            ),
-            SurfaceRole::Boundary => boundary(draft, adjacency, group, &mut surfaces, &mut defects),
+        let facets = facets_of(draft, &matches, group);
+        match role {
+            SurfaceRole::Fracture => {
+                fracture(draft, group, facets, &mut taken, &mut surfaces, &mut defects);
+            }
+            SurfaceRole::Boundary => boundary(draft, group, facets, &mut surfaces, &mut defects),
             SurfaceRole::Unused => {}
         }
     }
     (surfaces, defects)
 }
 
-/// Facets of a group and the cell faces at each.
+/// The facets of each set of groups, with the cell faces at each: none, one or two.
+type Matches = Vec<Vec<(u64, Vec<u32>)>>;
+
+fn match_facets(draft: &Draft, adjacency: &Adjacency) -> Matches {
+    let facets = &draft.facets;
+    let mut matches: Matches = vec![Vec::new(); draft.group_sets.len()];
+    for facet in 0..facets.elements.len() {
+        let count = facets.elements.shapes[facet].corner_count();
+        let corners = &facets.elements.nodes_of(facet)[..count];
+        let faces = adjacency.faces_at(corners).collect();
+        matches[facets.group_set[facet] as usize].push((facets.tags[facet], faces));
+    }
+    matches
+}
+
 fn facets_of<'a>(
     draft: &'a Draft,
-    adjacency: &'a Adjacency,
+    matches: &'a Matches,
     group: usize,
-) -> impl Iterator<Item = (u64, Vec<u32>)> + 'a {
-    let facets = &draft.facets;
-    let member: Vec<bool> = draft
-        .group_sets
-        .iter()
-        .map(|set| set.contains(&group))
-        .collect();
-    (0..facets.elements.len())
-        .filter(move |&facet| member[facets.group_set[facet] as usize])
-        .map(move |facet| {
-            let count = facets.elements.shapes[facet].corner_count();
-            let corners = &facets.elements.nodes_of(facet)[..count];
-            (facets.tags[facet], adjacency.faces_at(corners).collect())
-        })
+) -> impl Iterator<Item = &'a (u64, Vec<u32>)> {
+    let sets = draft.group_sets.iter().zip(matches);
+    sets.filter(move |(set, _)| set.contains(&group)).flat_map(|(_, facets)| facets)
 }
 
 /// A facet that two fractures share belongs to the first; one that a fracture lists twice is a
 /// defect.
-fn fracture(
+fn fracture<'a>(
     draft: &Draft,
-    adjacency: &Adjacency,
     group: usize,
+    facets: impl Iterator<Item = &'a (u64, Vec<u32>)>,
     taken: &mut [u32],
     surfaces: &mut Surfaces,
     defects: &mut Vec<Defect>,
@@ -234,7 +234,7 @@ fn fracture(
     let number = surfaces.fractures.len() as u32;
     surfaces.fractures.push(group);
     let (mut loose, mut outer, mut double) = (Vec::new(), Vec::new(), Vec::new());
-    for (tag, faces) in facets_of(draft, adjacency, group) {
+    for &(tag, ref faces) in facets {
         match faces[..] {
             [] => loose.push(tag),
             [_] => outer.push(tag),
@@ -286,17 +286,17 @@ fn fracture(
     );
 }
 
-fn boundary(
+fn boundary<'a>(
     draft: &Draft,
-    adjacency: &Adjacency,
     group: usize,
+    facets: impl Iterator<Item = &'a (u64, Vec<u32>)>,
     surfaces: &mut Surfaces,
     defects: &mut Vec<Defect>,
 ) {
     let (mut loose, mut inner, mut double) = (Vec::new(), Vec::new(), Vec::new());
     let mut faces_seen = std::collections::HashSet::new();
     let mut faces_kept = Vec::new();
-    for (tag, faces) in facets_of(draft, adjacency, group) {
+    for &(tag, ref faces) in facets {
         match faces[..] {
             [] => loose.push(tag),
             [face] if faces_seen.insert(face) => faces_kept.push(face),

@@ -1,0 +1,10 @@
+//! The program as its users meet it: the real binary, its messages, its exit codes, its files.
+
+mod bad_input;
+mod fuzz_scene;
+mod harness;
+mod read_back;
+mod renumbered;
+mod results;
+mod talk;
+mod usage;

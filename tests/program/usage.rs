@@ -1,0 +1,49 @@
+//! Wrong ways to call the program.
+
+use crate::harness::{Run, kluft};
+
+fn refused(arguments: &[&str]) -> Run {
+    let run = kluft(arguments);
+    assert_eq!(run.code, Some(2), "{arguments:?}: {}", run.err);
+    assert_eq!(run.out, "", "{arguments:?}");
+    assert!(!run.err.contains("panicked"), "{}", run.err);
+    run
+}
+
+#[test]
+fn the_bare_program_shows_its_help() {
+    let run = refused(&[]);
+    for part in ["Usage: kluft", "run", "Examples:", "Exit status:"] {
+        assert!(run.err.contains(part), "{part}: {}", run.err);
+    }
+}
+
+#[test]
+fn wrong_arguments_are_named_with_the_usage() {
+    for (arguments, named) in [
+        (&["run"][..], "SCENE"),
+        (&["walk"], "walk"),
+        (&["run", "scene.toml", "--thread", "2"], "--threads"),
+        (&["run", "scene.toml", "--threads", "0"], "--threads"),
+        (&["run", "scene.toml", "--threads", "many"], "many"),
+        (&["run", "scene.toml", "--out"], "--out"),
+        (&["run", "scene.toml", "-q", "-v"], "cannot be used with"),
+    ] {
+        let run = refused(arguments);
+        assert!(run.err.contains(named), "{arguments:?}: {}", run.err);
+        assert!(run.err.contains("--help"), "{arguments:?}: {}", run.err);
+    }
+}
+
+#[test]
+fn help_and_version_are_answers() {
+    for (arguments, named) in [
+        (&["--help"][..], "Exit status:"),
+        (&["run", "--help"], "[fracture.joint]"),
+        (&["--version"], env!("CARGO_PKG_VERSION")),
+    ] {
+        let run = kluft(arguments);
+        assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+        assert!(run.out.contains(named), "{arguments:?}: {}", run.out);
+    }
+}
