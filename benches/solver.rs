@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
-use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Draft, Mesh, SurfaceRole};
 use lie_solver::{
@@ -17,7 +17,15 @@ const SIZES: [usize; 3] = [12, 20, 32];
 
 fn draft(cubes: usize) -> Draft {
     let on = |axis: usize, at: f64| move |x: [f64; 3]| x[axis] == at;
-    let places = [(0, 0.5), (1, 0.5), (2, 0.5), (0, 0.0), (1, 0.0), (2, 0.0), (2, 1.0)];
+    let places = [
+        (0, 0.5),
+        (1, 0.5),
+        (2, 0.5),
+        (0, 0.0),
+        (1, 0.0),
+        (2, 0.0),
+        (2, 1.0),
+    ];
     let contains: Vec<_> = places.iter().map(|&(axis, at)| on(axis, at)).collect();
     let names = ["x", "y", "z", "left", "front", "bottom", "top"];
     let patches: Vec<Patch<'_>> = names
@@ -71,6 +79,7 @@ fn problem(cubes: usize) -> Problem {
         gravity: DVec3::ZERO,
         initial_stress: None,
         steps: vec![1.0],
+        facet_quadrature: FacetQuadrature::Nodal,
         mesh,
     }
 }
@@ -92,7 +101,10 @@ fn stages(criterion: &mut Criterion) {
             bencher.iter(|| System::assemble(&problem, black_box(discretisation.clone())));
         });
         let system = System::assemble(&problem, discretisation);
-        let (pattern, points) = (&system.discretisation.pattern, &system.discretisation.points);
+        let (pattern, points) = (
+            &system.discretisation.pattern,
+            &system.discretisation.points,
+        );
         group.bench_function(BenchmarkId::new("order and analyse", cubes), |bencher| {
             bencher.iter(|| DirectSolver::new(&system.rock, pattern, points));
         });

@@ -1,12 +1,22 @@
 //! What the program decided, and what went wrong, in words.
 
-use lie_solver::{LinearFailure, Outcome, Problem, StepRecord, System};
+use lie_solver::{LinearFailure, Outcome, Problem, StepRecord, Support, System};
 
 use crate::summary::FractureSummary;
 
-/// A surface that the scene does not name.
-pub fn unused_surface(name: &str) -> String {
-    format!("surface `{name}` is not named in the scene: free outside, welded inside")
+/// Surfaces that the scene does not name, inside the rock and outside.
+pub fn unused_surfaces(inside: &[&str], outside: &[&str]) -> Vec<String> {
+    let line = |names: &[&str], what: &str| {
+        (!names.is_empty()).then(|| format!("{}: not named in the scene, {what}", names.join(", ")))
+    };
+    let lines = [
+        line(
+            inside,
+            "so welded (name it under [fracture] to let it move)",
+        ),
+        line(outside, "so free"),
+    ];
+    lines.into_iter().flatten().collect()
 }
 
 /// How much model a problem needs.
@@ -32,6 +42,9 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
             ));
         }
     }
+    if nothing_acts(problem) {
+        lines.push("nothing acts: no load, no pressure, no prescribed displacement".into());
+    }
     if problem.steps.len() > 1 {
         let why = "no law has friction: the end state does not depend on the load steps";
         lines.push(why.into());
@@ -45,6 +58,25 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
         }
     }
     lines
+}
+
+fn nothing_acts(problem: &Problem) -> bool {
+    let moves =
+        |components: &[Option<f64>; 3]| components.iter().flatten().any(|value| *value != 0.0);
+    let loaded = problem.conditions.iter().any(|condition| {
+        let pushed = matches!(condition.support, Some(Support::Displacement(d)) if moves(&d));
+        condition.load.is_some() || pushed
+    });
+    let pressed = problem
+        .fractures
+        .iter()
+        .any(|fracture| fracture.fluid_pressure != 0.0);
+    let fixed = problem
+        .fixed_points
+        .iter()
+        .any(|fixed| moves(&fixed.displacement));
+    let body = problem.gravity != glam::DVec3::ZERO || problem.initial_stress.is_some();
+    !(loaded || pressed || fixed || body)
 }
 
 /// What the user should know of a result.
@@ -70,20 +102,21 @@ pub fn not_converged(
     record: &StepRecord,
 ) -> String {
     let count = record.iterations.len();
-    let place = |point: Option<usize>| {
-        point.map_or("nowhere in particular".into(), |point| {
-            facet_place(problem, system, point)
+    let at = |point: Option<usize>| {
+        point.map_or(String::new(), |point| {
+            format!(" at {}", facet_place(problem, system, point))
         })
     };
     let why = match &record.outcome {
         Outcome::Converged => "nothing went wrong".to_owned(),
         Outcome::OutOfIterations => format!(
-            "the tests do not hold after {count} iterations; the closure error is largest at {}",
-            place(record.worst_facet_point)
+            "the tests do not hold after {count} iterations; the closure error is largest{}",
+            at(record.worst_facet_point)
         ),
         Outcome::NotFinite(point) => format!(
-            "after {count} iterations a number is not finite, {}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
-            place(*point)
+            "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
+            count + 1,
+            at(*point)
         ),
         Outcome::Linear(failure) => linear_failure(problem, system, failure),
     };
@@ -92,11 +125,12 @@ pub fn not_converged(
 
 fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
     let facet_point = &system.discretisation.interface.points[point];
-    let node = problem.mesh.facets.elements.nodes[point] as usize;
+    let facet = facet_point.facet as usize;
+    let node = problem.mesh.facets.elements.nodes_of(facet)[0] as usize;
     let x = problem.mesh.nodes[node];
     let fracture = &problem.mesh.fractures[facet_point.fracture as usize];
     format!(
-        "fracture `{fracture}`, node {} ({:.4}, {:.4}, {:.4})",
+        "fracture `{fracture}`, facet at node {} ({:.4}, {:.4}, {:.4})",
         problem.mesh.node_tags[node], x.x, x.y, x.z
     )
 }

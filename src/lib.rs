@@ -80,12 +80,16 @@ fn prepare(
 ) -> Result<Problem, Failure> {
     let file = match &scene.mesh {
         MeshSource::File(file) => file.clone(),
-        MeshSource::Geometry(geometry, parameters) => {
+        MeshSource::Geometry {
+            geometry,
+            parameters,
+            order,
+        } => {
             let file = output.path("mesh.msh");
             let meshing = Meshing {
                 geometry,
                 parameters,
-                order: 1,
+                order: *order,
                 output: &file,
             };
             let (warnings, took) = report.stage("meshing (gmsh)", |_| mesh_geometry(&meshing));
@@ -120,13 +124,15 @@ fn build_problem(
 ) -> Result<Problem, Vec<lie_mesh::Defect>> {
     let inner = inner_surfaces(&draft);
     let roles = surface_roles(scene, &draft, |group| inner[group])?;
-    for (group, role) in draft.groups.iter().zip(&roles) {
-        if group.dimension == 2 && *role == SurfaceRole::Unused {
-            summary
-                .decisions
-                .push(decisions::unused_surface(&group.name));
-        }
-    }
+    let unused = |inside: bool| -> Vec<&str> {
+        let groups = draft.groups.iter().zip(&roles).zip(&inner);
+        let chosen = groups.filter(|((group, role), inner)| {
+            group.dimension == 2 && **role == SurfaceRole::Unused && **inner == inside
+        });
+        chosen.map(|((group, _), _)| group.name.as_str()).collect()
+    };
+    let lines = decisions::unused_surfaces(&unused(true), &unused(false));
+    summary.decisions.extend(lines);
     let binding = bind(scene, Mesh::build(draft, &roles)?)?;
     summary.decisions.extend(binding.decisions);
     let mesh = &binding.problem.mesh;
@@ -186,6 +192,7 @@ fn solve(
     for decision in &summary.decisions {
         report.entry("decided", decision);
     }
+    output.remove_former().map_err(|defect| vec![defect])?;
     let mut state = system.initial_state();
     for (number, &load) in problem.steps.iter().enumerate() {
         report.step(number + 1, problem.steps.len(), load);

@@ -45,7 +45,10 @@ impl Output {
 
     /// Removes what [`Output::write_step`] has written in another run, so that the folder never
     /// holds steps of two runs.
-    fn remove_former(&self) -> Result<(), Defect> {
+    ///
+    /// # Errors
+    /// If a file cannot be removed.
+    pub fn remove_former(&self) -> Result<(), Defect> {
         let remove = || -> std::io::Result<()> {
             let entries = std::fs::read_dir(&self.folder)?;
             let names = entries.map(|entry| entry.map(|entry| entry.file_name()));
@@ -53,7 +56,9 @@ impl Output {
             names.retain(|name| name.to_str().is_some_and(is_result));
             // Collections first, so that none ever lists a grid that is gone.
             names.sort_by_key(|name| !name.as_encoded_bytes().ends_with(b".pvd"));
-            names.iter().try_for_each(|name| std::fs::remove_file(self.folder.join(name)))
+            names
+                .iter()
+                .try_for_each(|name| std::fs::remove_file(self.folder.join(name)))
         };
         remove().map_err(|error| {
             Defect::new(
@@ -69,9 +74,6 @@ impl Output {
     /// # Errors
     /// If a file cannot be written.
     pub fn write_step(&mut self, system: &System<'_>, solution: &Solution) -> Result<(), Defect> {
-        if self.rock.is_empty() {
-            self.remove_former()?;
-        }
         let number = self.rock.len() + 1;
         let (rock, fractures) = (
             format!("rock_{number:04}.vtu"),
@@ -92,8 +94,11 @@ fn is_result(name: &str) -> bool {
         let Some(rest) = name.strip_prefix(kind) else {
             return false;
         };
-        let number = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(".vtu"));
-        let is_number = |text: &str| text.len() >= 4 && text.bytes().all(|byte| byte.is_ascii_digit());
+        let number = rest
+            .strip_prefix('_')
+            .and_then(|rest| rest.strip_suffix(".vtu"));
+        let is_number =
+            |text: &str| text.len() >= 4 && text.bytes().all(|byte| byte.is_ascii_digit());
         rest == ".pvd" || number.is_some_and(is_number)
     };
     of_kind("rock") || of_kind("fractures")
@@ -126,7 +131,7 @@ fn rock_grid(system: &System<'_>, solution: &Solution) -> Grid {
 fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
     let mesh = &system.problem.mesh;
     let elements = &mesh.facets.elements;
-    let results = &solution.facet_points;
+    let results = &solution.facet_points[..elements.nodes.len()];
     let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
         results.iter().flat_map(move |result| of(result).to_array())
     };

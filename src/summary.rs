@@ -197,7 +197,8 @@ fn fracture_summary(
     let weights = || own.iter().map(|&i| interface.points[i].area);
     let area_where = |holds: &dyn Fn(&lie_solver::FacetResult) -> bool| -> f64 {
         let chosen = results().zip(weights()).filter(|(result, _)| holds(result));
-        chosen.map(|(_, weight)| weight).sum()
+        // An empty sum of floats is -0.0.
+        chosen.fold(0.0, |sum, (_, weight)| sum + weight)
     };
     let area: f64 = weights().sum();
     let spread = |value: &dyn Fn(&lie_solver::FacetResult) -> f64| Spread {

@@ -1,7 +1,7 @@
 //! Where a scene meets a mesh: names become groups, groups become parts of a problem.
 
 use glam::DVec3;
-use lie_core::Rock;
+use lie_core::{FacetQuadrature, Rock};
 use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
 use lie_solver::{Condition, FixedPoint, Fracture, Problem};
 
@@ -88,15 +88,17 @@ fn find_group(
     {
         return Ok(found);
     }
+    let wanted = kind(dimension);
+    let declare = format!(
+        "give the {wanted} a physical group: Physical {}(\"{name}\") = {{...}};",
+        capital(wanted)
+    );
     if let Some(other) = groups.iter().find(|group| group.name == name) {
-        let (found, wanted) = (kind(other.dimension), kind(dimension));
+        let found = kind(other.dimension);
         return Err(Defect::new(
             place,
             format!("`{name}` is a physical {found} of the mesh, not a physical {wanted}"),
-            format!(
-                "give the {wanted} a physical group: Physical {}(\"{name}\") = {{...}};",
-                capital(wanted)
-            ),
+            declare,
         ));
     }
     let known: Vec<&str> = groups
@@ -106,16 +108,12 @@ fn find_group(
         .collect();
     let remedy = match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("the mesh has no physical {}", kind(dimension)),
-        None => format!(
-            "physical {}s of the mesh: {}",
-            kind(dimension),
-            known.join(", ")
-        ),
+        None if known.is_empty() => format!("the mesh has none at all: {declare}"),
+        None => format!("physical {wanted}s of the mesh: {}", known.join(", ")),
     };
     Err(Defect::new(
         place,
-        format!("the mesh has no physical {} `{name}`", kind(dimension)),
+        format!("the mesh has no physical {wanted} `{name}`"),
         remedy,
     ))
 }
@@ -160,6 +158,7 @@ pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
             gravity: scene.gravity,
             initial_stress: scene.initial_stress,
             steps: scene.steps.clone(),
+            facet_quadrature: FacetQuadrature::Nodal,
             mesh,
         },
         decisions,

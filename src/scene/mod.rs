@@ -27,8 +27,15 @@ pub struct Named<T> {
 /// Where the mesh comes from.
 #[derive(Debug, Clone)]
 pub enum MeshSource {
-    /// A gmsh geometry and the values handed to it.
-    Geometry(PathBuf, Vec<(String, f64)>),
+    /// A gmsh geometry.
+    Geometry {
+        /// The .geo file.
+        geometry: PathBuf,
+        /// Values handed to gmsh.
+        parameters: Vec<(String, f64)>,
+        /// Order of the elements, 1 or 2.
+        order: u32,
+    },
     /// A mesh file.
     File(PathBuf),
 }
@@ -81,10 +88,14 @@ impl Scene {
     /// Every defect of the file, each with its line and a remedy.
     pub fn read(path: &Path) -> Result<Self, Vec<Defect>> {
         let text = std::fs::read_to_string(path).map_err(|error| {
+            let remedy = match error.kind() {
+                std::io::ErrorKind::InvalidData => "save the file as UTF-8 text",
+                _ => "give the path of a scene file, e.g. geometries/inclined-joint/scene.toml",
+            };
             vec![Defect::new(
                 path.display().to_string(),
                 format!("the scene cannot be read: {error}"),
-                "give the path of a scene file, e.g. geometries/inclined-joint/scene.toml",
+                remedy,
             )]
         })?;
         let folder = path.parent().unwrap_or(Path::new("."));
@@ -115,11 +126,11 @@ impl Scene {
 fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Option<Scene> {
     let named = |key: &'static str| root.named_sections(key).into_iter();
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    root.require("mesh", "a section: [mesh]");
+    root.require_section("mesh", "[mesh]");
     let mesh = root
         .section("mesh")
         .and_then(|section| read_mesh(section, folder));
-    root.require("rock", "a section: [rock.default]");
+    root.require_section("rock", "[rock.default]");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
     let fractures = named("fracture").filter_map(|(name, s)| entry(source, name, s, read_fracture));
@@ -161,25 +172,35 @@ fn entry<'a, 'i, T>(
 }
 
 fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
-    let geometry = section.text("geometry").map(|path| folder.join(path));
-    let file = section.text("file").map(|path| folder.join(path));
+    let geometry = read_path(&section, "geometry", folder);
+    let file = read_path(&section, "file", folder);
     let parameters = section.free_numbers("parameters");
-    if let Some(order) = section.number("order", Accept::Positive)
-        && order != 1.0
-    {
+    let mut order = section.number("order", Accept::Positive);
+    if let Some(wrong) = order.take_if(|order| *order != 1.0 && *order != 2.0) {
         section.refuse(
             "order",
-            format!("elements of order {order} are not supported"),
-            "write order = 1 (linear tetrahedra)",
+            format!("elements of order {wrong} are not supported"),
+            "write order = 1 (linear) or order = 2 (quadratic)",
         );
     }
     let mesh = match (geometry, file) {
-        (Some(geometry), None) => Some(MeshSource::Geometry(geometry, parameters)),
-        (None, Some(file)) if parameters.is_empty() => Some(MeshSource::File(file)),
+        (Some(geometry), None) => Some(MeshSource::Geometry {
+            geometry,
+            parameters,
+            order: if order == Some(2.0) { 2 } else { 1 },
+        }),
+        (None, Some(file)) if parameters.is_empty() && order.is_none() => {
+            Some(MeshSource::File(file))
+        }
         (None, Some(_)) => {
+            let key = if order.is_some() {
+                "order"
+            } else {
+                "parameters"
+            };
             section.refuse(
-                "parameters",
-                "`parameters` have no effect on a mesh file".into(),
+                key,
+                format!("`{key}` has no effect on a mesh file"),
                 "remove them, or give the geometry instead of the file",
             );
             None
@@ -199,6 +220,15 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
     };
     section.finish();
     mesh
+}
+
+fn read_path(section: &Section<'_, '_>, key: &'static str, folder: &Path) -> Option<PathBuf> {
+    let path = section.text(key)?;
+    if path.is_empty() {
+        let remedy = "name the file, relative to the folder of the scene";
+        section.refuse(key, format!("`{key}` is empty"), remedy);
+    }
+    Some(folder.join(path))
 }
 
 fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {

@@ -48,14 +48,20 @@ impl Accept {
 pub(super) struct Source<'a> {
     name: &'a str,
     text: &'a str,
-    defects: RefCell<Vec<Defect>>,
+    /// Position of each line break.
+    breaks: Vec<usize>,
+    /// Defects with their position in the text.
+    defects: RefCell<Vec<(usize, Defect)>>,
 }
 
 impl<'a> Source<'a> {
     pub(super) fn new(name: &'a str, text: &'a str) -> Self {
+        let bytes = text.bytes().enumerate();
+        let breaks = bytes.filter(|(_, byte)| *byte == b'\n');
         Self {
             name,
             text,
+            breaks: breaks.map(|(position, _)| position).collect(),
             defects: RefCell::default(),
         }
     }
@@ -63,7 +69,7 @@ impl<'a> Source<'a> {
     pub(super) fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
         self.defects
             .borrow_mut()
-            .push(Defect::new(self.place(at), problem, remedy));
+            .push((at.start, Defect::new(self.place(at), problem, remedy)));
     }
 
     pub(super) fn place(&self, at: &Range<usize>) -> String {
@@ -71,12 +77,14 @@ impl<'a> Source<'a> {
     }
 
     fn line(&self, position: usize) -> usize {
-        let before = &self.text.as_bytes()[..position.min(self.text.len())];
-        before.iter().filter(|&&byte| byte == b'\n').count() + 1
+        self.breaks.partition_point(|&end| end < position) + 1
     }
 
+    /// The defects in the order of the text.
     pub(super) fn into_defects(self) -> Vec<Defect> {
-        self.defects.into_inner()
+        let mut defects = self.defects.into_inner();
+        defects.sort_by_key(|(position, _)| *position);
+        defects.into_iter().map(|(_, defect)| defect).collect()
     }
 
     /// The whole file as a table. With a syntax error there is none: whatever stands behind the
@@ -84,10 +92,14 @@ impl<'a> Source<'a> {
     pub(super) fn parse(&self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         let is_sound = errors.is_empty();
+        let mut lines = BTreeSet::new();
         for error in errors {
             let at = error.span().unwrap_or(0..0);
-            let remedy = "correct the TOML syntax of this line (key = value, [section], \"text\")";
-            self.report(&at, error.message().to_owned(), remedy.into());
+            // What follows the first error of a line is mostly its consequence.
+            if lines.insert(self.line(at.start)) {
+                let remedy = "correct the TOML syntax of this line (key = value, [section], \"text\"), or close the bracket that is open above it";
+                self.report(&at, error.message().to_owned(), remedy.into());
+            }
         }
         is_sound.then_some(table)
     }
@@ -134,7 +146,7 @@ impl<'a, 'i> Section<'a, 'i> {
         let found = value.get_ref().type_str();
         self.report(
             &value.span(),
-            format!("`{key}` in {} is of type {found}", self.title),
+            format!("`{key}` in {} is of type {found}", self.name()),
             format!("write {wanted}"),
         );
     }
@@ -155,9 +167,29 @@ impl<'a, 'i> Section<'a, 'i> {
         if !self.has(key) && self.misspelt(key).is_none() {
             self.report(
                 &self.at,
-                format!("`{key}` is missing in {}", self.title),
+                format!("`{key}` is missing in {}", self.name()),
                 format!("add `{key} = {example}`"),
             );
+        }
+    }
+
+    /// Reports a section that must be there and is not.
+    pub(super) fn require_section(&self, key: &'static str, example: &str) {
+        if !self.has(key) && self.misspelt(key).is_none() {
+            self.report(
+                &self.at,
+                format!("there is no [{key}] in {}", self.name()),
+                format!("add a section {example}"),
+            );
+        }
+    }
+
+    /// How messages call it, the file itself included.
+    fn name(&self) -> &str {
+        if self.title.is_empty() {
+            "the scene"
+        } else {
+            &self.title
         }
     }
 
@@ -183,7 +215,7 @@ impl<'a, 'i> Section<'a, 'i> {
         if let Some(refusal) = accept.refusal(number) {
             self.report(
                 &value.span(),
-                format!("`{key}` = {number} in {}", self.title),
+                format!("`{key}` = {number} in {}", self.name()),
                 format!("{key} {refusal}"),
             );
             return None;
@@ -233,7 +265,7 @@ impl<'a, 'i> Section<'a, 'i> {
         if vector.is_none() {
             self.refuse(
                 key,
-                format!("`{key}` in {} has not three components", self.title),
+                format!("`{key}` in {} has not three components", self.name()),
                 "write [x, y, z]",
             );
         }
@@ -334,14 +366,9 @@ impl<'a, 'i> Section<'a, 'i> {
                 },
                 |near| format!("did you mean `{near}`?"),
             );
-            let title = if self.title.is_empty() {
-                "the scene"
-            } else {
-                &self.title
-            };
             self.report(
                 &name.span(),
-                format!("unknown key `{key}` in {title}"),
+                format!("unknown key `{key}` in {}", self.name()),
                 remedy,
             );
         }

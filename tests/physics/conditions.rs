@@ -162,8 +162,7 @@ fn gravity_rests_on_the_joint() {
     problem.rocks[0].density = 2700.0;
     problem.gravity = DVec3::new(0.0, 0.0, -9.81);
     let solution = scenes::solve(&problem);
-    let system_points = lie_solver::Points::of(&problem.mesh);
-    let interface = lie_solver::Interface::of(&problem, &system_points);
+    let interface = Discretisation::of(&problem).expect("supported").interface;
     let force: f64 = std::iter::zip(&interface.points, &solution.facet_points)
         .map(|(point, result)| point.area * result.normal_traction)
         .sum();

@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod conditions;
+mod families;
 mod junctions;
 mod newton;
 mod oracles;

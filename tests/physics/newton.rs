@@ -1,5 +1,8 @@
 //! Newton's counts over loads and cutoffs, beside plain Newton's.
-#![allow(clippy::print_stdout, reason = "the table of counts is what the test is read for")]
+#![allow(
+    clippy::print_stdout,
+    reason = "the table of counts is what the test is read for"
+)]
 
 use glam::DVec3;
 use lie_core::ClosureKind;

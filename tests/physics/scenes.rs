@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
-use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
 use lie_io::{Meshing, load_msh, mesh_geometry};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Draft, Mesh, SurfaceRole, TaggedElements};
@@ -85,6 +85,7 @@ pub fn problem(mesh: Mesh, fracture: Fracture) -> Problem {
         gravity: DVec3::ZERO,
         initial_stress: None,
         steps: vec![1.0],
+        facet_quadrature: FacetQuadrature::Nodal,
     }
 }
 
@@ -192,11 +193,12 @@ fn permutation(count: usize, seed: u64) -> Vec<usize> {
     order
 }
 
-/// Tractions of a uniform stress on all six faces.
+/// Tractions of a uniform stress on all six faces, which must be flat.
 pub fn load_with_stress(problem: &mut Problem, stress: DMat3) {
-    for (face, name) in FACES.iter().enumerate() {
-        let mut normal = DVec3::ZERO;
-        normal[face / 2] = if face % 2 == 1 { 1.0 } else { -1.0 };
+    for name in FACES {
+        let boundary = &problem.mesh.boundaries[boundary(problem, name)];
+        let corners = problem.mesh.corners(&boundary.elements, 0);
+        let normal = lie_mesh::facet_area_vector(&corners).normalize();
         load(problem, name, stress * normal);
     }
 }

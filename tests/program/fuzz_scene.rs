@@ -12,10 +12,46 @@ use crate::harness::root;
 const EVERY_KEY: &str = include_str!("every_key.toml");
 
 const WORDS: [&str; 40] = [
-    "nan", "-nan", "inf", "-inf", "1e999", "-1e-999", "-0", "-0.0", "0x7fffffffffffffff", "0xffffffffffffffffff",
-    "0o17", "0b1", "9223372036854775807", "-9223372036854775808", "99999999999999999999999999", "1_000", "1e", "1__0",
-    "true", "\"\"", "''", "\"\"\"", "\"\\u0000\"", "[]", "{}", "[[]]", "[{}]", "{ x = {} }", "1979-05-27T07:32:00Z",
-    "[nan]", "[0, 0, 0, 0]", "[\"a\", 1]", "x.y.z", "Größe", "\u{200b}", "\u{feff}", "🪨", "\"🪨\"", "\r", "\0",
+    "nan",
+    "-nan",
+    "inf",
+    "-inf",
+    "1e999",
+    "-1e-999",
+    "-0",
+    "-0.0",
+    "0x7fffffffffffffff",
+    "0xffffffffffffffffff",
+    "0o17",
+    "0b1",
+    "9223372036854775807",
+    "-9223372036854775808",
+    "99999999999999999999999999",
+    "1_000",
+    "1e",
+    "1__0",
+    "true",
+    "\"\"",
+    "''",
+    "\"\"\"",
+    "\"\\u0000\"",
+    "[]",
+    "{}",
+    "[[]]",
+    "[{}]",
+    "{ x = {} }",
+    "1979-05-27T07:32:00Z",
+    "[nan]",
+    "[0, 0, 0, 0]",
+    "[\"a\", 1]",
+    "x.y.z",
+    "Größe",
+    "\u{200b}",
+    "\u{feff}",
+    "🪨",
+    "\"🪨\"",
+    "\r",
+    "\0",
 ];
 
 /// The generator xorshift64*: the same scenes on every machine.
@@ -33,8 +69,8 @@ impl Random {
         (self.next() % end.max(1) as u64) as usize
     }
 
-    fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
-        &items[self.below(items.len())]
+    fn pick<T: Clone>(&mut self, items: &[T]) -> T {
+        items[self.below(items.len())].clone()
     }
 }
 
@@ -43,7 +79,9 @@ fn seeds() -> Vec<String> {
     let scenes = folders.map(|folder| folder.expect("an entry").path().join("scene.toml"));
     let mut scenes: Vec<_> = scenes.filter(|scene| scene.is_file()).collect();
     scenes.sort();
-    let texts = scenes.iter().map(|scene| std::fs::read_to_string(scene).expect("a scene"));
+    let texts = scenes
+        .iter()
+        .map(|scene| std::fs::read_to_string(scene).expect("a scene"));
     texts.chain([EVERY_KEY.to_owned()]).collect()
 }
 
@@ -63,23 +101,27 @@ fn words(text: &str) -> Vec<std::ops::Range<usize>> {
     let start = text.as_ptr() as usize;
     let ends = |c: char| c.is_whitespace() || "=[]{},".contains(c);
     let words = text.split(ends).filter(|word| !word.is_empty());
-    words.map(|word| word.as_ptr() as usize - start..word.as_ptr() as usize - start + word.len()).collect()
+    words
+        .map(|word| word.as_ptr() as usize - start..word.as_ptr() as usize - start + word.len())
+        .collect()
 }
 
 fn replace_word(text: &mut String, random: &mut Random) {
     let words = words(text);
     if !words.is_empty() {
-        let word = random.pick(&words).clone();
-        text.replace_range(word, *random.pick(&WORDS));
+        text.replace_range(random.pick(&words), random.pick(&WORDS));
     }
 }
 
 fn swap_words(text: &mut String, random: &mut Random) {
     let words = words(text);
     if !words.is_empty() {
-        let (a, b) = (random.pick(&words).clone(), random.pick(&words).clone());
+        let (a, b) = (random.pick(&words), random.pick(&words));
         let (first, second) = if a.start <= b.start { (a, b) } else { (b, a) };
-        let (one, two) = (text[first.clone()].to_owned(), text[second.clone()].to_owned());
+        let (one, two) = (
+            text[first.clone()].to_owned(),
+            text[second.clone()].to_owned(),
+        );
         text.replace_range(second, &one);
         text.replace_range(first, &two);
     }
@@ -91,7 +133,7 @@ fn move_line(text: &str, random: &mut Random) -> String {
     if lines.is_empty() {
         return String::new();
     }
-    let line = *random.pick(&lines);
+    let line = random.pick(&lines);
     match random.below(3) {
         0 => drop(lines.remove(random.below(lines.len()))),
         1 => lines.insert(random.below(lines.len()), line),
@@ -116,13 +158,13 @@ fn overgrow(text: &mut String, random: &mut Random) {
     };
     let words = words(text);
     match random.below(2) {
-        0 if !words.is_empty() => text.replace_range(random.pick(&words).clone(), &growth),
+        0 if !words.is_empty() => text.replace_range(random.pick(&words), &growth),
         _ => text.push_str(&format!("\n{growth}\n")),
     }
 }
 
 fn mutated(seeds: &[String], random: &mut Random) -> String {
-    let mut text = random.pick(seeds).clone();
+    let mut text = random.pick(seeds);
     for _ in 0..1 + random.below(3) {
         match random.below(16) {
             0..3 => text = flip_bytes(&text, random),
@@ -151,7 +193,10 @@ fn judge(text: &str) -> bool {
             assert!(!defects.is_empty(), "refused without a reason");
             for defect in defects {
                 let parts = [&defect.place, &defect.problem, &defect.remedy];
-                assert!(parts.iter().all(|part| !part.trim().is_empty()), "{defect:?}");
+                assert!(
+                    parts.iter().all(|part| !part.trim().is_empty()),
+                    "{defect:?}"
+                );
                 assert!(defect.place.starts_with("scene.toml:"), "{defect:?}");
             }
             false
@@ -161,7 +206,9 @@ fn judge(text: &str) -> bool {
 
 #[test]
 fn damaged_scenes_give_defects_or_scenes() {
-    let runs = std::env::var("KLUFT_FUZZ_RUNS").ok().and_then(|runs| runs.parse().ok());
+    let runs = std::env::var("KLUFT_FUZZ_RUNS")
+        .ok()
+        .and_then(|runs| runs.parse().ok());
     let runs: usize = runs.unwrap_or(4000);
     let seeds = seeds();
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
@@ -177,8 +224,10 @@ fn damaged_scenes_give_defects_or_scenes() {
             }
         }
     }
-    eprintln!("{runs} scenes: {sound} sound, {} refused", runs - sound);
-    assert!(runs < 100 || (sound > 0 && sound < runs), "{sound} of {runs} were sound");
+    assert!(
+        runs < 100 || (sound > 0 && sound < runs),
+        "{sound} of {runs} were sound"
+    );
 }
 
 #[test]

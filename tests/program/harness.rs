@@ -83,7 +83,12 @@ impl Workshop {
     /// Runs the scene into the folder `out` of the workshop.
     pub fn run(&self, out: &str, flags: &[&str]) -> Run {
         let (scene, out) = (self.scene(), self.path(out));
-        let mut arguments = vec!["run".as_ref(), scene.as_os_str(), "--out".as_ref(), out.as_os_str()];
+        let mut arguments = vec![
+            "run".as_ref(),
+            scene.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ];
         arguments.extend(flags.iter().map(OsStr::new));
         kluft(&arguments)
     }
@@ -100,7 +105,11 @@ impl Workshop {
 /// `text` with every edit made; what an edit replaces must be there exactly once.
 pub fn edited(text: &str, edits: &[(&str, &str)]) -> String {
     edits.iter().fold(text.to_owned(), |text, (from, to)| {
-        assert_eq!(text.matches(from).count(), 1, "occurrences of {from:?} in\n{text}");
+        assert_eq!(
+            text.matches(from).count(),
+            1,
+            "occurrences of {from:?} in\n{text}"
+        );
         text.replacen(from, to, 1)
     })
 }

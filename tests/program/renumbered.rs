@@ -24,7 +24,11 @@ fn text_mesh(workshop: &Workshop) -> String {
 fn section<'t>(text: &'t str, name: &str) -> (&'t str, Vec<&'t str>, &'t str) {
     let begin = text.find(&format!("${name}\n")).expect("the section") + name.len() + 2;
     let end = text.find(&format!("$End{name}\n")).expect("its end");
-    (&text[..begin], text[begin..end].lines().collect(), &text[end..])
+    (
+        &text[..begin],
+        text[begin..end].lines().collect(),
+        &text[end..],
+    )
 }
 
 /// The nodes of every block the other way round: other lines, the same tags.
@@ -33,7 +37,12 @@ fn reversed_nodes(text: &str) -> String {
     let mut kept: Vec<&str> = vec![lines[0]];
     let mut at = 1;
     while at < lines.len() {
-        let count: usize = lines[at].split(' ').nth(3).expect("a count").parse().expect("a number");
+        let count: usize = lines[at]
+            .split(' ')
+            .nth(3)
+            .expect("a count")
+            .parse()
+            .expect("a number");
         kept.push(lines[at]);
         kept.extend(lines[at + 1..][..count].iter().rev());
         kept.extend(lines[at + 1 + count..][..count].iter().rev());
@@ -45,19 +54,35 @@ fn reversed_nodes(text: &str) -> String {
 /// Other tags on the same nodes: `largest + 1 - tag`.
 fn renumbered_nodes(text: &str) -> String {
     let (before, lines, behind) = section(text, "Nodes");
-    let largest: u64 = lines[0].split(' ').nth(3).expect("a tag").parse().expect("a number");
+    let largest: u64 = lines[0]
+        .split(' ')
+        .nth(3)
+        .expect("a tag")
+        .parse()
+        .expect("a number");
     let other = |tag: &str| (largest + 1 - tag.parse::<u64>().expect("a tag")).to_string();
     let is_tag = |line: &&str| !line.contains(' ');
     let nodes: Vec<String> = lines
         .iter()
-        .map(|line| if is_tag(line) { other(line) } else { (*line).to_owned() })
+        .map(|line| {
+            if is_tag(line) {
+                other(line)
+            } else {
+                (*line).to_owned()
+            }
+        })
         .collect();
     let text = format!("{before}{}\n{behind}", nodes.join("\n"));
     let (before, lines, behind) = section(&text, "Elements");
     let mut elements = vec![lines[0].to_owned()];
     let mut at = 1;
     while at < lines.len() {
-        let count: usize = lines[at].split(' ').nth(3).expect("a count").parse().expect("a number");
+        let count: usize = lines[at]
+            .split(' ')
+            .nth(3)
+            .expect("a count")
+            .parse()
+            .expect("a number");
         elements.push(lines[at].to_owned());
         elements.extend(lines[at + 1..][..count].iter().map(|line| {
             let mut words = line.split_whitespace();

@@ -54,7 +54,14 @@ fn check(expected: &Expected) {
     let two = workshop.solve("two", &["--threads", "2"]);
     check_alike(&one, &two);
     let names: Vec<String> = files(&one).into_keys().collect();
-    let promised = ["fractures.pvd", "fractures_0001.vtu", "mesh.msh", "rock.pvd", "rock_0001.vtu", "summary.json"];
+    let promised = [
+        "fractures.pvd",
+        "fractures_0001.vtu",
+        "mesh.msh",
+        "rock.pvd",
+        "rock_0001.vtu",
+        "summary.json",
+    ];
     assert_eq!(names, promised, "files of a run with one step");
     let (found, said) = (read_back(&one), summary(&one));
     check_rock(&found["rock"]["steps"][0], &said, expected);
@@ -67,8 +74,13 @@ fn check_alike(one: &Path, two: &Path) {
     for files in [&mut ones, &mut twos] {
         files.remove("summary.json").expect("a summary");
     }
-    let differing = ones.iter().filter(|(name, content)| twos.get(*name) != Some(content));
-    assert_eq!(differing.map(|(name, _)| name).collect::<Vec<_>>(), Vec::<&String>::new());
+    let differing = ones
+        .iter()
+        .filter(|(name, content)| twos.get(*name) != Some(content));
+    assert_eq!(
+        differing.map(|(name, _)| name).collect::<Vec<_>>(),
+        Vec::<&String>::new()
+    );
     assert_eq!(ones.len(), twos.len());
     let timeless = |folder: &Path| {
         let mut summary = summary(folder);
@@ -79,19 +91,37 @@ fn check_alike(one: &Path, two: &Path) {
         summary
     };
     assert_eq!(timeless(one), timeless(two));
-    assert_eq!((&summary(one)["threads"], &summary(two)["threads"]), (&json!(1), &json!(2)));
+    assert_eq!(
+        (&summary(one)["threads"], &summary(two)["threads"]),
+        (&json!(1), &json!(2))
+    );
 }
 
 fn check_rock(found: &Value, said: &Value, expected: &Expected) {
-    let count = |value: &Value| value.as_u64().unwrap_or_else(|| panic!("{value} is no count"));
+    let count = |value: &Value| {
+        value
+            .as_u64()
+            .unwrap_or_else(|| panic!("{value} is no count"))
+    };
     let copies = count(&said["unknowns"]["jump"]) / 3;
     assert!(copies > 0);
-    assert_eq!(count(&found["number_of_points"]), count(&said["mesh"]["nodes"]) + copies);
+    assert_eq!(
+        count(&found["number_of_points"]),
+        count(&said["mesh"]["nodes"]) + copies
+    );
     assert_eq!(count(&found["duplicate_points"]), copies);
     assert_eq!(found["number_of_cells"], said["mesh"]["cells"]);
-    assert_eq!(found["cell_types"], json!({ "tetra": said["mesh"]["cells"] }));
+    assert_eq!(
+        found["cell_types"],
+        json!({ "tetra": said["mesh"]["cells"] })
+    );
     assert!(number(&found["min_cell_measure"]) > 0.0);
-    close(&found["total_measure"], &json!(expected.volume), 1e-12, "volume");
+    close(
+        &found["total_measure"],
+        &json!(expected.volume),
+        1e-12,
+        "volume",
+    );
     check_finite(found, &["displacement"], &["rock", "stress"]);
     if let Some(stress) = expected.stress {
         check_stress(&found["cell_data"]["stress"], stress);
@@ -99,11 +129,16 @@ fn check_rock(found: &Value, said: &Value, expected: &Expected) {
 }
 
 fn check_stress(found: &Value, expected: [f64; 6]) {
-    let scale = expected.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let scale = expected
+        .iter()
+        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
     for bound in ["min", "max"] {
         for (component, wanted) in expected.iter().enumerate() {
             let error = (number(&found[bound][component]) - wanted).abs() / scale;
-            assert!(error < 1e-8, "stress {component}: {bound} off by {error:e} of the largest");
+            assert!(
+                error < 1e-8,
+                "stress {component}: {bound} off by {error:e} of the largest"
+            );
         }
     }
 }
@@ -114,23 +149,46 @@ fn check_finite(found: &Value, points: &[&str], cells: &[&str]) {
         let arrays = found[kind].as_object().expect("arrays");
         assert_eq!(arrays.keys().collect::<Vec<_>>(), names, "{kind}");
         for (name, array) in arrays {
-            assert_eq!((&array["any_nan"], &array["any_infinite"]), (&json!(false), &json!(false)), "{name}");
+            assert_eq!(
+                (&array["any_nan"], &array["any_infinite"]),
+                (&json!(false), &json!(false)),
+                "{name}"
+            );
         }
     }
 }
 
 fn check_fractures(found: &Value, said: &Value, folder: &Path) {
-    let points = ["aperture", "jump", "normal_traction", "opening", "slip", "state", "traction"];
+    let points = [
+        "aperture",
+        "jump",
+        "normal_traction",
+        "opening",
+        "slip",
+        "state",
+        "traction",
+    ];
     check_finite(found, &points, &["fracture", "normal"]);
     let names = names_in_order(folder, said);
-    assert_eq!(found["fractures"].as_object().expect("fractures").len(), names.len());
+    assert_eq!(
+        found["fractures"].as_object().expect("fractures").len(),
+        names.len()
+    );
     for (number, name) in names.iter().enumerate() {
-        check_fracture(&found["fractures"][number.to_string()], &said["fractures"][name], name);
+        check_fracture(
+            &found["fractures"][number.to_string()],
+            &said["fractures"][name],
+            name,
+        );
     }
     assert_eq!(found["number_of_cells"], said["mesh"]["fracture_facets"]);
     let walls = &found["walls"];
-    assert!(number(&walls["largest_jump"]) > 0.0);
-    assert_eq!(walls["largest_mismatch"], json!(0.0), "jump against the walls' displacements");
+    let (largest, mismatch) = (&walls["largest_jump"], &walls["largest_mismatch"]);
+    assert!(number(largest) > 0.0);
+    assert!(
+        number(mismatch) <= 1e-14 * number(largest),
+        "jump against the walls' displacements: {mismatch} of {largest}"
+    );
 }
 
 /// Names of the fractures as they stand in the file, which is the order of their ids.
@@ -139,7 +197,12 @@ fn names_in_order(folder: &Path, said: &Value) -> Vec<String> {
     let text = &text[text.find("\"fractures\": {").expect("the fractures")..];
     let names = said["fractures"].as_object().expect("fractures").keys();
     let by_place: BTreeMap<usize, String> = names
-        .map(|name| (text.find(&format!("\"{name}\": {{")).expect("the name"), name.clone()))
+        .map(|name| {
+            (
+                text.find(&format!("\"{name}\": {{")).expect("the name"),
+                name.clone(),
+            )
+        })
         .collect();
     by_place.into_values().collect()
 }
@@ -151,7 +214,12 @@ fn check_fracture(found: &Value, said: &Value, name: &str) {
     }
     for key in ["aperture", "normal_traction"] {
         for bound in ["min", "mean", "max"] {
-            close(&found[key][bound], &said[key][bound], 1e-12, &format!("{bound} {key} of {name}"));
+            close(
+                &found[key][bound],
+                &said[key][bound],
+                1e-12,
+                &format!("{bound} {key} of {name}"),
+            );
         }
     }
     assert!(number(&said["aperture"]["min"]) > 0.0, "walls of {name}");
@@ -159,11 +227,16 @@ fn check_fracture(found: &Value, said: &Value, name: &str) {
 }
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+    value
+        .as_f64()
+        .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 fn close(found: &Value, wanted: &Value, tolerance: f64, what: &str) {
     let (found, wanted) = (number(found), number(wanted));
     let scale = found.abs().max(wanted.abs());
-    assert!((found - wanted).abs() <= tolerance * scale, "{what}: {found} and {wanted}");
+    assert!(
+        (found - wanted).abs() <= tolerance * scale,
+        "{what}: {found} and {wanted}"
+    );
 }

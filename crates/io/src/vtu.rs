@@ -157,17 +157,26 @@ fn vtk_file(grid: &Grid) -> Result<VTKFile, vtkio::xml::Error> {
 }
 
 fn piece(grid: &Grid) -> UnstructuredGridPiece {
+    let mut connectivity = Vec::with_capacity(grid.nodes.len());
+    let mut offsets = Vec::with_capacity(grid.shapes.len());
+    for (cell, &shape) in grid.shapes.iter().enumerate() {
+        let nodes = &grid.nodes[grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize];
+        match cell_of(shape).1 {
+            [] => connectivity.extend(nodes.iter().map(|&node| u64::from(node))),
+            order => {
+                connectivity.extend(order.iter().map(|&local| u64::from(nodes[local as usize])));
+            }
+        }
+        offsets.push(connectivity.len() as u64);
+    }
     UnstructuredGridPiece {
         points: IOBuffer::F64(grid.points.as_flattened().to_vec()),
         cells: Cells {
             cell_verts: VertexNumbers::XML {
-                connectivity: grid.nodes.iter().map(|&node| u64::from(node)).collect(),
-                offsets: grid.offsets[1..]
-                    .iter()
-                    .map(|&end| u64::from(end))
-                    .collect(),
+                connectivity,
+                offsets,
             },
-            types: grid.shapes.iter().map(|&shape| cell_type(shape)).collect(),
+            types: grid.shapes.iter().map(|&shape| cell_of(shape).0).collect(),
         },
         data: Attributes {
             point: attributes(&grid.point_fields),
@@ -176,13 +185,35 @@ fn piece(grid: &Grid) -> UnstructuredGridPiece {
     }
 }
 
-/// The VTK cell with the same nodes in the same order.
-fn cell_type(shape: Shape) -> CellType {
+/// The VTK cell of a shape and which of our nodes stands at each of its places; none where the
+/// order is the same. VTK has no 14-node pyramid: its 13-node pyramid leaves the middle of the base
+/// out.
+fn cell_of(shape: Shape) -> (CellType, &'static [u8]) {
     match shape {
-        Shape::Tri3 => CellType::Triangle,
-        Shape::Tet4 => CellType::Tetra,
+        Shape::Tri3 => (CellType::Triangle, &[]),
+        Shape::Tri6 => (CellType::QuadraticTriangle, &[]),
+        Shape::Quad4 => (CellType::Quad, &[]),
+        Shape::Quad8 => (CellType::QuadraticQuad, &[]),
+        Shape::Quad9 => (CellType::BiquadraticQuad, &[]),
+        Shape::Tet4 => (CellType::Tetra, &[]),
+        Shape::Tet10 => (CellType::QuadraticTetra, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+        Shape::Hex8 => (CellType::Hexahedron, &[]),
+        Shape::Hex20 => (CellType::QuadraticHexahedron, &HEX27[..20]),
+        Shape::Hex27 => (CellType::TriquadraticHexahedron, &HEX27),
+        Shape::Prism6 => (CellType::Wedge, &[]),
+        Shape::Prism15 => (CellType::QuadraticWedge, &PRISM18[..15]),
+        Shape::Prism18 => (CellType::BiquadraticQuadraticWedge, &PRISM18),
+        Shape::Pyramid5 => (CellType::Pyramid, &[]),
+        Shape::Pyramid13 | Shape::Pyramid14 => (CellType::QuadraticPyramid, &PYRAMID13),
     }
 }
+
+const HEX27: [u8; 27] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25,
+    26,
+];
+const PRISM18: [u8; 18] = [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16];
+const PYRAMID13: [u8; 13] = [0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12];
 
 fn attributes(fields: &[Field]) -> Vec<Attribute> {
     fields.iter().map(attribute).collect()

@@ -1,9 +1,12 @@
-//! Elements by table: shape functions and their gradients at the points of a quadrature rule.
+//! Cells by table: shape functions and their gradients at the points of a quadrature rule.
 
 use std::sync::OnceLock;
 
 use glam::DVec3;
 use lie_mesh::Shape;
+
+use crate::basis::Basis;
+use crate::quadrature;
 
 /// One quadrature point of a cell.
 #[derive(Debug, Clone)]
@@ -16,68 +19,144 @@ pub struct RulePoint {
     pub gradient: Vec<DVec3>,
 }
 
-/// Quadrature rule of a cell shape, exact for the stiffness of an affine cell.
+/// Everything the kernels need of a shape.
 #[derive(Debug, Clone)]
 pub struct ElementRule {
-    /// Its points.
+    /// Shape functions anywhere.
+    pub basis: Basis,
+    /// Shape functions at the quadrature points.
     pub points: Vec<RulePoint>,
 }
 
-/// The rule of a cell shape.
-///
-/// # Panics
-/// If `shape` is a facet.
+/// The rule of a shape, computed once a run.
 pub fn rule(shape: Shape) -> &'static ElementRule {
-    static TET4: OnceLock<ElementRule> = OnceLock::new();
-    match shape {
-        Shape::Tet4 => TET4.get_or_init(tet4),
-        Shape::Tri3 => unreachable!("facets are integrated at their nodes"),
-    }
-}
-
-/// Reference tetrahedron `0, e_x, e_y, e_z`, one point at the centroid (exact to degree 1).
-fn tet4() -> ElementRule {
-    let gradient = vec![-DVec3::ONE, DVec3::X, DVec3::Y, DVec3::Z];
-    ElementRule {
-        points: vec![RulePoint {
-            weight: 1.0 / 6.0,
-            shape: vec![0.25; 4],
-            gradient,
-        }],
-    }
-}
-
-/// Share of a facet's area that each of its nodes stands for: facets are integrated at their
-/// nodes, because quadrature inside gives stiff joints the wrong sign of traction behind a front
-/// (Schellekens & de Borst 1993).
-pub fn facet_node_weights(shape: Shape) -> &'static [f64] {
-    match shape {
-        Shape::Tri3 => &[1.0 / 3.0; 3],
-        Shape::Tet4 => unreachable!("a cell is not a facet"),
-    }
-}
-
-/// For each node of a facet the barycentre of its shape function, `int N_a x dA / int N_a dA`, as
-/// weights of the facet's nodes. A linear field taken there and lumped at the nodes does exactly
-/// the work of the field itself.
-pub fn facet_node_centroids(shape: Shape) -> &'static [&'static [f64]] {
-    match shape {
-        Shape::Tri3 => &[&[0.5, 0.25, 0.25], &[0.25, 0.5, 0.25], &[0.25, 0.25, 0.5]],
-        Shape::Tet4 => unreachable!("a cell is not a facet"),
-    }
+    static RULES: [OnceLock<ElementRule>; 16] = [const { OnceLock::new() }; 16];
+    RULES[shape as usize].get_or_init(|| {
+        let basis = Basis::of(shape);
+        let points = quadrature::points(shape)
+            .into_iter()
+            .map(|(at, weight)| RulePoint {
+                weight,
+                shape: basis.values(at),
+                gradient: basis.gradients(at),
+            })
+            .collect();
+        ElementRule { basis, points }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::basis::reference_nodes;
+
+    fn all() -> impl Iterator<Item = Shape> {
+        Shape::CELLS.into_iter().chain(Shape::FACETS)
+    }
+
+    /// Some points inside a shape, never on its boundary.
+    fn inside(shape: Shape) -> Vec<DVec3> {
+        quadrature::points(shape)
+            .into_iter()
+            .map(|(at, _)| at)
+            .collect()
+    }
+
+    #[test]
+    fn shape_functions_are_one_at_their_node_and_zero_at_the_others() {
+        for shape in all() {
+            for (node, at) in reference_nodes(shape).into_iter().enumerate() {
+                for (other, value) in rule(shape).basis.values(at).into_iter().enumerate() {
+                    let expected = f64::from(u8::from(node == other));
+                    assert!((value - expected).abs() < 1e-13, "{shape:?} {node} {other}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn shape_functions_sum_to_one_and_gradients_to_zero() {
-        for point in &rule(Shape::Tet4).points {
-            assert!((point.shape.iter().sum::<f64>() - 1.0).abs() < 1e-15);
-            assert!(point.gradient.iter().sum::<DVec3>().length() < 1e-15);
+        for shape in all() {
+            for at in inside(shape) {
+                let basis = &rule(shape).basis;
+                assert!((basis.values(at).iter().sum::<f64>() - 1.0).abs() < 1e-13);
+                assert!(basis.gradients(at).iter().sum::<DVec3>().length() < 1e-12);
+            }
         }
-        let area: f64 = facet_node_weights(Shape::Tri3).iter().sum();
-        assert!((area - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn shape_functions_reproduce_linear_fields() {
+        for shape in all() {
+            let nodes = reference_nodes(shape);
+            for at in inside(shape) {
+                let values = rule(shape).basis.values(at);
+                let sum: DVec3 = nodes.iter().zip(values).map(|(x, value)| *x * value).sum();
+                assert!((sum - at).length() < 1e-13, "{shape:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn gradients_agree_with_differences() {
+        for shape in all() {
+            let basis = &rule(shape).basis;
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+            for at in inside(shape) {
+                for axis in &axes[..shape.dimension()] {
+                    let h = 1e-6 * *axis;
+                    let (ahead, behind) = (basis.values(at + h), basis.values(at - h));
+                    for (node, gradient) in basis.gradients(at).into_iter().enumerate() {
+                        let difference = (ahead[node] - behind[node]) / 2e-6;
+                        assert!((difference - gradient.dot(*axis)).abs() < 1e-6, "{shape:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// On each face of a cell the functions of its nodes are those of the face's own shape, and all
+    /// others vanish: neighbours of any shape agree along a face.
+    #[test]
+    fn traces_on_faces_are_the_shape_functions_of_the_facet() {
+        for shape in Shape::CELLS {
+            let nodes = reference_nodes(shape);
+            for face in shape.faces() {
+                for at in inside(face.shape) {
+                    let of_facet = rule(face.shape).basis.values(at);
+                    let corners = face.nodes.iter().map(|&local| nodes[local as usize]);
+                    let in_cell: DVec3 = corners.zip(&of_facet).map(|(x, v)| x * *v).sum();
+                    let mut of_cell = rule(shape).basis.values(in_cell);
+                    for (&local, value) in face.nodes.iter().zip(&of_facet) {
+                        let trace = std::mem::take(&mut of_cell[local as usize]);
+                        assert!((trace - value).abs() < 1e-12, "{shape:?} {face:?}");
+                    }
+                    assert!(
+                        of_cell.iter().all(|rest| rest.abs() < 1e-12),
+                        "{shape:?} {face:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn faces_point_outwards() {
+        for shape in Shape::CELLS {
+            let nodes = reference_nodes(shape);
+            let middle: DVec3 = nodes.iter().sum::<DVec3>() / nodes.len() as f64;
+            for face in shape.faces() {
+                let corners: Vec<DVec3> = face
+                    .corners()
+                    .iter()
+                    .map(|&local| nodes[local as usize])
+                    .collect();
+                let outward = lie_mesh::facet_centre(&corners) - middle;
+                assert!(
+                    lie_mesh::facet_area_vector(&corners).dot(outward) > 0.0,
+                    "{shape:?}"
+                );
+            }
+        }
     }
 }

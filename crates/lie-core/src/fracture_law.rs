@@ -18,7 +18,7 @@ pub struct FractureLaw {
 /// Answer of a fracture law at one jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
-    /// Traction `t` [Pa] on the plus side's wall, acting along the jump.
+    /// Traction `t = stress . n` [Pa]: what the plus side does to the wall of the minus side.
     pub traction: DVec3,
     /// `dt/dw` [Pa/m], symmetric.
     pub tangent: DMat3,

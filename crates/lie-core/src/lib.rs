@@ -27,14 +27,19 @@
 //! assert!((half_closed.traction / -1e7 - 0.740227).abs() < 1e-6);
 //! ```
 
+mod basis;
 mod closure;
 mod element;
 pub mod enrichment;
+mod facet;
 mod fracture_law;
 pub mod kernel;
+mod quadrature;
 mod rock;
 
+pub use basis::Basis;
 pub use closure::{Closure, ClosureKind, NormalResponse, Separation};
-pub use element::{ElementRule, RulePoint, facet_node_centroids, facet_node_weights, rule};
+pub use element::{ElementRule, RulePoint, rule};
+pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};
 pub use fracture_law::{FractureLaw, Response};
 pub use rock::{Rock, SymmetricStress};

@@ -135,13 +135,14 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
         "a face is shared by more than two cells",
         "remove the cells that lie on top of others",
     );
-    let overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
+    let mut overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
         .filter(|&face| {
             let other = adjacency.neighbour[face as usize];
             other != NONE && face < other && runs_alike(draft, adjacency, face, other)
         })
         .map(|face| tag(adjacency.cell_of_face[face as usize]))
         .collect();
+    overlapping.dedup();
     report(
         &mut defects,
         &draft.source,
@@ -188,7 +189,14 @@ pub(crate) fn surfaces(
         let facets = facets_of(draft, &matches, group);
         match role {
             SurfaceRole::Fracture => {
-                fracture(draft, group, facets, &mut taken, &mut surfaces, &mut defects);
+                fracture(
+                    draft,
+                    group,
+                    facets,
+                    &mut taken,
+                    &mut surfaces,
+                    &mut defects,
+                );
             }
             SurfaceRole::Boundary => boundary(draft, group, facets, &mut surfaces, &mut defects),
             SurfaceRole::Unused => {}
@@ -218,7 +226,8 @@ fn facets_of<'a>(
     group: usize,
 ) -> impl Iterator<Item = &'a (u64, Vec<u32>)> {
     let sets = draft.group_sets.iter().zip(matches);
-    sets.filter(move |(set, _)| set.contains(&group)).flat_map(|(_, facets)| facets)
+    sets.filter(move |(set, _)| set.contains(&group))
+        .flat_map(|(_, facets)| facets)
 }
 
 /// A facet that two fractures share belongs to the first; one that a fracture lists twice is a

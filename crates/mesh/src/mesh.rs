@@ -100,6 +100,10 @@ impl Mesh {
         let cells = &draft.cells.elements;
         let adjacency = Adjacency::of(cells, nodes.len());
         defects.extend(check::faces(&draft, &adjacency));
+        if !defects.is_empty() {
+            // Where cells overlap, nothing can be said of the surfaces.
+            return Err(defects);
+        }
         let (surfaces, found) = check::surfaces(&draft, roles, &adjacency);
         defects.extend(found);
         let (faces, found) = orient::fractures(&draft, &nodes, &adjacency, &surfaces);

@@ -1,35 +1,38 @@
-//! The fractures as the solver sees them: facet points, each with two walls and a law.
+//! The fractures as the solver sees them: facet points, each with a jump and a law.
 //!
-//! Facets are integrated at their nodes, so a facet point couples nothing but the unknowns of its
-//! own node: the response of all fractures is block-diagonal.
+//! The jump of a facet point is `w = sum_i J_i y_i + w_g`, over the unknowns `y_i` of its nodes, with
+//! `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))` and `w_g` from prescribed displacements.
+//! Facets are integrated at their nodes, so with few exceptions (see `lie_core::facet_points`) a
+//! facet point couples the unknowns of one node only. Without supports the coefficient of a
+//! continuous displacement is zero and left out: the fractures act on the jumps alone.
 
 use glam::{DMat3, DVec3};
 use lie_core::enrichment::coefficient;
-use lie_core::{facet_node_centroids, facet_node_weights};
+use lie_core::{FacetQuadrature, FacetRulePoint, facet_points};
 use lie_mesh::{Mesh, cell_volume};
 use rayon::prelude::*;
 
-use crate::pattern::{Lists, Pattern};
+use crate::pattern::Lists;
 use crate::points::Points;
 use crate::problem::{Fracture, Problem};
 use crate::supports::Supports;
 
-/// One node of one facet.
+/// One point of one facet.
 #[derive(Debug, Clone, Copy)]
 pub struct FacetPoint {
-    /// Point on the plus wall.
-    pub plus: u32,
-    /// Point on the minus wall.
-    pub minus: u32,
+    /// Facet it belongs to.
+    pub facet: u32,
+    /// Index of its fracture.
+    pub fracture: u32,
     /// Area it stands for [m^2].
     pub area: f64,
     /// Unit normal, from minus to plus.
     pub normal: DVec3,
-    /// Index of its fracture.
-    pub fracture: u32,
-    /// Stiffness of the rock next to it, about `E/h` [Pa/m]: constrained modulus over the height of
-    /// the cells on both sides, in series.
+    /// Upper bound of the stiffness of the rock next to it, about `E/h` [Pa/m]: constrained modulus
+    /// over the height of the cells on both sides, in series.
     pub spring: f64,
+    /// Jump of the prescribed displacements at load factor 1 [m], `w_g`.
+    pub prescribed: DVec3,
     /// Jump [m] at which the law carries the initial stress. The law always sees
     /// `initial_jump + jump`.
     pub initial_jump: DVec3,
@@ -37,149 +40,247 @@ pub struct FacetPoint {
     pub initial_aperture: f64,
 }
 
-/// All facet points and the nodes they sit on.
+/// One term of the jump of a facet point.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    unknown: u32,
+    /// `J_i`.
+    factor: DMat3,
+}
+
+/// All facet points and how the unknowns move them.
 #[derive(Debug, Clone)]
 pub struct Interface {
-    /// The facet points, facet by facet in the order of [`lie_mesh::Facets::elements`]' nodes.
+    /// The facet points. With the nodal rule the first ones are the nodes of the facets, in the
+    /// order of [`lie_mesh::Facets::elements`]' flat node list; middle points follow.
     pub points: Vec<FacetPoint>,
-    /// Nodes that carry facet points, ascending.
-    pub nodes: Vec<u32>,
-    /// Facet points of each of `nodes`.
-    pub of_node: Lists,
+    /// Start of the terms of each facet point.
+    term_offset: Vec<usize>,
+    terms: Vec<Term>,
+    /// Facet point of each term.
+    point_of_term: Vec<u32>,
+    /// Unknowns that move facet points, ascending.
+    pub unknowns: Vec<u32>,
+    /// Terms of each of `unknowns`.
+    terms_of_unknown: Lists,
+    /// For each of `unknowns` the unknowns it shares a facet point with, ascending.
+    pub columns: Lists,
 }
 
 impl Interface {
     /// Collects the facet points of a problem.
-    pub fn of(problem: &Problem, points: &Points) -> Self {
-        let mesh = &problem.mesh;
-        let facet_points: Vec<FacetPoint> = (0..mesh.facets.elements.len())
-            .flat_map(|facet| facet_points(problem, points, facet))
-            .collect();
-        let mut nodes: Vec<u32> = mesh.facets.elements.nodes.clone();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let position = |node: &u32| nodes.partition_point(|other| other < node) as u32;
-        let keys: Vec<u32> = mesh.facets.elements.nodes.iter().map(position).collect();
-        let of_node = Lists::group(keys.into_iter(), nodes.len());
-        Self {
-            points: facet_points,
-            nodes,
-            of_node,
-        }
-    }
-
-    /// Jumps `u(plus) - u(minus)` [m].
-    pub fn jumps(&self, displacements: &[DVec3]) -> Vec<DVec3> {
-        let jump = |point: &FacetPoint| {
-            displacements[point.plus as usize] - displacements[point.minus as usize]
-        };
-        self.points.par_iter().map(jump).collect()
-    }
-
-    /// Forces [N] by which `tractions` [Pa] resist on all points: `+A t` on the plus wall, `-A t`
-    /// on the minus wall.
-    pub fn forces(&self, tractions: &[DVec3], point_count: usize) -> Vec<DVec3> {
-        let mut forces = vec![DVec3::ZERO; point_count];
-        for (point, traction) in self.points.iter().zip(tractions) {
-            forces[point.plus as usize] += point.area * *traction;
-            forces[point.minus as usize] -= point.area * *traction;
-        }
-        forces
-    }
-
-    /// Stiffness of the fractures: for each of `nodes` the blocks between all its unknowns, row by
-    /// row: `K_kl = sum A J_k^T D J_l`, `J_k = c(plus, k) P(plus) - c(minus, k) P(minus)`.
-    pub fn stiffness(
-        &self,
-        tangents: &[DMat3],
-        points: &Points,
-        supports: &Supports,
-    ) -> Vec<Vec<DMat3>> {
-        (0..self.nodes.len())
+    pub fn of(problem: &Problem, points: &Points, supports: &Supports) -> Self {
+        let facets: Vec<(Vec<Drawn>, Vec<Drawn>)> = (0..problem.mesh.facets.elements.len())
             .into_par_iter()
-            .map(|index| {
-                let own = points.of_node(self.nodes[index] as usize);
-                let mut blocks = vec![DMat3::ZERO; own.len() * own.len()];
-                for &facet_point in self.of_node.of(index) {
-                    let point = &self.points[facet_point as usize];
-                    let tangent = point.area * tangents[facet_point as usize];
-                    let jump = jump_operator(point, points, supports);
-                    for (k, left) in jump.iter().enumerate() {
-                        for (l, right) in jump.iter().enumerate() {
-                            blocks[k * own.len() + l] += left.transpose() * tangent * *right;
-                        }
-                    }
-                }
-                blocks
+            .map(|facet| draw(problem, points, supports, facet))
+            .collect();
+        let (nodal, middle): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
+        let mut interface = Self {
+            points: Vec::new(),
+            term_offset: vec![0],
+            terms: Vec::new(),
+            point_of_term: Vec::new(),
+            unknowns: Vec::new(),
+            terms_of_unknown: Lists::default(),
+            columns: Lists::default(),
+        };
+        for drawn in nodal.into_iter().chain(middle).flatten() {
+            interface
+                .point_of_term
+                .extend(drawn.terms.iter().map(|_| interface.points.len() as u32));
+            interface.points.push(drawn.point);
+            interface.terms.extend(drawn.terms);
+            interface.term_offset.push(interface.terms.len());
+        }
+        interface.connect();
+        interface
+    }
+
+    fn connect(&mut self) {
+        let mut unknowns: Vec<u32> = self.terms.iter().map(|term| term.unknown).collect();
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        let row = |term: &Term| unknowns.partition_point(|other| *other < term.unknown) as u32;
+        let rows: Vec<u32> = self.terms.iter().map(row).collect();
+        self.terms_of_unknown = Lists::group(rows.into_iter(), unknowns.len());
+        let columns: Vec<Vec<u32>> = (0..unknowns.len())
+            .into_par_iter()
+            .map(|row| {
+                let terms = self.terms_of_unknown.of(row).iter();
+                let around = terms.flat_map(|&term| self.terms_beside(term));
+                let mut columns: Vec<u32> = around.map(|other| other.unknown).collect();
+                columns.sort_unstable();
+                columns.dedup();
+                columns
+            })
+            .collect();
+        self.columns = Lists::collect(&columns);
+        self.unknowns = unknowns;
+    }
+
+    fn terms_of(&self, point: usize) -> &[Term] {
+        &self.terms[self.term_offset[point]..self.term_offset[point + 1]]
+    }
+
+    /// Terms of the facet point that `term` belongs to.
+    fn terms_beside(&self, term: u32) -> &[Term] {
+        self.terms_of(self.point_of_term[term as usize] as usize)
+    }
+
+    /// Jumps `u(plus) - u(minus)` [m] at load factor `factor`.
+    pub fn jumps(&self, unknowns: &[DVec3], factor: f64) -> Vec<DVec3> {
+        (0..self.points.len())
+            .into_par_iter()
+            .map(|point| {
+                let terms = self.terms_of(point).iter();
+                let moved: DVec3 = terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum();
+                moved + factor * self.points[point].prescribed
             })
             .collect()
     }
 
-    /// Addresses in the matrix of the blocks that [`Interface::stiffness`] returns: for each of
-    /// `nodes` its rows, each with the address of its first block.
-    pub fn addresses(&self, points: &Points, pattern: &Pattern) -> Vec<Vec<(usize, usize)>> {
-        let rows = |&node: &u32| {
-            let own = points.of_node(node as usize);
-            own.clone()
-                .map(|row| (row, pattern.address(row, own.start)))
-                .collect()
-        };
-        self.nodes.iter().map(rows).collect()
+    /// Adds `sign` times the forces [N] by which `tractions` [Pa] resist to the forces on all
+    /// unknowns: `sum A J_i^T t`.
+    pub fn add_forces(&self, tractions: &[DVec3], sign: f64, forces: &mut [DVec3]) {
+        let sums: Vec<DVec3> = (0..self.unknowns.len())
+            .into_par_iter()
+            .map(|row| {
+                let terms = self.terms_of_unknown.of(row).iter();
+                let force = |&term: &u32| {
+                    let point = self.point_of_term[term as usize] as usize;
+                    let factor = self.terms[term as usize].factor.transpose();
+                    self.points[point].area * (factor * tractions[point])
+                };
+                terms.map(force).sum()
+            })
+            .collect();
+        for (&unknown, sum) in self.unknowns.iter().zip(sums) {
+            forces[unknown as usize] += sign * sum;
+        }
+    }
+
+    /// Stiffness of the fractures, one block for each of `columns`: `K_ij = sum A J_i^T D J_j`.
+    pub fn stiffness(&self, tangents: &[DMat3]) -> Vec<DMat3> {
+        let rows: Vec<Vec<DMat3>> = (0..self.unknowns.len())
+            .into_par_iter()
+            .map(|row| self.stiffness_row(row, tangents))
+            .collect();
+        rows.concat()
+    }
+
+    fn stiffness_row(&self, row: usize, tangents: &[DMat3]) -> Vec<DMat3> {
+        let columns = self.columns.of(row);
+        let mut blocks = vec![DMat3::ZERO; columns.len()];
+        for &term in self.terms_of_unknown.of(row) {
+            let point = self.point_of_term[term as usize] as usize;
+            let left = self.terms[term as usize].factor.transpose() * tangents[point];
+            for other in self.terms_of(point) {
+                let place = columns.partition_point(|column| *column < other.unknown);
+                blocks[place] += self.points[point].area * (left * other.factor);
+            }
+        }
+        blocks
     }
 }
 
-/// `J_k` for all unknowns `k` of the point's node. Without supports `J_0` vanishes: the continuous
-/// displacement does not see the fracture.
-fn jump_operator(point: &FacetPoint, points: &Points, supports: &Supports) -> Vec<DMat3> {
-    let (plus, sectors) = points.sector(point.plus as usize);
-    let (minus, _) = points.sector(point.minus as usize);
+/// A facet point with its terms, before they are numbered.
+struct Drawn {
+    point: FacetPoint,
+    terms: Vec<Term>,
+}
+
+/// The points of one facet: those at its nodes, and the others.
+fn draw(
+    problem: &Problem,
+    points: &Points,
+    supports: &Supports,
+    facet: usize,
+) -> (Vec<Drawn>, Vec<Drawn>) {
+    let mesh = &problem.mesh;
+    let elements = &mesh.facets.elements;
+    let nodes = elements.nodes_of(facet);
+    let positions: Vec<DVec3> = nodes
+        .iter()
+        .map(|&node| mesh.nodes[node as usize])
+        .collect();
+    let rule = facet_points(elements.shapes[facet], &positions, problem.facet_quadrature);
+    let area: f64 = rule.iter().map(|point| point.area.length()).sum();
+    let spring = spring(problem, facet, area);
+    let mut drawn: Vec<Drawn> = rule
+        .iter()
+        .map(|point| draw_point(problem, points, supports, (facet, spring), point))
+        .collect();
+    let nodal = match problem.facet_quadrature {
+        FacetQuadrature::Nodal => nodes.len(),
+        FacetQuadrature::Gauss => 0,
+    };
+    let others = drawn.split_off(nodal);
+    (drawn, others)
+}
+
+fn draw_point(
+    problem: &Problem,
+    points: &Points,
+    supports: &Supports,
+    (facet, spring): (usize, f64),
+    rule: &FacetRulePoint,
+) -> Drawn {
+    let facets = &problem.mesh.facets;
+    let slots = facets.elements.range(facet);
+    let wall = |slots: &[u32], local: u8| points.of_cell_node[slots[local as usize] as usize];
+    let (plus, minus) = (
+        &facets.plus_slots[slots.clone()],
+        &facets.minus_slots[slots],
+    );
+    let mut terms = Vec::new();
+    let mut prescribed = DVec3::ZERO;
+    for &(local, value) in &rule.nodes {
+        let (plus, minus) = (wall(plus, local), wall(minus, local));
+        let held = |point: u32| supports.prescribed(point as usize);
+        prescribed += value * (held(plus) - held(minus));
+        terms.extend(jump_terms(points, supports, plus, minus, value));
+    }
+    let fracture = facets.fracture[facet];
+    let normal = rule.area.normalize();
+    let law = &problem.fractures[fracture as usize];
+    let (initial_jump, initial_aperture) = initial_jump(problem, law, rule.position, normal);
+    let point = FacetPoint {
+        facet: facet as u32,
+        fracture,
+        area: rule.area.length(),
+        normal,
+        spring,
+        prescribed,
+        initial_jump,
+        initial_aperture,
+    };
+    Drawn { point, terms }
+}
+
+/// `J_i` for all unknowns of one node that have one.
+fn jump_terms(
+    points: &Points,
+    supports: &Supports,
+    plus: u32,
+    minus: u32,
+    value: f64,
+) -> impl Iterator<Item = Term> {
+    let (plus_sector, sectors) = points.sector(plus as usize);
+    let (minus_sector, _) = points.sector(minus as usize);
     let free = |wall: u32| {
         supports
             .hold(wall as usize)
             .map_or(DMat3::IDENTITY, |hold| hold.free)
     };
-    let (free_plus, free_minus) = (free(point.plus), free(point.minus));
+    let (free_plus, free_minus) = (free(plus), free(minus));
     (0..sectors)
-        .map(|k| {
-            coefficient(sectors, plus, k) * free_plus - coefficient(sectors, minus, k) * free_minus
+        .map(move |k| Term {
+            unknown: plus - plus_sector + k,
+            factor: value
+                * (coefficient(sectors, plus_sector, k) * free_plus
+                    - coefficient(sectors, minus_sector, k) * free_minus),
         })
-        .collect()
-}
-
-fn facet_points(problem: &Problem, points: &Points, facet: usize) -> Vec<FacetPoint> {
-    let mesh = &problem.mesh;
-    let elements = &mesh.facets.elements;
-    let shape = elements.shapes[facet];
-    let nodes = elements.nodes_of(facet);
-    let area = lie_mesh::facet_area_vector(&mesh.corners(elements, facet));
-    let normal = area.normalize();
-    let spring = spring(problem, facet, area.length());
-    let fracture = mesh.facets.fracture[facet];
-    let law = &problem.fractures[fracture as usize];
-    let slots = elements.range(facet);
-    let sides = std::iter::zip(
-        &mesh.facets.plus_slots[slots.clone()],
-        &mesh.facets.minus_slots[slots],
-    );
-    let rule = std::iter::zip(facet_node_weights(shape), facet_node_centroids(shape));
-    std::iter::zip(sides, rule)
-        .map(|((&plus, &minus), (weight, centroid))| {
-            let at = std::iter::zip(nodes, *centroid)
-                .map(|(&node, share)| *share * mesh.nodes[node as usize])
-                .sum();
-            let (initial_jump, initial_aperture) = initial_jump(problem, law, at, normal);
-            FacetPoint {
-                plus: points.of_cell_node[plus as usize],
-                minus: points.of_cell_node[minus as usize],
-                area: weight * area.length(),
-                normal,
-                fracture,
-                spring,
-                initial_jump,
-                initial_aperture,
-            }
-        })
-        .collect()
+        .filter(|term| term.factor != DMat3::ZERO)
 }
 
 fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {

@@ -1,15 +1,12 @@
 //! Forces on the unknowns: applied loads, initial stress, prescribed displacements.
 
 use glam::DVec3;
-use lie_core::facet_node_weights;
-use lie_mesh::facet_area_vector;
+use lie_core::load_areas;
 use rayon::prelude::*;
 
 use crate::assembly::{self, Frame};
 use crate::interface::Interface;
-use crate::points::Points;
 use crate::problem::SurfaceLoad;
-use crate::supports::Supports;
 
 /// Forces on all unknowns [N].
 #[derive(Debug, Clone)]
@@ -24,15 +21,20 @@ pub struct Loads {
 
 impl Loads {
     pub(crate) fn of(frame: Frame<'_>, interface: &Interface) -> Self {
-        let mut applied = assembly::gravity_forces(frame);
-        add_surface_loads(frame, &mut applied);
-        add_fluid_pressure(frame, interface, &mut applied);
+        let mut on_points = assembly::gravity_forces(frame);
+        add_surface_loads(frame, &mut on_points);
+        let mut applied = on_unknowns(frame, &on_points);
+        // The fluid pushes the walls apart: it resists closing like a traction of -p n.
+        let push = interface.points.iter().map(|point| {
+            frame.problem.fractures[point.fracture as usize].fluid_pressure * point.normal
+        });
+        interface.add_forces(&push.collect::<Vec<_>>(), 1.0, &mut applied);
         let negative = |forces: Vec<DVec3>| -> Vec<DVec3> {
             let forces: Vec<DVec3> = forces.into_iter().map(|force| -force).collect();
-            on_unknowns(frame.points, frame.supports, &forces)
+            on_unknowns(frame, &forces)
         };
         Self {
-            applied: on_unknowns(frame.points, frame.supports, &applied),
+            applied,
             prescribed: negative(assembly::prescribed_forces(frame)),
             initial: negative(assembly::initial_stress_forces(frame)),
         }
@@ -40,7 +42,8 @@ impl Loads {
 }
 
 /// Forces on the unknowns from forces on the points: `T^T P f`.
-pub(crate) fn on_unknowns(points: &Points, supports: &Supports, forces: &[DVec3]) -> Vec<DVec3> {
+fn on_unknowns(frame: Frame<'_>, forces: &[DVec3]) -> Vec<DVec3> {
+    let (points, supports) = (frame.points, frame.supports);
     let projected: Vec<DVec3> = (0..points.len())
         .into_par_iter()
         .map(|point| supports.project(point, forces[point]))
@@ -59,28 +62,16 @@ fn add_surface_loads(frame: Frame<'_>, forces: &mut [DVec3]) {
         };
         let boundary = &mesh.boundaries[condition.boundary];
         for facet in 0..boundary.elements.len() {
-            let area = facet_area_vector(&mesh.corners(&boundary.elements, facet));
-            let force = match load {
-                SurfaceLoad::Traction(traction) => area.length() * traction,
-                SurfaceLoad::Pressure(pressure) => -pressure * area,
-            };
-            let weights = facet_node_weights(boundary.elements.shapes[facet]);
+            let nodes = boundary.elements.nodes_of(facet).iter();
+            let positions: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+            let areas = load_areas(boundary.elements.shapes[facet], &positions);
             let slots = &boundary.slots[boundary.elements.range(facet)];
-            for (&slot, weight) in slots.iter().zip(weights) {
-                forces[frame.points.of_cell_node[slot as usize] as usize] += *weight * force;
+            for (&slot, (size, area)) in slots.iter().zip(areas) {
+                forces[frame.points.of_cell_node[slot as usize] as usize] += match load {
+                    SurfaceLoad::Traction(traction) => size * traction,
+                    SurfaceLoad::Pressure(pressure) => -pressure * area,
+                };
             }
         }
-    }
-}
-
-/// The fluid pushes the walls apart: a traction `p n` on the jump.
-fn add_fluid_pressure(frame: Frame<'_>, interface: &Interface, forces: &mut [DVec3]) {
-    let push = interface.points.iter().map(|point| {
-        frame.problem.fractures[point.fracture as usize].fluid_pressure * point.normal
-    });
-    let push: Vec<DVec3> = push.collect();
-    let on_points = interface.forces(&push, frame.points.len());
-    for (force, push) in forces.iter_mut().zip(on_points) {
-        *force += push;
     }
 }

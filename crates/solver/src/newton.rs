@@ -116,7 +116,7 @@ pub struct Newton<'a> {
     system: &'a System<'a>,
     settings: NewtonSettings,
     direct: DirectSolver,
-    addresses: Vec<Vec<(usize, usize)>>,
+    places: Vec<(usize, usize)>,
     is_nonlinear: bool,
 }
 
@@ -147,15 +147,12 @@ impl<'a> Newton<'a> {
     /// If the analysis fails.
     pub fn new(system: &'a System<'a>, settings: NewtonSettings) -> Result<Self, LinearFailure> {
         let Discretisation {
-            points,
-            pattern,
-            interface,
-            ..
+            points, pattern, ..
         } = &system.discretisation;
         let fractures = &system.problem.fractures;
         Ok(Self {
             direct: DirectSolver::new(&system.rock, pattern, points)?,
-            addresses: interface.addresses(points, pattern),
+            places: system.interface_places(),
             is_nonlinear: fractures.iter().any(|f| !f.law.closure.is_linear()),
             system,
             settings,
@@ -237,7 +234,7 @@ impl<'a> Newton<'a> {
             return Err(Outcome::NotFinite(None));
         }
         let change = self.system.displacements(&correction, 0.0);
-        let errors = self.follow(state, landings, &self.interface().jumps(&change));
+        let errors = self.follow(state, landings, &self.interface().jumps(&correction, 0.0));
         self.assess(state, &change, &errors, record)
     }
 
@@ -247,16 +244,10 @@ impl<'a> Newton<'a> {
 
     /// Takes the state to another load factor: prescribed displacements move walls that are held.
     fn move_supports(&self, state: &mut State, load: f64) {
-        let still = vec![DVec3::ZERO; state.unknowns.len()];
-        let change = self.system.displacements(&still, load - state.load);
+        let step = load - state.load;
         state.load = load;
-        for ((point, state), jump) in self
-            .interface()
-            .points
-            .iter()
-            .zip(&mut state.facet_points)
-            .zip(self.interface().jumps(&change))
-        {
+        for (point, state) in self.interface().points.iter().zip(&mut state.facet_points) {
+            let jump = step * point.prescribed;
             let opening = jump.dot(point.normal);
             state.mismatch += opening;
             state.shear += self.system.law(point).shear_stiffness * (jump - opening * point.normal);
@@ -290,21 +281,11 @@ impl<'a> Newton<'a> {
         if self.direct.is_current() && !self.is_nonlinear {
             return Ok(());
         }
-        let Discretisation {
-            points,
-            supports,
-            pattern,
-            interface,
-        } = &self.system.discretisation;
-        let stiffness = interface.stiffness(tangents, points, supports);
-        for (rows, blocks) in self.addresses.iter().zip(&stiffness) {
-            for (&(row, start), row_blocks) in rows.iter().zip(blocks.chunks(rows.len())) {
-                for (l, block) in row_blocks.iter().enumerate() {
-                    let place = start + l - pattern.row_offset[row];
-                    let rock = self.system.rock.blocks[start + l];
-                    self.direct.set_block(row, place, rock + *block);
-                }
-            }
+        let stiffness = self.interface().stiffness(tangents);
+        let row_offset = &self.system.discretisation.pattern.row_offset;
+        for (&(row, place), block) in self.places.iter().zip(&stiffness) {
+            let rock = self.system.rock.blocks[row_offset[row] + place];
+            self.direct.set_block(row, place, rock + *block);
         }
         self.direct.factorise()
     }

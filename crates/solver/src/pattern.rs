@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::points::Points;
 
 /// Lists of variable length in one array.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Lists {
     /// Start of each list; one entry more than there are lists.
     pub offset: Vec<usize>,
@@ -18,6 +18,18 @@ impl Lists {
     /// List `index`.
     pub fn of(&self, index: usize) -> &[u32] {
         &self.entries[self.offset[index]..self.offset[index + 1]]
+    }
+
+    /// Puts lists one behind the other.
+    pub fn collect(lists: &[Vec<u32>]) -> Self {
+        let mut offset = vec![0];
+        for list in lists {
+            offset.push(offset[offset.len() - 1] + list.len());
+        }
+        Self {
+            offset,
+            entries: lists.concat(),
+        }
     }
 
     /// Groups `0..keys.len()` by key, each group ascending.
@@ -77,14 +89,7 @@ impl Pattern {
                 nodes
             })
             .collect();
-        let mut neighbours = Lists {
-            offset: vec![0],
-            entries: Vec::new(),
-        };
-        for nodes in &around {
-            neighbours.entries.extend_from_slice(nodes);
-            neighbours.offset.push(neighbours.entries.len());
-        }
+        let neighbours = Lists::collect(&around);
         let (row_offset, columns) = block_rows(&neighbours, points);
         Self {
             slots,

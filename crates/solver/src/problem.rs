@@ -1,7 +1,7 @@
 //! Everything a solve needs: mesh, materials, conditions, load steps.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FractureLaw, Rock};
+use lie_core::{FacetQuadrature, FractureLaw, Rock};
 use lie_mesh::Mesh;
 
 /// A fracture's law and what fills it.
@@ -108,6 +108,8 @@ pub struct Problem {
     /// Factors on all loads (surface loads, gravity, fluid pressure) and prescribed displacements,
     /// one a load step. The initial stress is a state and not a load: it is never scaled.
     pub steps: Vec<f64>,
+    /// How fractures are integrated over their facets.
+    pub facet_quadrature: FacetQuadrature,
 }
 
 impl Problem {

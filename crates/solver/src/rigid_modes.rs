@@ -5,9 +5,8 @@
 
 use faer::{Mat, Side};
 use glam::DVec3;
-use lie_mesh::{Defect, Mesh};
+use lie_mesh::{Defect, Mesh, facet_area_vector};
 
-use crate::interface::Interface;
 use crate::points::Points;
 use crate::problem::Problem;
 use crate::supports::Supports;
@@ -29,14 +28,9 @@ const MOTIONS: [&str; 6] = [
 ];
 
 /// Names every group of blocks that can move freely.
-pub(crate) fn find(
-    problem: &Problem,
-    points: &Points,
-    supports: &Supports,
-    interface: &Interface,
-) -> Vec<Defect> {
+pub(crate) fn find(problem: &Problem, points: &Points, supports: &Supports) -> Vec<Defect> {
     let mesh = &problem.mesh;
-    let (body_of_block, body_count) = tie_blocks(problem, interface, points);
+    let (body_of_block, body_count) = tie_blocks(problem);
     if body_count > MOST_BLOCKS {
         return Vec::new();
     }
@@ -44,10 +38,11 @@ pub(crate) fn find(
     let constraints = Constraints {
         problem,
         points,
+        body_of_block: &body_of_block,
         body_of_point: &body_of_point,
         bounds: mesh.bounds(),
     };
-    let resistance = constraints.resistance(supports, interface, body_count);
+    let resistance = constraints.resistance(supports, body_count);
     let Ok(eigen) = resistance.self_adjoint_eigen(Side::Lower) else {
         return Vec::new();
     };
@@ -70,16 +65,15 @@ pub(crate) fn find(
 }
 
 /// Blocks joined by fractures stiff in normal and shear move as one body.
-fn tie_blocks(problem: &Problem, interface: &Interface, points: &Points) -> (Vec<u32>, usize) {
+fn tie_blocks(problem: &Problem) -> (Vec<u32>, usize) {
     let mesh = &problem.mesh;
     let mut body: Vec<u32> = (0..mesh.block_count as u32).collect();
-    let block_of_point = bodies_of_points(mesh, points, &body);
     loop {
         let mut changed = false;
-        for point in &interface.points {
-            let law = &problem.fractures[point.fracture as usize].law;
+        for facet in 0..mesh.facets.elements.len() {
+            let law = &problem.fractures[mesh.facets.fracture[facet] as usize].law;
             let stiff = law.closure.normal_stiffness > 0.0 && law.shear_stiffness > 0.0;
-            let [a, b] = [point.plus, point.minus].map(|p| block_of_point[p as usize] as usize);
+            let [a, b] = blocks_at(mesh, facet);
             if stiff && body[a] != body[b] {
                 let low = body[a].min(body[b]);
                 (body[a], body[b]) = (low, low);
@@ -99,6 +93,12 @@ fn tie_blocks(problem: &Problem, interface: &Interface, points: &Points) -> (Vec
     (body, names.len())
 }
 
+/// Blocks on the plus and the minus side of a facet.
+fn blocks_at(mesh: &Mesh, facet: usize) -> [usize; 2] {
+    let cells = [mesh.facets.plus[facet], mesh.facets.minus[facet]];
+    cells.map(|cell| mesh.block[cell as usize] as usize)
+}
+
 fn bodies_of_points(mesh: &Mesh, points: &Points, body_of_block: &[u32]) -> Vec<u32> {
     let mut body = vec![0; points.len()];
     for cell in 0..mesh.cells.len() {
@@ -112,28 +112,44 @@ fn bodies_of_points(mesh: &Mesh, points: &Points, body_of_block: &[u32]) -> Vec<
 struct Constraints<'a> {
     problem: &'a Problem,
     points: &'a Points,
+    body_of_block: &'a [u32],
     body_of_point: &'a [u32],
     bounds: (DVec3, DVec3),
 }
 
 impl Constraints<'_> {
     /// Sum over all constraints of `v v^T`, `v` being what each rigid motion does against one.
-    fn resistance(&self, supports: &Supports, interface: &Interface, bodies: usize) -> Mat<f64> {
+    fn resistance(&self, supports: &Supports, bodies: usize) -> Mat<f64> {
         let mut sum = Mat::zeros(6 * bodies, 6 * bodies);
         for point in 0..self.points.len() {
             if let Some(hold) = supports.hold(point) {
+                let at = self.problem.mesh.nodes[self.points.node[point] as usize];
+                let body = self.body_of_point[point] as usize;
                 for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-                    add(&mut sum, &[self.motion(point, axis - hold.free * axis)]);
+                    add(
+                        &mut sum,
+                        &[(body, self.motion(at, axis - hold.free * axis))],
+                    );
                 }
             }
         }
-        for facet_point in &interface.points {
-            let [plus, minus] = [facet_point.plus as usize, facet_point.minus as usize];
-            if self.body_of_point[plus] == self.body_of_point[minus] {
-                continue;
-            }
-            let law = &self.problem.fractures[facet_point.fracture as usize].law;
-            let normal = facet_point.normal;
+        for facet in 0..self.problem.mesh.facets.elements.len() {
+            self.add_facet(facet, &mut sum);
+        }
+        sum
+    }
+
+    /// A facet resists relative motion of the bodies on its sides at each of its corners.
+    fn add_facet(&self, facet: usize, sum: &mut Mat<f64>) {
+        let mesh = &self.problem.mesh;
+        let [plus, minus] = blocks_at(mesh, facet).map(|block| self.body_of_block[block] as usize);
+        if plus == minus {
+            return;
+        }
+        let law = &self.problem.fractures[mesh.facets.fracture[facet] as usize].law;
+        let corners = mesh.corners(&mesh.facets.elements, facet);
+        let normal = facet_area_vector(&corners).normalize();
+        for at in corners {
             for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
                 let across = axis.dot(normal) * normal;
                 let mut resisted = DVec3::ZERO;
@@ -143,26 +159,19 @@ impl Constraints<'_> {
                 if law.shear_stiffness > 0.0 {
                     resisted += axis - across;
                 }
-                let opposite = self.motion(minus, -resisted);
-                add(&mut sum, &[self.motion(plus, resisted), opposite]);
+                let motion = |body: usize, direction: DVec3| (body, self.motion(at, direction));
+                add(sum, &[motion(plus, resisted), motion(minus, -resisted)]);
             }
         }
-        sum
     }
 
-    /// What the six motions of a point's body do along `direction` at the point; rotations about
-    /// the middle of the mesh, lengths in units of its size.
-    fn motion(&self, point: usize, direction: DVec3) -> (usize, [f64; 6]) {
-        let mesh = &self.problem.mesh;
+    /// What the six rigid motions do along `direction` at a position; rotations about the middle of
+    /// the mesh, lengths in units of its size.
+    fn motion(&self, at: DVec3, direction: DVec3) -> [f64; 6] {
         let (low, high) = self.bounds;
-        let arm = (mesh.nodes[self.points.node[point] as usize] - 0.5 * (low + high))
-            / (high - low).length();
-        let turn = arm.cross(direction);
-        let d = direction;
-        (
-            self.body_of_point[point] as usize,
-            [d.x, d.y, d.z, turn.x, turn.y, turn.z],
-        )
+        let arm = (at - 0.5 * (low + high)) / (high - low).length();
+        let (d, turn) = (direction, arm.cross(direction));
+        [d.x, d.y, d.z, turn.x, turn.y, turn.z]
     }
 }
 

@@ -59,7 +59,7 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
         .map(|cell| cell_stress(system, &displacements, cell))
         .collect();
     let interface = &system.discretisation.interface;
-    let jumps = interface.jumps(&displacements);
+    let jumps = interface.jumps(&state.unknowns, state.load);
     let facet_points = (0..jumps.len())
         .map(|i| {
             facet_result(

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::assembly::{self, Frame};
 use crate::interface::{FacetPoint, Interface};
-use crate::loads::{Loads, on_unknowns};
+use crate::loads::Loads;
 use crate::matrix::BlockMatrix;
 use crate::pattern::Pattern;
 use crate::points::Points;
@@ -37,8 +37,8 @@ impl Discretisation {
     pub fn of(problem: &Problem) -> Result<Self, Vec<Defect>> {
         let points = Points::of(&problem.mesh);
         let supports = Supports::of(problem, &points)?;
-        let interface = Interface::of(problem, &points);
-        let defects = rigid_modes::find(problem, &points, &supports, &interface);
+        let interface = Interface::of(problem, &points, &supports);
+        let defects = rigid_modes::find(problem, &points, &supports);
         if !defects.is_empty() {
             return Err(defects);
         }
@@ -151,7 +151,7 @@ impl<'a> System<'a> {
     /// Responses of the laws to the jumps of `unknowns`.
     pub fn responses(&self, unknowns: &[DVec3], factor: f64) -> Vec<Response> {
         let interface = &self.discretisation.interface;
-        let jumps = interface.jumps(&self.displacements(unknowns, factor));
+        let jumps = interface.jumps(unknowns, factor);
         let points = interface.points.par_iter().zip(jumps);
         points
             .map(|(point, jump)| {
@@ -181,38 +181,34 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Forces on all unknowns by which the fractures resist, from their tractions [N].
-    pub fn fracture_forces(&self, tractions: &[DVec3]) -> Vec<DVec3> {
-        let Discretisation {
-            points,
-            supports,
-            interface,
-            ..
-        } = &self.discretisation;
-        on_unknowns(points, supports, &interface.forces(tractions, points.len()))
-    }
-
     /// Out-of-balance forces `loads - K y - fractures` [N] for given tractions of the fractures.
     pub fn residual(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> Vec<DVec3> {
         let rock = self.rock.times(&self.discretisation.pattern, unknowns);
-        let loads = self.load_forces(factor);
-        let fractures = self.fracture_forces(tractions);
-        (0..rock.len())
-            .into_par_iter()
-            .map(|i| loads[i] - rock[i] - fractures[i])
-            .collect()
+        let mut residual = self.load_forces(factor);
+        residual
+            .par_iter_mut()
+            .zip(rock)
+            .for_each(|(force, rock)| *force -= rock);
+        self.discretisation
+            .interface
+            .add_forces(tractions, -1.0, &mut residual);
+        residual
     }
 
     /// Largest of the forces that must balance [N], as Euclidean norms over all unknowns: the
     /// measure for "small" in a residual.
     pub fn force_scale(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> f64 {
         let loads = &self.loads;
+        let mut fractures = vec![DVec3::ZERO; unknowns.len()];
+        self.discretisation
+            .interface
+            .add_forces(tractions, 1.0, &mut fractures);
         [
             factor.abs() * norm(&loads.applied),
             factor.abs() * norm(&loads.prescribed),
             norm(&loads.initial),
             norm(&self.rock.times(&self.discretisation.pattern, unknowns)),
-            norm(&self.fracture_forces(tractions)),
+            norm(&fractures),
         ]
         .into_iter()
         .fold(0.0, f64::max)
@@ -221,21 +217,33 @@ impl<'a> System<'a> {
     /// `K + fractures`: the whole tangent for given tangents of the fractures.
     pub fn tangent(&self, tangents: &[DMat3]) -> BlockMatrix {
         let mut whole = self.rock.clone();
-        let Discretisation {
-            points,
-            supports,
-            pattern,
-            interface,
-        } = &self.discretisation;
-        let stiffness = interface.stiffness(tangents, points, supports);
-        for (rows, blocks) in interface.addresses(points, pattern).iter().zip(&stiffness) {
-            for ((_, start), row) in rows.iter().zip(blocks.chunks(rows.len())) {
-                for (l, block) in row.iter().enumerate() {
-                    whole.blocks[start + l] += *block;
-                }
-            }
+        let stiffness = self.discretisation.interface.stiffness(tangents);
+        for ((row, place), block) in self.interface_places().iter().zip(stiffness) {
+            whole.blocks[self.discretisation.pattern.row_offset[*row] + place] += block;
         }
         whole
+    }
+
+    /// Where the blocks that [`Interface::stiffness`] returns belong in the matrix: block row and
+    /// number of the block in it.
+    pub fn interface_places(&self) -> Vec<(usize, usize)> {
+        let Discretisation {
+            pattern, interface, ..
+        } = &self.discretisation;
+        let place = |row: usize, column: u32| {
+            let address = pattern.address(row, column as usize);
+            (row, address - pattern.row_offset[row])
+        };
+        (0..interface.unknowns.len())
+            .flat_map(|index| {
+                let row = interface.unknowns[index] as usize;
+                interface
+                    .columns
+                    .of(index)
+                    .iter()
+                    .map(move |&column| place(row, column))
+            })
+            .collect()
     }
 }
 

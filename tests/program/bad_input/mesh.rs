@@ -10,6 +10,10 @@ fn defects_of_the_mesh_are_named() {
 /// `base.msh` with one facet more in the joint.
 const TENTH_ELEMENT: (&str, &str) = ("5 10 101 302", "5 11 101 303");
 
+/// One cell in the place of two; what its nodes are does not matter.
+const TWENTY_NODES: &str =
+    "3 1 29 1\n301 11 12 13 14 11 12 13 14 11 12 13 14 11 12 13 14 11 12 13 14\n";
+
 pub(super) const CASES: &[Case] = &[
     Case {
         name: "no file",
@@ -32,51 +36,95 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "garbage",
         files: &[("base.msh", "solid ascii\nfacet normal 0 0 1\n")],
-        says: &["base.msh: this is not a gmsh mesh", "gmsh GEO -3 -format msh41"],
+        says: &[
+            "base.msh: this is not a gmsh mesh",
+            "gmsh GEO -3 -format msh41",
+        ],
         ..SOUND
     },
     Case {
         name: "truncated section",
         mesh: &[("302 11 13 12 15\n$EndElements\n", "302 11 1")],
-        says: &["base.msh, line 34: the section $Elements has no $EndElements", "write it again"],
+        says: &[
+            "base.msh, line 34: the section $Elements has no $EndElements",
+            "write it again",
+        ],
         ..SOUND
     },
     Case {
         name: "truncated numbers",
         mesh: &[("302 11 13 12 15\n", "302 11 1\n")],
-        says: &["base.msh, line 50: the section ends where the node tag of an element should be", "write it again"],
+        says: &[
+            "base.msh, line 50: the section ends where the node tag of an element should be",
+            "write it again",
+        ],
         ..SOUND
     },
     Case {
         name: "old version without gmsh",
         files: &[("base.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")],
         environment: &[("KLUFT_GMSH", "/nonexistent")],
-        says: &["/nonexistent: the program gmsh is not found", "apt-get install gmsh", "KLUFT_GMSH"],
+        says: &[
+            "/nonexistent: the program gmsh is not found",
+            "apt-get install gmsh",
+            "KLUFT_GMSH",
+        ],
         ..SOUND
     },
     Case {
         name: "one tag, two nodes",
         mesh: &[("\n12\n13\n", "\n11\n13\n")],
         defects: 2,
-        says: &["base.msh, nodes 11: the tag stands for more than one node", "give every node its own tag"],
+        says: &[
+            "base.msh, nodes 11: the tag stands for more than one node",
+            "give every node its own tag",
+        ],
         ..SOUND
     },
     Case {
         name: "unknown node",
         mesh: &[("302 11 13 12 15", "302 11 13 12 99")],
-        says: &["base.msh, elements 302", "nodes that are not there: 99", "write it again"],
+        says: &[
+            "base.msh, elements 302",
+            "nodes that are not there: 99",
+            "write it again",
+        ],
         ..SOUND
     },
     Case {
         name: "coordinate that is no number",
         mesh: &[("\n1 0 0\n", "\nnan 0 0\n")],
-        says: &["base.msh, nodes 12: a coordinate is infinite or not a number", "correct the geometry"],
+        says: &[
+            "base.msh, nodes 12: a coordinate is infinite or not a number",
+            "correct the geometry",
+        ],
         ..SOUND
     },
     Case {
         name: "no cells",
-        mesh: &[("5 10 101 302", "4 8 101 223"), ("3 1 4 2\n301 11 12 13 14\n302 11 13 12 15\n", "")],
-        says: &["base.msh: nothing to solve", "no cells of dimension 3", "Physical Volume", "gmsh -3"],
+        mesh: &[
+            ("5 10 101 302", "4 8 101 223"),
+            ("3 1 4 2\n301 11 12 13 14\n302 11 13 12 15\n", ""),
+        ],
+        says: &[
+            "base.msh: nothing to solve",
+            "no cells of dimension 3",
+            "Physical Volume",
+            "gmsh -3",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "elements of third order",
+        mesh: &[
+            ("5 10 101 302", "5 9 101 301"),
+            ("3 1 4 2\n301 11 12 13 14\n302 11 13 12 15\n", TWENTY_NODES),
+        ],
+        says: &[
+            "base.msh, ",
+            "1 elements are of gmsh type 29 (Tet20), which cannot be used here",
+            "Mesh.ElementOrder = 1",
+        ],
         ..SOUND
     },
     Case {
@@ -88,65 +136,110 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "cell without volume",
         mesh: &[("\n0 0 -1\n", "\n0.3 0.3 0\n")],
-        says: &["base.msh, cell 302: the cell has no volume", "Mesh.Optimize"],
+        says: &[
+            "base.msh, cell 302: the cell has no volume",
+            "Mesh.Optimize",
+        ],
         ..SOUND
     },
     Case {
         name: "overlapping cells",
-        mesh: &[("\n0 0 -1\n", "\n0.1 0.1 0.5\n"), ("302 11 13 12 15", "302 11 12 13 15")],
-        says: &["base.msh, cell 301: the cell overlaps its neighbour", "BooleanFragments"],
+        mesh: &[
+            ("\n0 0 -1\n", "\n0.1 0.1 0.5\n"),
+            ("302 11 13 12 15", "302 11 12 13 15"),
+        ],
+        says: &[
+            "base.msh, cell 301: the cell overlaps its neighbour",
+            "BooleanFragments",
+        ],
         ..SOUND
     },
     Case {
         name: "cell twice",
         mesh: &[TENTH_ELEMENT, ("3 1 4 2\n", "3 1 4 3\n303 11 12 13 14\n")],
         defects: 2,
-        says: &["a face is shared by more than two cells", "cell 303: the cell overlaps its neighbour or stands in the file twice", "remove the copy"],
+        says: &[
+            "a face is shared by more than two cells",
+            "cell 303: the cell overlaps its neighbour or stands in the file twice",
+            "remove the copy",
+        ],
         ..SOUND
     },
     Case {
         name: "facet twice",
         mesh: &[TENTH_ELEMENT, ("2 1 2 1\n", "2 1 2 2\n202 12 11 13\n")],
-        says: &["fracture `joint`, facet 201: the facet stands in the file twice", "remove the copy"],
+        says: &[
+            "fracture `joint`, facet 201: the facet stands in the file twice",
+            "remove the copy",
+        ],
         ..SOUND
     },
     Case {
         name: "facet of a condition twice",
         mesh: &[TENTH_ELEMENT, ("2 2 2 3\n", "2 2 2 4\n214 12 11 14\n")],
-        says: &["boundary `top`, facet 211", "would be loaded twice", "remove the copy"],
+        says: &[
+            "boundary `top`, facet 211",
+            "would be loaded twice",
+            "remove the copy",
+        ],
         ..SOUND
     },
     Case {
         name: "fracture that no cell touches",
         mesh: &[("201 11 12 13", "201 11 14 15")],
-        says: &["fracture `joint`, facet 201: the facet is not a face of any cell", "not embedded", "BooleanFragments"],
+        says: &[
+            "fracture `joint`, facet 201: the facet is not a face of any cell",
+            "not embedded",
+            "BooleanFragments",
+        ],
         ..SOUND
     },
     Case {
         name: "fracture outside",
-        scene: &[("[fracture.joint]", "[fracture.top]"), ("[boundary.top]\ntraction = [0, 0, -1e5]\n", "")],
-        says: &["fracture `top`, facet 211, 212, 213: the facet lies on the outer boundary", "must lie inside the rock"],
+        scene: &[
+            ("[fracture.joint]", "[fracture.top]"),
+            ("[boundary.top]\ntraction = [0, 0, -1e5]\n", ""),
+        ],
+        says: &[
+            "fracture `top`, facet 211, 212, 213: the facet lies on the outer boundary",
+            "must lie inside the rock",
+        ],
         ..SOUND
     },
     Case {
         name: "condition inside",
         scene: &[
-            ("[fracture.joint]\naperture = 1e-4\nnormal_stiffness = 1e10\nshear_stiffness = 1e10\n", ""),
+            (
+                "[fracture.joint]\naperture = 1e-4\nnormal_stiffness = 1e10\nshear_stiffness = 1e10\n",
+                "",
+            ),
             ("[boundary.top]", "[boundary.joint]"),
         ],
-        says: &["boundary `joint`, facet 201: the facet lies inside the rock", "[fracture] entry"],
+        says: &[
+            "boundary `joint`, facet 201: the facet lies inside the rock",
+            "[fracture] entry",
+        ],
         ..SOUND
     },
     Case {
         name: "condition that no cell touches",
         mesh: &[("211 11 12 14", "211 11 14 15")],
-        says: &["boundary `top`, facet 211: the facet is not a face of any cell", "mesh volume and surface together"],
+        says: &[
+            "boundary `top`, facet 211: the facet is not a face of any cell",
+            "mesh volume and surface together",
+        ],
         ..SOUND
     },
     Case {
         name: "group without facets",
-        mesh: &[("5 10 101 302", "4 9 101 302"), ("2 1 2 1\n201 11 12 13\n", "")],
-        says: &["physical surface `joint`: the group holds no facets", "still exist after fragments"],
+        mesh: &[
+            ("5 10 101 302", "4 9 101 302"),
+            ("2 1 2 1\n201 11 12 13\n", ""),
+        ],
+        says: &[
+            "physical surface `joint`: the group holds no facets",
+            "still exist after fragments",
+        ],
         ..SOUND
     },
 ];

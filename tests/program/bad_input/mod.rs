@@ -71,7 +71,12 @@ impl Case {
 
     fn run(&self, folder: &Path) -> Run {
         let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
-        let arguments = ["run".as_ref(), scene.as_os_str(), "--out".as_ref(), out.as_os_str()];
+        let arguments = [
+            "run".as_ref(),
+            scene.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ];
         kluft_with(&arguments, self.environment)
     }
 
@@ -90,7 +95,10 @@ impl Case {
             1 => "1 defect in the input\n".to_owned(),
             count => format!("{count} defects in the input\n"),
         };
-        check(run.err.starts_with(&head), format!("it does not begin with {head:?}"));
+        check(
+            run.err.starts_with(&head),
+            format!("it does not begin with {head:?}"),
+        );
         let remedies = run.err.matches("\n    remedy: ").count();
         check(remedies == self.defects, format!("{remedies} remedies"));
         for text in self.says {
@@ -115,10 +123,13 @@ impl Case {
         left.remove("mesh.msh");
         if left != *former {
             let names: Vec<&String> = left.keys().collect();
-            complaints.push(format!("the former results changed; now there is {names:?}"));
+            complaints.push(format!(
+                "the former results changed; now there is {names:?}"
+            ));
         }
         let all = complaints.join("\n  ");
-        (!complaints.is_empty()).then(|| format!("{}:\n  {all}\n--- it said\n{}", self.name, run.err))
+        (!complaints.is_empty())
+            .then(|| format!("{}:\n  {all}\n--- it said\n{}", self.name, run.err))
     }
 }
 
@@ -127,21 +138,34 @@ fn former_results() -> BTreeMap<String, Vec<u8>> {
     let folder = scratch();
     SOUND.lay_out(folder.path());
     let run = SOUND.run(folder.path());
-    assert_eq!((run.code, run.err.as_str(), run.out.as_str()), (Some(0), "", ""));
+    assert_eq!(
+        (run.code, run.err.as_str(), run.out.as_str()),
+        (Some(0), "", "")
+    );
     files(&folder.path().join("out"))
 }
 
 fn judge_all(cases: &[Case]) {
     let former = former_results();
     assert_eq!(former.len(), 5, "two collections, two grids, a summary");
-    let verdicts: Vec<String> = cases.iter().filter_map(|case| case.judge(&former)).collect();
+    let verdicts: Vec<String> = cases
+        .iter()
+        .filter_map(|case| case.judge(&former))
+        .collect();
     let count = verdicts.len();
-    assert!(count == 0, "{count} of {} cases\n\n{}", cases.len(), verdicts.join("\n"));
+    assert!(
+        count == 0,
+        "{count} of {} cases\n\n{}",
+        cases.len(),
+        verdicts.join("\n")
+    );
 }
 
 #[test]
 fn there_are_many_cases() {
-    let count = [scene::CASES, mesh::CASES, geometry::CASES, problem::CASES].concat().len();
+    let count = [scene::CASES, mesh::CASES, geometry::CASES, problem::CASES]
+        .concat()
+        .len();
     assert!(count >= 40, "{count} cases");
 }
 
@@ -149,20 +173,59 @@ fn there_are_many_cases() {
 fn a_scene_that_is_not_there_is_named() {
     let run = crate::harness::kluft(&["run", "no/such/scene.toml"]);
     assert_eq!((run.code, run.out.as_str()), (Some(2), ""));
-    assert!(run.err.contains("no/such/scene.toml: the scene cannot be read"), "{}", run.err);
-    assert!(run.err.contains("remedy: give the path of a scene file"), "{}", run.err);
+    assert!(
+        run.err
+            .contains("no/such/scene.toml: the scene cannot be read"),
+        "{}",
+        run.err
+    );
+    assert!(
+        run.err.contains("remedy: give the path of a scene file"),
+        "{}",
+        run.err
+    );
     assert!(!Path::new("no").exists());
+}
+
+#[test]
+fn a_scene_that_is_not_text_is_named() {
+    let folder = scratch();
+    let scene = folder.path().join("scene.toml");
+    fs::write(&scene, b"title = \"\xff\"\n").expect("a scene");
+    let run = crate::harness::kluft(&["run".as_ref(), scene.as_os_str()]);
+    assert_eq!((run.code, run.out.as_str()), (Some(2), ""));
+    assert!(
+        run.err.contains("remedy: save the file as UTF-8 text"),
+        "{}",
+        run.err
+    );
 }
 
 #[test]
 fn a_folder_that_cannot_be_made_is_named() {
     let folder = scratch();
     SOUND.lay_out(folder.path());
-    let (scene, out) = (folder.path().join("scene.toml"), folder.path().join("base.msh/out"));
-    let arguments = ["run".as_ref(), scene.as_os_str(), "--out".as_ref(), out.as_os_str()];
+    let (scene, out) = (
+        folder.path().join("scene.toml"),
+        folder.path().join("base.msh/out"),
+    );
+    let arguments = [
+        "run".as_ref(),
+        scene.as_os_str(),
+        "--out".as_ref(),
+        out.as_os_str(),
+    ];
     let run = kluft_with(&arguments, &[]);
     assert_eq!((run.code, run.out.as_str()), (Some(2), ""));
     assert!(run.err.contains(&out.display().to_string()), "{}", run.err);
-    assert!(run.err.contains("remedy: name a folder you may write to with --out"), "{}", run.err);
-    assert_eq!(fs::read_to_string(folder.path().join("base.msh")).expect("the mesh"), MESH);
+    assert!(
+        run.err
+            .contains("remedy: name a folder you may write to with --out"),
+        "{}",
+        run.err
+    );
+    assert_eq!(
+        fs::read_to_string(folder.path().join("base.msh")).expect("the mesh"),
+        MESH
+    );
 }

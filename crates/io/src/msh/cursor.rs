@@ -101,6 +101,11 @@ impl<'a> Cursor<'a> {
         self.source.defect_at(self.at, self.encoding, problem)
     }
 
+    /// Byte of the file where the next number is looked for.
+    pub(super) fn position(&self) -> usize {
+        self.at
+    }
+
     fn fixed<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Defect> {
         let rest = &self.source.bytes[self.at..self.end];
         let chunk = *rest.first_chunk().ok_or_else(|| self.ends_early(what))?;

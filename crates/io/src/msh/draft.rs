@@ -16,7 +16,21 @@ use super::{mshio_calls, nodes};
 fn shape_of(kind: ElementType) -> Option<Shape> {
     match kind {
         ElementType::Tri3 => Some(Shape::Tri3),
+        ElementType::Tri6 => Some(Shape::Tri6),
+        ElementType::Qua4 => Some(Shape::Quad4),
+        ElementType::Qua8 => Some(Shape::Quad8),
+        ElementType::Qua9 => Some(Shape::Quad9),
         ElementType::Tet4 => Some(Shape::Tet4),
+        ElementType::Tet10 => Some(Shape::Tet10),
+        ElementType::Hex8 => Some(Shape::Hex8),
+        ElementType::Hex20 => Some(Shape::Hex20),
+        ElementType::Hex27 => Some(Shape::Hex27),
+        ElementType::Pri6 => Some(Shape::Prism6),
+        ElementType::Pri15 => Some(Shape::Prism15),
+        ElementType::Pri18 => Some(Shape::Prism18),
+        ElementType::Pyr5 => Some(Shape::Pyramid5),
+        ElementType::Pyr13 => Some(Shape::Pyramid13),
+        ElementType::Pyr14 => Some(Shape::Pyramid14),
         _ => None,
     }
 }
@@ -37,9 +51,7 @@ pub(super) fn build(survey: Survey) -> Result<Draft, Vec<Defect>> {
     if survey.nodes_are_readable() {
         draft.nodes = keep(&mut defects, coordinates(&survey)).unwrap_or_default();
     }
-    if survey.elements_are_readable() {
-        keep(&mut defects, fill_elements(&survey, groups, &mut draft));
-    }
+    keep(&mut defects, fill_elements(&survey, groups, &mut draft));
     draft.node_tags = survey.nodes.tags;
     if defects.is_empty() {
         Ok(draft)
@@ -59,7 +71,7 @@ fn coordinates(survey: &Survey) -> Result<Vec<[f64; 3]>, Defect> {
 }
 
 fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Result<(), Defect> {
-    let parsed = mshio_calls::elements(survey.source, survey.encoding, survey.elements_body)?;
+    let parsed = mshio_calls::elements(survey.source, survey.encoding, &survey.elements_body)?;
     if parsed.element_blocks.len() != survey.blocks.len() {
         return Err(disagreement(survey, "element blocks"));
     }

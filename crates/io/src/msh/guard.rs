@@ -4,8 +4,9 @@
 //! It also drops node tags, physical names and partitioned entities. So all sections that matter
 //! are walked here first, number by number.
 
+use std::borrow::Cow;
+
 use lie_mesh::{Defect, Group};
-use mshio::ElementType;
 
 use super::cursor::Cursor;
 use super::elements::{self, Block};
@@ -25,22 +26,14 @@ pub(super) struct Survey<'a> {
     pub(super) blocks: Vec<Block>,
     /// Body of `$Nodes`.
     pub(super) nodes_body: &'a [u8],
-    /// Body of `$Elements`.
-    pub(super) elements_body: &'a [u8],
+    /// Body of `$Elements`, as mshio can read it.
+    pub(super) elements_body: Cow<'a, [u8]>,
 }
 
 impl Survey<'_> {
     /// Whether mshio reads the coordinates as they stand.
     pub(super) fn nodes_are_readable(&self) -> bool {
         !self.nodes.parametric && self.nodes.not_finite.is_empty()
-    }
-
-    /// Whether mshio reads the elements as they stand.
-    pub(super) fn elements_are_readable(&self) -> bool {
-        // mshio takes the 18-node prism for one of 28 nodes.
-        self.blocks
-            .iter()
-            .all(|block| block.kind != ElementType::Pri18)
     }
 }
 
@@ -60,6 +53,8 @@ pub(super) fn survey(source: Source<'_>, encoding: Encoding) -> Result<Survey<'_
         return Err(defects);
     };
     let body = |at: Option<&Section>| at.map_or(&[][..], |at| &source.bytes[at.body.clone()]);
+    let start = elements_at.map_or(0, |at| at.body.start);
+    let elements_body = elements::readable(encoding, body(elements_at), start, &blocks);
     Ok(Survey {
         source,
         encoding,
@@ -68,7 +63,7 @@ pub(super) fn survey(source: Source<'_>, encoding: Encoding) -> Result<Survey<'_
         nodes,
         blocks,
         nodes_body: body(nodes_at),
-        elements_body: body(elements_at),
+        elements_body,
     })
 }
 

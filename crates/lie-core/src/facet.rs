@@ -1,0 +1,232 @@
+//! Facets: where a fracture is evaluated, and how a surface load reaches the nodes.
+//!
+//! Facets are integrated at their nodes. Quadrature inside gives stiff joints the wrong sign of
+//! traction behind a crack front (Schellekens & de Borst 1993), and nodes keep the response of a
+//! fracture block-diagonal. Each node `a` gets the area vector `A_a = int N_a n dA`, so that a
+//! uniform traction reaches the nodes exactly as from the rock: patch tests hold on any facet.
+//!
+//! On the six-node triangle and the eight-node quadrangle `int N_a n dA` of a corner is zero or
+//! negative. These get one more point in their middle, with the weight that the closed rule of
+//! degree 3 gives it (9/20 of the triangle: corners 1/20, edges 2/15; 4/9 of the quadrangle:
+//! corners 1/36, edges 1/9), and the nodes keep the rest, `A_a = int N_a n dA - N_a(c) A_c`, which
+//! is positive: every node is controlled.
+
+use glam::DVec3;
+use lie_mesh::Shape;
+
+use crate::element::rule;
+
+/// How a fracture is integrated over a facet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FacetQuadrature {
+    /// At the nodes (and the middle of a six-node triangle or eight-node quadrangle).
+    #[default]
+    Nodal,
+    /// At Gauss points, for comparison.
+    Gauss,
+}
+
+/// A point where a fracture is evaluated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FacetRulePoint {
+    /// Area vector it stands for [m^2].
+    pub area: DVec3,
+    /// Where a linear field is to be taken so that it does its exact work [m].
+    pub position: DVec3,
+    /// Local nodes and their shape functions at the point; zeros left out.
+    pub nodes: Vec<(u8, f64)>,
+}
+
+/// Points of a facet with the given `nodes` [m]; with the nodal rule the first ones are the nodes,
+/// in order.
+pub fn facet_points(
+    shape: Shape,
+    nodes: &[DVec3],
+    quadrature: FacetQuadrature,
+) -> Vec<FacetRulePoint> {
+    let gauss = gauss_points(shape, nodes);
+    if quadrature == FacetQuadrature::Gauss {
+        return gauss;
+    }
+    let middle = middle_point(shape, nodes);
+    let mut points: Vec<FacetRulePoint> = (0..nodes.len())
+        .map(|node| node_point(node, nodes[node], &gauss, middle.as_ref()))
+        .collect();
+    points.extend(middle);
+    points
+}
+
+/// `int N_a dA` [m^2] for all nodes of a facet, along the mean normal of the point: what a uniform
+/// load puts on each node, as `(area, area vector)`.
+pub fn load_areas(shape: Shape, nodes: &[DVec3]) -> Vec<(f64, DVec3)> {
+    let mut areas = vec![(0.0, DVec3::ZERO); nodes.len()];
+    for point in gauss_points(shape, nodes) {
+        let size = point.area.length();
+        for (local, value) in point.nodes {
+            let sum = &mut areas[local as usize];
+            sum.0 += value * size;
+            sum.1 += value * point.area;
+        }
+    }
+    areas
+}
+
+fn gauss_points(shape: Shape, nodes: &[DVec3]) -> Vec<FacetRulePoint> {
+    let points = rule(shape).points.iter();
+    points
+        .map(|point| at(point.weight, &point.shape, &point.gradient, nodes))
+        .collect()
+}
+
+/// `A = w (dx/dxi x dx/deta)`.
+fn at(weight: f64, values: &[f64], gradients: &[DVec3], nodes: &[DVec3]) -> FacetRulePoint {
+    let along = |axis: usize| -> DVec3 {
+        nodes
+            .iter()
+            .zip(gradients)
+            .map(|(x, gradient)| *x * gradient[axis])
+            .sum()
+    };
+    let shares = values
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| **value != 0.0);
+    FacetRulePoint {
+        area: weight * along(0).cross(along(1)),
+        position: nodes.iter().zip(values).map(|(x, value)| *x * *value).sum(),
+        nodes: shares.map(|(local, value)| (local as u8, *value)).collect(),
+    }
+}
+
+fn middle_point(shape: Shape, nodes: &[DVec3]) -> Option<FacetRulePoint> {
+    let (middle, weight) = match shape {
+        Shape::Tri6 => (DVec3::new(1.0 / 3.0, 1.0 / 3.0, 0.0), 0.5 * 9.0 / 20.0),
+        Shape::Quad8 => (DVec3::ZERO, 4.0 * 4.0 / 9.0),
+        _ => return None,
+    };
+    let basis = &rule(shape).basis;
+    Some(at(
+        weight,
+        &basis.values(middle),
+        &basis.gradients(middle),
+        nodes,
+    ))
+}
+
+/// The point of a node: its share of the facet less what the middle point takes over. `position`
+/// is the barycentre of that share.
+fn node_point(
+    node: usize,
+    fallback: DVec3,
+    gauss: &[FacetRulePoint],
+    middle: Option<&FacetRulePoint>,
+) -> FacetRulePoint {
+    let value = |point: &FacetRulePoint| {
+        let own = point
+            .nodes
+            .iter()
+            .find(|(local, _)| *local as usize == node);
+        own.map_or(0.0, |(_, value)| *value)
+    };
+    let parts = gauss.iter().map(|point| (value(point), point));
+    let parts = parts.chain(middle.map(|point| (-value(point), point)));
+    let (mut area, mut size, mut moment) = (DVec3::ZERO, 0.0, DVec3::ZERO);
+    for (share, point) in parts {
+        area += share * point.area;
+        size += share * point.area.length();
+        moment += share * point.area.length() * point.position;
+    }
+    FacetRulePoint {
+        area,
+        position: if size > 0.0 { moment / size } else { fallback },
+        nodes: vec![(node as u8, 1.0)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::reference_nodes;
+
+    fn nodal(shape: Shape) -> Vec<FacetRulePoint> {
+        facet_points(shape, &reference_nodes(shape), FacetQuadrature::Nodal)
+    }
+
+    #[test]
+    fn nodal_weights_are_those_of_the_known_closed_rules() {
+        let weights = |shape: Shape| -> Vec<f64> {
+            let points = nodal(shape);
+            let whole: f64 = points.iter().map(|point| point.area.z).sum();
+            points.iter().map(|point| point.area.z / whole).collect()
+        };
+        let same = |shape: Shape, expected: &[f64]| {
+            for (found, expected) in weights(shape).iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 1e-12,
+                    "{shape:?}: {found} {expected}"
+                );
+            }
+        };
+        same(Shape::Tri3, &[1.0 / 3.0; 3]);
+        same(Shape::Quad4, &[0.25; 4]);
+        let (corner, edge) = (1.0 / 20.0, 2.0 / 15.0);
+        same(
+            Shape::Tri6,
+            &[corner, corner, corner, edge, edge, edge, 9.0 / 20.0],
+        );
+        let (corner, edge) = (1.0 / 36.0, 1.0 / 9.0);
+        let simpson = [
+            corner,
+            corner,
+            corner,
+            corner,
+            edge,
+            edge,
+            edge,
+            edge,
+            4.0 / 9.0,
+        ];
+        same(Shape::Quad8, &simpson);
+        same(Shape::Quad9, &simpson);
+    }
+
+    /// `sum_q N_a(q) A_q = int N_a n dA`, on a warped facet too.
+    #[test]
+    fn a_uniform_traction_reaches_the_nodes_exactly() {
+        for shape in Shape::FACETS {
+            let bend = |x: DVec3| x + 0.2 * DVec3::new(x.x * x.y, 0.5 * x.y * x.y, x.x * x.x - x.y);
+            let nodes: Vec<DVec3> = reference_nodes(shape).into_iter().map(bend).collect();
+            let exact = load_areas(shape, &nodes);
+            let mut sums = vec![DVec3::ZERO; nodes.len()];
+            for point in facet_points(shape, &nodes, FacetQuadrature::Nodal) {
+                for (local, value) in point.nodes {
+                    sums[local as usize] += value * point.area;
+                }
+            }
+            for (sum, (_, expected)) in sums.iter().zip(&exact) {
+                assert!((*sum - *expected).length() < 1e-14, "{shape:?}");
+            }
+        }
+    }
+
+    /// `sum_q N_a(q) |A_q| x_q = int N_a x dA` on flat facets.
+    #[test]
+    fn a_linear_traction_reaches_the_nodes_exactly() {
+        for shape in Shape::FACETS {
+            let nodes = reference_nodes(shape);
+            let moments = |quadrature: FacetQuadrature| {
+                let mut sums = vec![DVec3::ZERO; nodes.len()];
+                for point in facet_points(shape, &nodes, quadrature) {
+                    for (local, value) in point.nodes {
+                        sums[local as usize] += value * point.area.length() * point.position;
+                    }
+                }
+                sums
+            };
+            let both = moments(FacetQuadrature::Nodal).into_iter();
+            for (sum, expected) in both.zip(moments(FacetQuadrature::Gauss)) {
+                assert!((sum - expected).length() < 1e-14, "{shape:?}");
+            }
+        }
+    }
+}
