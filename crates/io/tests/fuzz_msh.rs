@@ -233,6 +233,7 @@ fn damaged_files_give_defects_or_sound_drafts() {
             }
         }
     }
+    println!("fuzz: {runs} damaged .msh files, {sound} still readable and sound, 0 panics");
     assert!(
         runs < 100 || (sound > 0 && sound < runs),
         "{sound} of {runs} files were readable"
