@@ -11,6 +11,8 @@ use crate::quadrature;
 /// One quadrature point of a cell.
 #[derive(Debug, Clone)]
 pub struct RulePoint {
+    /// Reference coordinates.
+    pub at: DVec3,
     /// Weight; the weights of a rule add up to the volume of the reference cell.
     pub weight: f64,
     /// Value of each node's shape function.
@@ -36,6 +38,7 @@ pub fn rule(shape: Shape) -> &'static ElementRule {
         let points = quadrature::points(shape)
             .into_iter()
             .map(|(at, weight)| RulePoint {
+                at,
                 weight,
                 shape: basis.values(at),
                 gradient: basis.gradients(at),

@@ -71,12 +71,17 @@ pub fn add_stress_forces(
     }
 }
 
-/// Adds the nodal forces of a body force, `f_a = int N_a q dV` [N], with `q` in N/m^3.
-pub fn add_body_forces(shape: Shape, nodes: &[DVec3], q: DVec3, forces: &mut [DVec3]) {
+/// Adds the nodal forces of a body force, `f_a = int N_a q(x) dV` [N], with `q` in N/m^3.
+pub fn add_body_forces(
+    shape: Shape,
+    nodes: &[DVec3],
+    q: impl Fn(DVec3) -> DVec3,
+    forces: &mut [DVec3],
+) {
     for point in &rule(shape).points {
-        let volume = gradients(point, nodes).volume;
-        for (force, value) in forces.iter_mut().zip(&point.shape) {
-            *force += volume * *value * q;
+        let force = gradients(point, nodes).volume * q(position(point, nodes));
+        for (sum, value) in forces.iter_mut().zip(&point.shape) {
+            *sum += *value * force;
         }
     }
 }

@@ -187,7 +187,8 @@ pub(crate) fn gravity_forces(frame: Frame<'_>) -> Vec<DVec3> {
     let problem = frame.problem;
     gather_cells(frame, |cell, positions, _, forces| {
         let weight = problem.rock(cell).density * problem.gravity;
-        kernel::add_body_forces(problem.mesh.cells.shapes[cell], positions, weight, forces);
+        let shape = problem.mesh.cells.shapes[cell];
+        kernel::add_body_forces(shape, positions, |_| weight, forces);
     })
 }
 
