@@ -1,11 +1,12 @@
 //! Everything that may be wrong with a mesh.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, NONE};
 use crate::defect::{Defect, sample};
 use crate::draft::Draft;
-use crate::geometry::{cell_volume, corners};
+use crate::geometry::cell_volume;
 use crate::mesh::SurfaceRole;
 
 /// A cell is flat when its volume is this small against the cube of its longest edge: there the
@@ -81,6 +82,7 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
         return defects;
     }
     let volumes: Vec<f64> = (0..cells.len())
+        .into_par_iter()
         .map(|cell| relative_volume(draft, nodes, cell))
         .collect();
     let flat = tagged(&|cell| volumes[cell].abs() <= FLAT);
@@ -107,15 +109,21 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
 /// Volume over the cube of the longest distance between corners.
 fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
     let cells = &draft.cells.elements;
-    let corners = corners(cells, cell, nodes);
+    let shape = cells.shapes[cell];
+    let mut corners = [DVec3::ZERO; 8];
+    let corners = &mut corners[..shape.corner_count()];
+    for (corner, &node) in corners.iter_mut().zip(cells.nodes_of(cell)) {
+        *corner = nodes[node as usize];
+    }
     let longest = corners
         .iter()
-        .flat_map(|a| corners.iter().map(move |b| a.distance_squared(*b)));
-    let longest = longest.fold(0.0, f64::max).sqrt();
+        .flat_map(|a| corners.iter().map(move |b| a.distance_squared(*b)))
+        .fold(0.0, f64::max)
+        .sqrt();
     if longest == 0.0 {
         return 0.0;
     }
-    cell_volume(cells.shapes[cell], &corners) / longest.powi(3)
+    cell_volume(shape, corners) / longest.powi(3)
 }
 
 /// Defects in how the cells fit together.
@@ -136,6 +144,7 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
         "remove the cells that lie on top of others",
     );
     let mut overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
+        .into_par_iter()
         .filter(|&face| {
             let other = adjacency.neighbour[face as usize];
             other != NONE && face < other && runs_alike(draft, adjacency, face, other)
@@ -158,14 +167,15 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
 /// side.
 fn runs_alike(draft: &Draft, adjacency: &Adjacency, face: u32, other: u32) -> bool {
     let cells = &draft.cells.elements;
-    let corners = |face: u32| -> Vec<u32> {
-        let count = adjacency.shape_of(cells, face).corners().len();
-        let slots = adjacency.slots(cells, face).take(count);
-        slots.map(|slot| cells.nodes[slot]).collect()
+    let node = |slot: usize| cells.nodes[slot];
+    let count = adjacency.shape_of(cells, face).corners().len();
+    let mut own = adjacency.slots(cells, face).take(count).map(node);
+    let (Some(first), Some(second)) = (own.next(), own.next()) else {
+        return false;
     };
-    let (own, twin) = (corners(face), corners(other));
-    let start = twin.iter().position(|node| *node == own[0]);
-    start.is_some_and(|start| twin[(start + 1) % twin.len()] == own[1])
+    let twin = || adjacency.slots(cells, other).take(count).map(node);
+    let after = twin().skip_while(|&node| node != first).nth(1);
+    after.or_else(|| twin().next()) == Some(second)
 }
 
 /// Matches the surfaces to faces of cells and collects what does not fit.
@@ -214,7 +224,7 @@ fn match_facets(draft: &Draft, adjacency: &Adjacency) -> Matches {
     for facet in 0..facets.elements.len() {
         let count = facets.elements.shapes[facet].corner_count();
         let corners = &facets.elements.nodes_of(facet)[..count];
-        let faces = adjacency.faces_at(corners).collect();
+        let faces = adjacency.faces_at(&draft.cells.elements, corners).collect();
         matches[facets.group_set[facet] as usize].push((facets.tags[facet], faces));
     }
     matches

@@ -11,7 +11,7 @@ pub fn inner_surfaces(draft: &Draft) -> Vec<bool> {
     for facet in 0..facets.elements.len() {
         let count = facets.elements.shapes[facet].corner_count();
         let corners = &facets.elements.nodes_of(facet)[..count];
-        if adjacency.faces_at(corners).count() > 1 {
+        if adjacency.faces_at(&draft.cells.elements, corners).count() > 1 {
             for &group in &draft.group_sets[facets.group_set[facet] as usize] {
                 inner[group] = true;
             }
