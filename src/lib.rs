@@ -157,25 +157,7 @@ fn solve(
     report: &mut Report,
     summary: &mut Summary,
 ) -> Result<(), Failure> {
-    let (discretisation, took) = report.stage("enriching", |_| Discretisation::of(problem));
-    let discretisation = discretisation?;
-    summary.seconds.enrich = took.as_secs_f64();
-    summary.unknowns = summary::UnknownSummary {
-        total: discretisation.unknown_count(),
-        jump: 3 * discretisation.points.jump_count(),
-    };
-    let unknowns = &summary.unknowns;
-    let text = format!(
-        "{} unknowns, {} of them jumps",
-        unknowns.total, unknowns.jump
-    );
-    report.entry("enriched", &timed(&text, took));
-    let (system, took) = report.stage("assembling", |_| System::assemble(problem, discretisation));
-    summary.seconds.assemble = took.as_secs_f64();
-    report.entry(
-        "assembled",
-        &timed("rock and loads, once for the run", took),
-    );
+    let system = assemble(problem, report, summary)?;
     let (newton, took) = report.stage("ordering", |_| {
         Newton::new(&system, NewtonSettings::default())
     });
@@ -204,17 +186,55 @@ fn solve(
             let why = decisions::not_converged(problem, &system, number + 1, &record);
             return Err(Failure::NotConverged(why));
         }
-        let (written, took) = report.stage("writing", |_| {
-            let solution = solution(&system, &state);
-            let interface = &system.discretisation.interface;
-            summary.fractures = summary::fractures(problem, interface, &solution);
-            output.write_step(&system, &solution)
-        });
-        written.map_err(|defect| vec![defect])?;
-        summary.seconds.write += took.as_secs_f64();
+        write_step(&system, &state, output, report, summary)?;
     }
     summary.warnings = decisions::warnings(&summary.fractures);
     Ok(())
+}
+
+/// Enriches the problem and assembles what stays the same for the whole run.
+fn assemble<'a>(
+    problem: &'a Problem,
+    report: &mut Report,
+    summary: &mut Summary,
+) -> Result<System<'a>, Failure> {
+    let (discretisation, took) = report.stage("enriching", |_| Discretisation::of(problem));
+    let discretisation = discretisation?;
+    summary.seconds.enrich = took.as_secs_f64();
+    summary.unknowns = summary::UnknownSummary {
+        total: discretisation.unknown_count(),
+        jump: 3 * discretisation.points.jump_count(),
+    };
+    let unknowns = &summary.unknowns;
+    let text = format!(
+        "{} unknowns, {} of them jumps",
+        unknowns.total, unknowns.jump
+    );
+    report.entry("enriched", &timed(&text, took));
+    let (system, took) = report.stage("assembling", |_| System::assemble(problem, discretisation));
+    summary.seconds.assemble = took.as_secs_f64();
+    report.entry(
+        "assembled",
+        &timed("rock and loads, once for the run", took),
+    );
+    Ok(system)
+}
+
+fn write_step(
+    system: &System<'_>,
+    state: &State,
+    output: &mut Output,
+    report: &mut Report,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
+    let (written, took) = report.stage("writing", |_| {
+        let solution = solution(system, state);
+        let interface = &system.discretisation.interface;
+        summary.fractures = summary::fractures(system.problem, interface, &solution);
+        output.write_step(system, &solution)
+    });
+    summary.seconds.write += took.as_secs_f64();
+    Ok(written.map_err(|defect| vec![defect])?)
 }
 
 fn solve_step(

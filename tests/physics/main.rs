@@ -1,5 +1,8 @@
 //! Physics against oracles that do not share code with the solver. One target, so it links once.
-#![allow(clippy::print_stdout, reason = "tables are what some of these tests are read for")]
+#![allow(
+    clippy::print_stdout,
+    reason = "tables are what some of these tests are read for"
+)]
 
 mod closed_forms;
 mod conditions;

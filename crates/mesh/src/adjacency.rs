@@ -82,7 +82,11 @@ impl Adjacency {
         let mut keys: Vec<(Key, u32)> = Vec::new();
         for node in nodes {
             keys.clear();
-            keys.extend(self.bucket_of(node).iter().map(|&face| (self.key_of(cells, face), face)));
+            keys.extend(
+                self.bucket_of(node)
+                    .iter()
+                    .map(|&face| (self.key_of(cells, face), face)),
+            );
             keys.sort_unstable();
             for run in keys.chunk_by(|a, b| a.0 == b.0) {
                 if let [(_, first), (_, second), surplus @ ..] = run {

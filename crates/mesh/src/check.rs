@@ -33,21 +33,59 @@ pub(crate) struct Surfaces {
     pub(crate) boundaries: Vec<(usize, Vec<u32>)>,
 }
 
-/// Tags of the elements that share one kind of defect.
-fn report(
-    defects: &mut Vec<Defect>,
-    place: &str,
-    what: &str,
-    tags: &[u64],
-    problem: &str,
-    remedy: &str,
-) {
+/// What can be wrong, and the remedy.
+type Kind = (&'static str, &'static str);
+
+const NOT_FINITE: Kind = (
+    "a coordinate is not a finite number",
+    "mesh the geometry again; if it stays, look for 0/0 in the .geo expressions",
+);
+const NO_VOLUME: Kind = (
+    "the cell has no volume",
+    "let gmsh optimise the mesh (Mesh.Optimize = 1) or remove the sliver from the geometry",
+);
+const INSIDE_OUT: Kind = (
+    "the cell is inside out (negative volume)",
+    "write the cell's nodes in gmsh's order, or mesh the geometry again",
+);
+const CROWDED: Kind = (
+    "a face is shared by more than two cells",
+    "remove the cells that lie on top of others",
+);
+const OVERLAPPING: Kind = (
+    "the cell overlaps its neighbour or stands in the file twice",
+    "remove the copy; volumes must be fragmented against each other (BooleanFragments)",
+);
+const NOT_EMBEDDED: Kind = (
+    "the facet is not a face of any cell: the surface is not embedded in the volume",
+    "cut the volume with the surface in the .geo file: BooleanFragments (OpenCASCADE) or Surface{..} In Volume{..}",
+);
+const ON_THE_OUTSIDE: Kind = (
+    "the facet lies on the outer boundary: there is rock on one side only",
+    "a fracture must lie inside the rock; take this surface out of the fracture's group",
+);
+const TWICE: Kind = (
+    "the facet stands in the file twice",
+    "remove the copy (gmsh: Coherence; or BooleanFragments so that surfaces are shared)",
+);
+const NOT_ON_THE_ROCK: Kind = (
+    "the facet is not a face of any cell",
+    "mesh volume and surface together, and put the volume in a Physical Volume",
+);
+const ON_THE_INSIDE: Kind = (
+    "the facet lies inside the rock: there are cells on both sides",
+    "conditions act on the outer surface; give a fracture a [fracture] entry instead",
+);
+const LOADED_TWICE: Kind = (
+    "the facet stands in the file twice and would be loaded twice",
+    "remove the copy from the file",
+);
+
+/// Reports the elements that share one kind of defect.
+fn report(defects: &mut Vec<Defect>, place: &str, what: &str, tags: &[u64], kind: Kind) {
     if !tags.is_empty() {
-        defects.push(Defect::new(
-            format!("{place}, {what} {}", sample(tags)),
-            problem,
-            remedy,
-        ));
+        let place = format!("{place}, {what} {}", sample(tags));
+        defects.push(Defect::new(place, kind.0, kind.1));
     }
 }
 
@@ -70,14 +108,7 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
         .filter(|&node| !nodes[node].is_finite())
         .map(|node| draft.node_tags[node])
         .collect();
-    report(
-        &mut defects,
-        &draft.source,
-        "node",
-        &broken,
-        "a coordinate is not a finite number",
-        "mesh the geometry again; if it stays, look for 0/0 in the .geo expressions",
-    );
+    report(&mut defects, &draft.source, "node", &broken, NOT_FINITE);
     if !broken.is_empty() {
         return defects;
     }
@@ -86,23 +117,9 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
         .map(|cell| relative_volume(draft, nodes, cell))
         .collect();
     let flat = tagged(&|cell| volumes[cell].abs() <= FLAT);
-    report(
-        &mut defects,
-        &draft.source,
-        "cell",
-        &flat,
-        "the cell has no volume",
-        "let gmsh optimise the mesh (Mesh.Optimize = 1) or remove the sliver from the geometry",
-    );
+    report(&mut defects, &draft.source, "cell", &flat, NO_VOLUME);
     let inverted = tagged(&|cell| volumes[cell] < -FLAT);
-    report(
-        &mut defects,
-        &draft.source,
-        "cell",
-        &inverted,
-        "the cell is inside out (negative volume)",
-        "write the cell's nodes in gmsh's order, or mesh the geometry again",
-    );
+    report(&mut defects, &draft.source, "cell", &inverted, INSIDE_OUT);
     defects
 }
 
@@ -135,14 +152,7 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
         .iter()
         .map(|&cell| tag(cell))
         .collect();
-    report(
-        &mut defects,
-        &draft.source,
-        "cell",
-        &crowded,
-        "a face is shared by more than two cells",
-        "remove the cells that lie on top of others",
-    );
+    report(&mut defects, &draft.source, "cell", &crowded, CROWDED);
     let mut overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
         .into_par_iter()
         .filter(|&face| {
@@ -157,8 +167,7 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
         &draft.source,
         "cell",
         &overlapping,
-        "the cell overlaps its neighbour or stands in the file twice",
-        "remove the copy; volumes must be fragmented against each other (BooleanFragments)",
+        OVERLAPPING,
     );
     defects
 }
@@ -271,30 +280,9 @@ fn fracture<'a>(
         }
     }
     let place = format!("fracture `{}`", draft.groups[group].name);
-    report(
-        defects,
-        &place,
-        "facet",
-        &loose,
-        "the facet is not a face of any cell: the surface is not embedded in the volume",
-        "cut the volume with the surface in the .geo file: BooleanFragments (OpenCASCADE) or Surface{..} In Volume{..}",
-    );
-    report(
-        defects,
-        &place,
-        "facet",
-        &outer,
-        "the facet lies on the outer boundary: there is rock on one side only",
-        "a fracture must lie inside the rock; take this surface out of the fracture's group",
-    );
-    report(
-        defects,
-        &place,
-        "facet",
-        &double,
-        "the facet stands in the file twice",
-        "remove the copy (gmsh: Coherence; or BooleanFragments so that surfaces are shared)",
-    );
+    report(defects, &place, "facet", &loose, NOT_EMBEDDED);
+    report(defects, &place, "facet", &outer, ON_THE_OUTSIDE);
+    report(defects, &place, "facet", &double, TWICE);
     empty(
         draft,
         group,
@@ -324,30 +312,9 @@ fn boundary<'a>(
         }
     }
     let place = format!("boundary `{}`", draft.groups[group].name);
-    report(
-        defects,
-        &place,
-        "facet",
-        &loose,
-        "the facet is not a face of any cell",
-        "mesh volume and surface together, and put the volume in a Physical Volume",
-    );
-    report(
-        defects,
-        &place,
-        "facet",
-        &inner,
-        "the facet lies inside the rock: there are cells on both sides",
-        "conditions act on the outer surface; give a fracture a [fracture] entry instead",
-    );
-    report(
-        defects,
-        &place,
-        "facet",
-        &double,
-        "the facet stands in the file twice and would be loaded twice",
-        "remove the copy from the file",
-    );
+    report(defects, &place, "facet", &loose, NOT_ON_THE_ROCK);
+    report(defects, &place, "facet", &inner, ON_THE_INSIDE);
+    report(defects, &place, "facet", &double, LOADED_TWICE);
     let nothing = faces_kept.is_empty() && loose.is_empty() && inner.is_empty();
     empty(draft, group, nothing, defects);
     surfaces.boundaries.push((group, faces_kept));
