@@ -9,10 +9,6 @@
 //!
 //! with the opening `w(q)` of the joint's law. The left side of the last equation grows with `q`
 //! and the right one falls, so bisection finds `q`.
-#![allow(
-    clippy::print_stdout,
-    reason = "the table of errors is what the test is read for"
-)]
 
 use glam::{DMat3, DVec3};
 use lie_core::ClosureKind;
@@ -212,26 +208,26 @@ fn orders(kind: ClosureKind, sizes: &[f64], order: u32) -> [f64; 4] {
     orders
 }
 
-#[test]
-#[ignore]
-fn fine() {
-    let _ = orders(ClosureKind::Linear, &[0.35, 0.25, 0.177, 0.125], 1);
-    let _ = orders(ClosureKind::Linear, &[0.5, 0.35, 0.25, 0.177], 2);
-}
-
+/// Facets approach the sphere at second order, and hold the rotation of the core, which costs
+/// nothing on the sphere itself, by their angles alone. From h = 0.25 to 0.125 the orders are 2.02
+/// (traction, opening), 2.00 (core) and 1.98 (shell).
 #[test]
 fn floating_core_converges_at_second_order() {
     for kind in [ClosureKind::Linear, EXACT] {
-        let orders = orders(kind, &[0.5, 0.35, 0.25], 1);
-        assert!(orders.iter().all(|order| *order > 1.7), "{orders:?}");
+        let orders = orders(kind, &[0.35, 0.25, 0.177], 1);
+        assert!(
+            orders.iter().all(|order| (order - 2.0).abs() < 0.25),
+            "{orders:?}"
+        );
     }
 }
 
+/// About third order: from h = 0.5 to 0.177, 3.1 for traction and core and 2.3 for the shell.
 #[test]
 fn floating_core_of_quadratic_cells() {
     for kind in [ClosureKind::Linear, EXACT] {
         let orders = orders(kind, &[0.7, 0.5, 0.35], 2);
-        assert!(orders.iter().all(|order| *order > 1.7), "{orders:?}");
+        assert!(orders.iter().all(|order| *order > 2.3), "{orders:?}");
     }
 }
 

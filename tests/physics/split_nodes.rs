@@ -1,13 +1,8 @@
-//! Random networks against a formulation without enrichment: nodes are split, one copy for each
+//! A formulation without enrichment, to compare with: nodes are split, one copy for each
 //! part of the rock around them, and springs join the copies.
 //!
 //! Of the workspace it uses the nodes, cells, facets and boundaries of the mesh and the numbers of
 //! the problem. Connected parts, element stiffness, springs, loads and supports are its own.
-#![allow(
-    clippy::print_stdout,
-    reason = "the table of seeds is what the test is read for"
-)]
-
 use std::collections::HashSet;
 
 use faer::Side;
@@ -17,8 +12,7 @@ use glam::DVec3;
 use lie_mesh::Mesh;
 use lie_solver::{Points, Problem, Solution, Support, SurfaceLoad};
 
-use crate::networks;
-use crate::scenes;
+use crate::voigt::tetrahedron;
 
 /// Largest difference against the largest displacement: both solve the same equations, and the
 /// condition number of the worst meshes (slivers, soft joints) is about 1e7.
@@ -239,51 +233,6 @@ impl<'a> Split<'a> {
     }
 }
 
-/// `V B^T D B` in Voigt order xx, yy, zz, xy, yz, xz with engineering shear strains.
-fn tetrahedron(x: &[DVec3], e: f64, nu: f64) -> [[f64; 12]; 12] {
-    let volume = (x[1] - x[0]).cross(x[2] - x[0]).dot(x[3] - x[0]) / 6.0;
-    let mut b = [[0.0; 12]; 6];
-    for a in 0..4 {
-        // The gradient of a shape function: the opposite face over three times the volume.
-        let [p, q, r] = [1, 2, 3].map(|i| x[(a + i) % 4]);
-        let mut g = (q - p).cross(r - p);
-        g /= g.dot(x[a] - p);
-        for (row, column, value) in [
-            (0, 0, g.x),
-            (1, 1, g.y),
-            (2, 2, g.z),
-            (3, 0, g.y),
-            (3, 1, g.x),
-            (4, 1, g.z),
-            (4, 2, g.y),
-            (5, 0, g.z),
-            (5, 2, g.x),
-        ] {
-            b[row][3 * a + column] = value;
-        }
-    }
-    let d = isotropic(e, nu);
-    let mut stiffness = [[0.0; 12]; 12];
-    for (i, row) in stiffness.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().enumerate() {
-            let work = |k: usize| (0..6).map(|l| b[k][i] * d[k][l] * b[l][j]).sum::<f64>();
-            *entry = volume * (0..6).map(work).sum::<f64>();
-        }
-    }
-    stiffness
-}
-
-fn isotropic(e: f64, nu: f64) -> [[f64; 6]; 6] {
-    let factor = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    let mut d = [[0.0; 6]; 6];
-    for i in 0..3 {
-        d[i][..3].fill(factor * nu);
-        d[i][i] = factor * (1.0 - nu);
-        d[i + 3][i + 3] = factor * (0.5 - nu);
-    }
-    d
-}
-
 /// Largest difference between the two solutions anywhere, and of the jumps, against the largest
 /// displacement; and that displacement.
 pub fn compare(problem: &Problem, solution: &Solution) -> (f64, f64) {
@@ -309,33 +258,4 @@ pub fn compare(problem: &Problem, solution: &Solution) -> (f64, f64) {
         .map(jump)
         .fold(0.0, f64::max);
     (walls.max(jumps) / largest, largest)
-}
-
-fn seeds() -> u64 {
-    let asked = std::env::var("KLUFT_SEEDS")
-        .ok()
-        .and_then(|text| text.parse().ok());
-    asked.unwrap_or(5)
-}
-
-/// `KLUFT_SEEDS=40 cargo test --test physics split_nodes -- --nocapture` for more networks.
-#[test]
-fn random_networks_agree_with_split_nodes() {
-    for seed in 0..seeds() {
-        let polygons = networks::polygons(seed);
-        let draft =
-            networks::meshed(&polygons, 0.25).unwrap_or_else(|d| panic!("seed {seed}: {d:?}"));
-        let problem = networks::random_problem(draft, seed);
-        let (error, largest) = compare(&problem, &scenes::solve(&problem));
-        let mesh = &problem.mesh;
-        println!(
-            "seed {seed:2}: {:2} fractures, {:5} cells, {:4} facets, at most {} sectors, {} blocks, largest {largest:.1e} m, difference {error:.1e}",
-            polygons.len(),
-            mesh.cells.len(),
-            mesh.facets.elements.len(),
-            mesh.sectors.count.iter().max().expect("nodes"),
-            mesh.block_count
-        );
-        assert!(error < TOLERANCE, "seed {seed}: {error:e}");
-    }
 }

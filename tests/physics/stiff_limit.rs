@@ -1,8 +1,4 @@
 //! Joints as stiff as can be weld: the network becomes the intact rock.
-#![allow(
-    clippy::print_stdout,
-    reason = "the table of stiffnesses is what the test is read for"
-)]
 
 use lie_mesh::SurfaceRole;
 use lie_solver::{NewtonSettings, Points, Problem};
