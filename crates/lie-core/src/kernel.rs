@@ -90,7 +90,7 @@ pub fn add_body_forces(
 /// at some quadrature point.
 pub fn is_folded(shape: Shape, nodes: &[DVec3]) -> bool {
     let mut points = rule(shape).points.iter();
-    points.any(|point| !(gradients(point, nodes).volume > 0.0))
+    points.any(|point| gradients(point, nodes).volume <= 0.0)
 }
 
 /// Mean displacement gradient of a cell, `H = 1/V int u_a (x) grad N_a dV`.
