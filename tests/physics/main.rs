@@ -6,12 +6,22 @@
 
 mod closed_forms;
 mod conditions;
+mod dice;
 mod families;
+mod geometries;
 mod junctions;
+mod loops;
 mod manufactured;
+mod networks;
 mod newton;
 mod oracles;
 mod oscillation;
 mod patch;
+mod random_networks;
 mod scenes;
+mod sphere;
+mod split_nodes;
+mod stiff_limit;
 mod tangent;
+mod torture;
+mod voigt;

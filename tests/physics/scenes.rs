@@ -135,6 +135,11 @@ pub fn solve(problem: &Problem) -> Solution {
 
 /// The mesh that gmsh makes of `geometries/NAME/NAME.geo`.
 pub fn geometry(name: &str, parameters: &[(&str, f64)]) -> Draft {
+    geometry_of_order(name, parameters, 1)
+}
+
+/// The same of order 1 or 2.
+pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> Draft {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("mesh.msh");
@@ -145,7 +150,7 @@ pub fn geometry(name: &str, parameters: &[(&str, f64)]) -> Draft {
     mesh_geometry(&Meshing {
         geometry: &root.join(format!("geometries/{name}/{name}.geo")),
         parameters: &parameters,
-        order: 1,
+        order,
         output: &file,
     })
     .unwrap_or_else(|defects| panic!("{defects:?}"));

@@ -86,6 +86,13 @@ pub fn add_body_forces(
     }
 }
 
+/// Whether a cell with curved edges or warped faces folds over itself: its volume is not positive
+/// at some quadrature point.
+pub fn is_folded(shape: Shape, nodes: &[DVec3]) -> bool {
+    let mut points = rule(shape).points.iter();
+    points.any(|point| gradients(point, nodes).volume <= 0.0)
+}
+
 /// Mean displacement gradient of a cell, `H = 1/V int u_a (x) grad N_a dV`.
 pub fn mean_gradient(shape: Shape, nodes: &[DVec3], displacement: &[DVec3]) -> DMat3 {
     let mut sum = DMat3::ZERO;

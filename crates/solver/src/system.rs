@@ -6,6 +6,7 @@ use lie_mesh::Defect;
 use rayon::prelude::*;
 
 use crate::assembly::{self, Frame};
+use crate::folded;
 use crate::interface::{FacetPoint, Interface};
 use crate::loads::Loads;
 use crate::matrix::BlockMatrix;
@@ -32,9 +33,12 @@ impl Discretisation {
     /// Enriches and numbers a problem.
     ///
     /// # Errors
-    /// Conditions that contradict each other, and blocks of rock that nothing holds, each named
-    /// with the motions left free.
+    /// Cells that fold over themselves, conditions that contradict each other, and blocks of rock
+    /// that nothing holds, each named with the motions left free.
     pub fn of(problem: &Problem) -> Result<Self, Vec<Defect>> {
+        if let Some(defect) = folded::find(problem) {
+            return Err(vec![defect]);
+        }
         let points = Points::of(&problem.mesh);
         let supports = Supports::of(problem, &points)?;
         let interface = Interface::of(problem, &points, &supports);
