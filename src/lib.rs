@@ -2,6 +2,8 @@
 
 mod decisions;
 mod output;
+mod network;
+mod reader;
 mod report;
 mod scene;
 mod summary;
@@ -15,6 +17,8 @@ use lie_solver::{
     Discretisation, Newton, NewtonSettings, Problem, State, StepRecord, System, solution,
 };
 
+pub use lie_network::{Domain, Grouping};
+pub use network::{NetworkOptions, make_network};
 pub use report::{Failure, Verbosity, print_failure};
 pub use scene::{
     Binding, BoundaryEntry, FixedPointEntry, MeshSource, Named, Scene, bind, surface_roles,

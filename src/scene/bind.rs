@@ -5,7 +5,7 @@ use lie_core::Rock;
 use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
 use lie_solver::{Condition, FixedPoint, Fracture, Problem};
 
-use super::reader::nearest;
+use crate::reader::nearest;
 use super::{Named, Scene};
 
 /// Name under which a section serves all groups without one of their own.
