@@ -169,17 +169,14 @@ fn read_description(
     defects: &mut Vec<Defect>,
 ) -> Option<Input> {
     check_conditions(source, root);
-    let domain = wish
-        .domain
-        .or_else(|| read_domain(root))
-        .or_else(|| root.section("domain").and(None));
+    let domain = read_domain(root, wish.domain);
     let sizes = read_sizes(root, wish);
     let seed = read_seed(root).unwrap_or(0);
     root.require("fracture_set", "a section: [fracture_set.NAME]");
     let mut sets = Vec::new();
     let mut given = Vec::new();
     for (name, section) in root.named_sections("fracture_set") {
-        let read = read_set(source, section, name, folder, seed, domain.as_ref());
+        let read = read_set(source, section, name, folder, seed, domain);
         match read {
             Ok(Some((set, mut fractures))) => {
                 sets.push(set);
@@ -223,26 +220,25 @@ fn names_once(given: &[Given], defects: &mut Vec<Defect>) {
     }
 }
 
-fn read_domain(root: &Section<'_, '_>) -> Option<Domain> {
-    root.require("domain", "a section: [domain]");
-    let section = root.section("domain")?;
+/// The domain of the description, or that of the command line in its place.
+fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain> {
+    if wished.is_none() {
+        root.require("domain", "a section: [domain]");
+    }
+    let Some(section) = root.section("domain") else {
+        return wished;
+    };
     section.require("low", "[0, 0, 0]");
     section.require("high", "[10, 10, 10]");
-    let (low, high) = (section.vector("low"), section.vector("high"));
-    let domain = low.zip(high).map(|(low, high)| Domain {
-        low: low.into(),
-        high: high.into(),
-    });
+    let corners = section.vector("low").zip(section.vector("high"));
+    let domain = corners.map(|(low, high)| Domain::between(low, high));
     let is_box = domain.is_none_or(|domain| (domain.high - domain.low).min_element() > 0.0);
     if !is_box {
-        section.refuse(
-            "high",
-            "the domain has no volume".into(),
-            "high must be above low in every coordinate",
-        );
+        let remedy = "high must be above low in every coordinate";
+        section.refuse("high", "the domain has no volume".into(), remedy);
     }
     section.finish();
-    domain.filter(|_| is_box)
+    wished.or(domain.filter(|_| is_box))
 }
 
 fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<Sizes> {

@@ -54,7 +54,7 @@ pub(super) fn read_set(
     name: String,
     folder: &Path,
     seed: u64,
-    domain: Option<&Domain>,
+    domain: Option<Domain>,
 ) -> Result<SetAndFractures, Vec<Defect>> {
     if let Err((problem, remedy)) = check_name(&name) {
         source.report(&section.at, problem, remedy);
@@ -80,7 +80,7 @@ pub(super) fn read_set(
     let refuse = |(problem, remedy): (String, String)| source.report(&section.at, problem, remedy);
     let drawn = match (asked, domain) {
         (Some(asked), Some(domain)) => {
-            let drawn = asked.draw(domain).map_err(refuse).ok();
+            let drawn = asked.draw(&domain).map_err(refuse).ok();
             drawn.map(|drawn| (asked, drawn))
         }
         _ => None,

@@ -134,7 +134,7 @@ pub(crate) fn tolerance(domain: &Domain) -> f64 {
 fn clip_all(domain: &Domain, sizes: &Sizes, given: Vec<Given>) -> (Vec<Fracture>, Vec<LeftOut>) {
     let (mut fractures, mut left_out) = (Vec::new(), Vec::new());
     for given in given {
-        match clip_one(domain, sizes, &given.polygon) {
+        match clip_one(domain, sizes.gap(), &given.polygon) {
             Ok(polygon) => fractures.push(Fracture {
                 name: given.name,
                 set: given.set,
@@ -153,22 +153,23 @@ fn clip_all(domain: &Domain, sizes: &Sizes, given: Vec<Given>) -> (Vec<Fracture>
     (fractures, left_out)
 }
 
-fn clip_one(domain: &Domain, sizes: &Sizes, polygon: &Polygon) -> Result<Polygon, String> {
-    if let Some(face) = domain.face_under(polygon, 1e3 * tolerance(domain)) {
-        return Err(format!(
-            "it lies on the face `{face}` of the domain, with rock on one side only"
-        ));
-    }
+/// What is in the domain of a polygon, or why nothing is; a rest less than `gap` [m] across is
+/// nothing.
+pub(crate) fn clip_one(domain: &Domain, gap: f64, polygon: &Polygon) -> Result<Polygon, String> {
     let Some(clipped) = domain.clip(polygon) else {
         return Err("outside the domain".into());
     };
+    if let Some(face) = domain.face_under(&clipped, 1e3 * tolerance(domain)) {
+        let reason =
+            format!("it lies on the face `{face}` of the domain, with rock on one side only");
+        return Err(reason);
+    }
     let (low, high) = clipped.bounds();
-    let (extent, gap) = (low.distance(high), sizes.gap());
-    if extent < gap || clipped.area() < gap * gap {
+    if low.distance(high) < gap || clipped.area() < gap * gap {
         return Err(format!(
-            "only {:.3e} m2 of it, {extent:.3e} m across, are inside the domain, too small for cells of {} m",
+            "only {:.3e} m2 of it, {:.3e} m across, are inside the domain: too small for the cells",
             clipped.area(),
-            sizes.h_fracture
+            low.distance(high)
         ));
     }
     Ok(clipped)

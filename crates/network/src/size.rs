@@ -61,6 +61,14 @@ impl SizeLaw {
         }
     }
 
+    /// Smallest possible size [m].
+    pub fn smallest(&self) -> f64 {
+        match *self {
+            SizeLaw::Constant { radius } => radius,
+            SizeLaw::PowerLaw { min, .. } | SizeLaw::Lognormal { min, .. } => min,
+        }
+    }
+
     /// Mean of `size^power`, bounds included.
     pub fn moment(&self, power: f64) -> f64 {
         match *self {

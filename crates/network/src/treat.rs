@@ -12,6 +12,10 @@ use crate::polygon::Polygon;
 /// A corner that moves may bring another within reach; more rounds have not been seen to help.
 const ROUNDS: usize = 4;
 
+/// In a plane at a small angle a corner would have to move far to close a small gap: at most this
+/// many gaps.
+const FARTHEST: f64 = 2.0;
+
 /// Lines that cross at less than this angle [radians] have no useful crossing.
 const NEARLY_PARALLEL: f64 = 0.2;
 
@@ -19,6 +23,8 @@ const NEARLY_PARALLEL: f64 = 0.2;
 struct Line {
     point: DVec3,
     along: DVec3,
+    /// Sine of the angle between the planes.
+    steep: f64,
     /// The other fracture, if the line is not on a face of the domain.
     other: Option<usize>,
     /// How messages call it.
@@ -41,8 +47,8 @@ pub(crate) fn treat(domain: &Domain, sizes: &Sizes, fractures: &mut [Fracture]) 
             near[b].push(a);
         }
         let mut has_changed = false;
-        for index in 0..fractures.len() {
-            let lines = lines(domain, sizes, fractures, index, &near[index]);
+        for (index, near) in near.iter().enumerate() {
+            let lines = lines(domain, sizes, fractures, index, near);
             has_changed |= mend(domain, gap, fractures, index, &lines);
         }
         if !has_changed {
@@ -59,15 +65,15 @@ fn lines(
     near: &[usize],
 ) -> Vec<Line> {
     let plane = &fractures[own].polygon;
-    // Along a sliver a short gap is a long way.
-    let steep = sizes.small_angle.to_radians().sin();
+    let least = sizes.small_angle.to_radians().sin();
     let line = |point: DVec3, normal: DVec3, other: Option<usize>, name: String| {
-        let is_steep = plane.normal().cross(normal).length() > steep;
+        let steep = plane.normal().cross(normal).length();
         let shared = common_line((plane.middle(), plane.normal()), (point, normal));
-        let (point, along) = shared.filter(|_| is_steep)?;
+        let (point, along) = shared.filter(|_| steep > least)?;
         Some(Line {
             point,
             along,
+            steep,
             other,
             name,
         })
@@ -106,7 +112,8 @@ fn target<'a>(
     let mut near: Vec<(f64, &Line)> = lines
         .iter()
         .map(|line| (line.foot(corner).distance(corner), line))
-        .filter(|&(away, line)| away < gap && holds(line, line.foot(corner)))
+        .filter(|(away, line)| away * line.steep < gap && *away < FARTHEST * gap)
+        .filter(|(_, line)| holds(line, line.foot(corner)))
         .collect();
     // Faces first: a corner that leaves the face of the domain would leave a new gap there.
     near.sort_by(|a, b| {
@@ -176,14 +183,29 @@ fn mend(
     has_changed | merge_short_edges(domain, gap, fractures, index, lines)
 }
 
-/// The polygon with one corner elsewhere; none if that is no polygon, another one altogether, or
-/// outside the domain.
+/// The polygon with one corner elsewhere; none if that is another one altogether.
 fn with_corner(domain: &Domain, polygon: &Polygon, corner: usize, to: DVec3) -> Option<Polygon> {
     let mut corners = polygon.corners().to_vec();
     corners[corner] = to.clamp(domain.low, domain.high);
     drop_doubles(&mut corners, tolerance(domain));
+    straighten(&mut corners, polygon.normal());
     let changed = Polygon::new(corners, polygon.normal())?;
-    (changed.area() > 0.5 * polygon.area()).then_some(changed)
+    let is_like = (0.7..1.4).contains(&(changed.area() / polygon.area()));
+    is_like.then_some(changed)
+}
+
+/// Drops corners that turn inwards, as the neighbours of one that has moved out may.
+fn straighten(corners: &mut Vec<DVec3>, normal: DVec3) {
+    let turns_inwards = |corners: &[DVec3], i: usize| {
+        let count = corners.len();
+        let (before, after) = (corners[(i + count - 1) % count], corners[(i + 1) % count]);
+        (corners[i] - before).cross(after - corners[i]).dot(normal) < 0.0
+    };
+    while corners.len() > 3
+        && let Some(inward) = (0..corners.len()).find(|&i| turns_inwards(corners, i))
+    {
+        corners.remove(inward);
+    }
 }
 
 /// Removes the looser corner of each edge shorter than the gap: never one that lies on a line the
@@ -373,6 +395,25 @@ mod tests {
                 .any(|c| c.distance(DVec3::new(5.0, 2.9, 5.0)) < 1e-12),
             "{corners:?}"
         );
+    }
+
+    #[test]
+    fn neighbours_of_a_corner_that_moves_out_give_way() {
+        // Nearly a straight edge: the corner in the middle of it moves 0.1 m down to the floor.
+        let blunt = [
+            [5.0, 3.0, 5.12],
+            [5.0, 4.5, 5.1],
+            [5.0, 6.0, 5.12],
+            [5.0, 6.0, 7.0],
+            [5.0, 3.0, 7.0],
+        ];
+        let fractures = treated(vec![floor(), fracture("blunt", &blunt)]);
+        let lowest = fractures[1]
+            .polygon
+            .corners()
+            .iter()
+            .filter(|corner| corner.z == 5.0);
+        assert!(lowest.count() >= 2, "{:?}", fractures[1]);
     }
 
     #[test]
