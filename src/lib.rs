@@ -1,7 +1,9 @@
 //! A run of Kluft, told as a story: read the scene, mesh, enrich, assemble, solve, write.
 
 mod decisions;
+mod network;
 mod output;
+mod reader;
 mod report;
 mod scene;
 mod summary;
@@ -15,6 +17,8 @@ use lie_solver::{
     Discretisation, Newton, NewtonSettings, Problem, State, StepRecord, System, solution,
 };
 
+pub use lie_network::{Domain, Grouping};
+pub use network::{NetworkOptions, make_network};
 pub use report::{Failure, Verbosity, print_failure};
 pub use scene::{
     Binding, BoundaryEntry, FixedPointEntry, MeshSource, Named, Scene, bind, surface_roles,

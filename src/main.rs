@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use kluft::{Failure, Options, Verbosity, run};
+use kluft::{Domain, Failure, Grouping, NetworkOptions, Options, Verbosity, make_network, run};
 
 /// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
 ///
@@ -21,6 +21,7 @@ struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   kluft run geometries/inclined-joint/scene.toml          mesh, solve, write beside the scene
+  kluft network fractures.csv -o network                  a geometry and a scene from a list
   kluft run scene.toml --out results --threads 2 -v       say where and how
   paraview results/rock.pvd results/fractures.pvd         look at it
 
@@ -34,6 +35,9 @@ enum Command {
     /// Mesh, enrich, solve and write a scene
     #[command(after_help = RUN_HELP)]
     Run(RunArgs),
+    /// Make a geometry and a scene from a list or random sets of fractures
+    #[command(after_help = NETWORK_HELP)]
+    Network(NetworkArgs),
 }
 
 const RUN_HELP: &str = "\
@@ -75,19 +79,155 @@ struct RunArgs {
     verbose: bool,
 }
 
-fn main() -> ExitCode {
-    let Command::Run(args) = Cli::parse().command;
-    let verbosity = match (args.quiet, args.verbose) {
+const NETWORK_HELP: &str = "\
+Writes NAME.geo, scene.toml (ready for `kluft run`) and network.json (statistics, and what became
+of every fracture). Lengths in metres, angles in degrees; dip directions count clockwise from north;
+x is east, y is north, z is up.
+
+A list (CSV) has one line for each fracture; `#` begins a comment:
+
+  name, set, shape, x, y, z, dip, dip_direction, radius, length, width, rotation, points
+  f1, steep, disc, 5, 5, 5, 70, 135, 3,,,,
+  f2, steep, rectangle, 4, 5, 6, 80, 140,, 6, 3, 0,
+  f3, flat, polygon,,,,,,,,,, 0 0 5; 4 0 5; 4 4 5.5; 0 4 5.5
+
+Shapes: disc (radius), ellipse (semi_major, semi_minor, rotation), rectangle (length, width,
+rotation), polygon (points; convex). The first side runs along the strike, turned by `rotation`
+towards the dip.
+
+A description (TOML) adds the rock, materials and random sets:
+
+  seed = 1
+  [domain]
+  low = [0, 0, 0]
+  high = [10, 10, 10]
+  [mesh]
+  h = 1.0                            # away from fractures
+  h_fracture = 0.5
+  h_intersection = 0.3
+  [fracture_set.steep]               # keys of [fracture.NAME] in a scene, and one of
+  aperture = 1e-3                    #   list = \"steep.csv\"
+  normal_stiffness = 2e10            #   [[fracture]] sections with set = \"steep\"
+  shear_stiffness = 1e10             #   orientation, size, and p32 or count
+  orientation = { dip = 70, dip_direction = 135, kappa = 20 }
+  size = { law = \"power\", exponent = 2.5, min = 1, max = 5 }
+  p32 = 0.3                          # area per volume, m2/m3
+
+Laws: constant (radius), power (exponent, min, max), lognormal (mean, sd, min, max). Sections of a
+scene, such as [rock.rock] or [boundary.top], go into the scene.
+
+Fractures are cut to the domain. Ends closer to another fracture or a face than a fifth of
+h_fracture are moved onto it; what else is too small for the mesh is listed with its fractures.";
+
+#[derive(Args)]
+struct NetworkArgs {
+    /// List (.csv) or description (.toml) of the fractures
+    input: PathBuf,
+    /// Folder for geometry, scene and statistics
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Name of the geometry, without .geo
+    #[arg(long, value_name = "NAME", default_value = "network", value_parser = file_name)]
+    name: String,
+    /// What gets a physical surface of its own
+    #[arg(long, value_enum, default_value = "fracture")]
+    group: Group,
+    /// The box of rock: two opposite corners [default: of the description, or around the list]
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = domain, allow_hyphen_values = true)]
+    domain: Option<Domain>,
+    /// Cell size away from fractures, m [default: of the description]
+    #[arg(long, value_name = "M", value_parser = length)]
+    h: Option<f64>,
+    /// Leave features that are too small for the mesh as they are
+    #[arg(long)]
+    keep_small: bool,
+    /// Print nothing but errors
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the report even when the output is not a terminal
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Group {
+    /// Each fracture
+    Fracture,
+    /// Each set
+    Set,
+}
+
+fn file_name(text: &str) -> Result<String, String> {
+    let is_plain = !text.is_empty() && !text.contains(['/', '\\', '\0']);
+    is_plain
+        .then(|| text.to_owned())
+        .ok_or_else(|| "a name without folders is wanted".to_owned())
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse::<f64>()
+        .ok()
+        .filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "a length greater than 0 is wanted".to_owned())
+}
+
+fn domain(text: &str) -> Result<Domain, String> {
+    let numbers: Result<Vec<f64>, _> = text
+        .split(',')
+        .map(|word| word.trim().parse::<f64>())
+        .collect();
+    let numbers = numbers
+        .ok()
+        .and_then(|numbers| <[f64; 6]>::try_from(numbers).ok());
+    let corners = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+    let [a, b, c, d, e, f] =
+        corners.ok_or_else(|| "six numbers are wanted, e.g. 0,0,0,10,10,10".to_owned())?;
+    if a >= d || b >= e || c >= f {
+        return Err("the second corner must be above the first in every coordinate".to_owned());
+    }
+    Ok(Domain::between([a, b, c], [d, e, f]))
+}
+
+fn verbosity(quiet: bool, verbose: bool) -> Verbosity {
+    match (quiet, verbose) {
         (true, _) => Verbosity::Quiet,
         (_, true) => Verbosity::Verbose,
         _ => Verbosity::Terminal,
-    };
+    }
+}
+
+fn solve(args: RunArgs) -> Result<(), Failure> {
     let options = Options {
         out: args.out,
         threads: args.threads.map(usize::from),
-        verbosity,
+        verbosity: verbosity(args.quiet, args.verbose),
     };
-    match run(&args.scene, &options) {
+    run(&args.scene, &options)
+}
+
+fn network(args: NetworkArgs) -> Result<(), Failure> {
+    let options = NetworkOptions {
+        out: args.out,
+        name: args.name,
+        grouping: match args.group {
+            Group::Fracture => Grouping::Fracture,
+            Group::Set => Grouping::Set,
+        },
+        domain: args.domain,
+        h: args.h,
+        keep_small: args.keep_small,
+        verbosity: verbosity(args.quiet, args.verbose),
+    };
+    make_network(&args.input, &options)
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(args) => solve(args),
+        Command::Network(args) => network(args),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             kluft::print_failure(&failure);

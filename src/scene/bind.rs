@@ -5,8 +5,8 @@ use lie_core::{FacetQuadrature, Rock};
 use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
 use lie_solver::{Condition, FixedPoint, Fracture, Problem};
 
-use super::reader::nearest;
 use super::{Named, Scene};
+use crate::reader::nearest;
 
 /// Name under which a section serves all groups without one of their own.
 const DEFAULT: &str = "default";

@@ -1,7 +1,6 @@
 //! The scene file: what a user may say, before it meets a mesh.
 
 mod bind;
-mod reader;
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +10,8 @@ use lie_mesh::Defect;
 use lie_solver::{Fracture, InitialStress, Profile, Support, SurfaceLoad};
 
 pub use bind::{Binding, bind, surface_roles};
-use reader::{Accept, Section, Source};
+
+use crate::reader::{self, Accept, Section, Source};
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -107,7 +107,7 @@ impl Scene {
     /// # Errors
     /// Every defect of the text, each with its line and a remedy.
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Vec<Defect>> {
-        let source = Source::new(name, text);
+        let source = Source::new(name, text, "the scene");
         let table = source.parse();
         let scene = table.as_ref().and_then(|table| {
             let root = Section::new(&source, table.get_ref(), String::new(), 0..0);
@@ -121,6 +121,24 @@ impl Scene {
             _ => Err(defects),
         }
     }
+}
+
+/// Finds the defects of everything in a scene that speaks of neither mesh nor fractures; another
+/// file may hold those sections for a scene to be made from it.
+pub(crate) fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) {
+    root.text("title");
+    for (name, section) in root.named_sections("rock") {
+        entry(source, name, section, read_rock);
+    }
+    for (name, section) in root.named_sections("boundary") {
+        entry(source, name, section, read_boundary);
+    }
+    for section in root.listed_sections("fixed_point") {
+        entry(source, String::new(), section, read_fixed_point);
+    }
+    read_gravity(root);
+    root.section("initial_stress").map(read_initial_stress);
+    read_steps(root);
 }
 
 fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Option<Scene> {
@@ -244,7 +262,8 @@ fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
     })
 }
 
-fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
+/// Reads what a scene says about a fracture.
+pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
     for (key, example) in [
         ("aperture", "1e-4"),
         ("normal_stiffness", "1e11"),

@@ -3,6 +3,8 @@
 mod bad_input;
 mod fuzz_scene;
 mod harness;
+mod network;
+mod network_seeds;
 mod read_back;
 mod renumbered;
 mod results;

@@ -28,6 +28,20 @@ fn wrong_arguments_are_named_with_the_usage() {
         (&["run", "scene.toml", "--threads", "many"], "many"),
         (&["run", "scene.toml", "--out"], "--out"),
         (&["run", "scene.toml", "-q", "-v"], "cannot be used with"),
+        (&["network", "list.csv"], "--out"),
+        (
+            &["network", "list.csv", "-o", "x", "--domain", "0,0,0,1,1"],
+            "six numbers",
+        ),
+        (
+            &["network", "list.csv", "-o", "x", "--domain", "0,0,0,1,-1,1"],
+            "above the first",
+        ),
+        (&["network", "list.csv", "-o", "x", "--h", "-1"], "--h"),
+        (
+            &["network", "list.csv", "-o", "x", "--name", "a/b"],
+            "without folders",
+        ),
     ] {
         let run = refused(arguments);
         assert!(run.err.contains(named), "{arguments:?}: {}", run.err);
@@ -40,6 +54,7 @@ fn help_and_version_are_answers() {
     for (arguments, named) in [
         (&["--help"][..], "Exit status:"),
         (&["run", "--help"], "[fracture.joint]"),
+        (&["network", "--help"], "dip_direction"),
         (&["--version"], env!("CARGO_PKG_VERSION")),
     ] {
         let run = kluft(arguments);

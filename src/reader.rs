@@ -13,7 +13,7 @@ const ALIKE: f64 = 0.5;
 
 /// Which numbers a key accepts.
 #[derive(Clone, Copy)]
-pub(super) enum Accept {
+pub(crate) enum Accept {
     /// Any finite number.
     Finite,
     /// Finite and greater than zero.
@@ -45,9 +45,11 @@ impl Accept {
 }
 
 /// The file being read and the defects found so far.
-pub(super) struct Source<'a> {
+pub(crate) struct Source<'a> {
     name: &'a str,
     text: &'a str,
+    /// How messages call the whole file.
+    what: &'static str,
     /// Position of each line break.
     breaks: Vec<usize>,
     /// Defects with their position in the text.
@@ -55,24 +57,25 @@ pub(super) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(name: &'a str, text: &'a str) -> Self {
+    pub(crate) fn new(name: &'a str, text: &'a str, what: &'static str) -> Self {
         let bytes = text.bytes().enumerate();
         let breaks = bytes.filter(|(_, byte)| *byte == b'\n');
         Self {
             name,
             text,
+            what,
             breaks: breaks.map(|(position, _)| position).collect(),
             defects: RefCell::default(),
         }
     }
 
-    pub(super) fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
+    pub(crate) fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
         self.defects
             .borrow_mut()
             .push((at.start, Defect::new(self.place(at), problem, remedy)));
     }
 
-    pub(super) fn place(&self, at: &Range<usize>) -> String {
+    pub(crate) fn place(&self, at: &Range<usize>) -> String {
         format!("{}:{}", self.name, self.line(at.start))
     }
 
@@ -81,7 +84,7 @@ impl<'a> Source<'a> {
     }
 
     /// The defects in the order of the text.
-    pub(super) fn into_defects(self) -> Vec<Defect> {
+    pub(crate) fn into_defects(self) -> Vec<Defect> {
         let mut defects = self.defects.into_inner();
         defects.sort_by_key(|(position, _)| *position);
         defects.into_iter().map(|(_, defect)| defect).collect()
@@ -89,7 +92,7 @@ impl<'a> Source<'a> {
 
     /// The whole file as a table. With a syntax error there is none: whatever stands behind the
     /// error may have got lost or into another section, and would be reported for nothing.
-    pub(super) fn parse(&self) -> Option<Spanned<DeTable<'a>>> {
+    pub(crate) fn parse(&self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         let is_sound = errors.is_empty();
         let mut lines = BTreeSet::new();
@@ -107,18 +110,18 @@ impl<'a> Source<'a> {
 
 /// A table of the file. Keys that nobody asked for are defects when it is dropped by
 /// [`Section::finish`].
-pub(super) struct Section<'a, 'i> {
+pub(crate) struct Section<'a, 'i> {
     source: &'a Source<'i>,
     table: &'a DeTable<'i>,
     /// How messages call it, e.g. `[rock.granite]`.
-    pub(super) title: String,
+    pub(crate) title: String,
     /// Where it stands.
-    pub(super) at: Range<usize>,
+    pub(crate) at: Range<usize>,
     asked: RefCell<BTreeSet<&'static str>>,
 }
 
 impl<'a, 'i> Section<'a, 'i> {
-    pub(super) fn new(
+    pub(crate) fn new(
         source: &'a Source<'i>,
         table: &'a DeTable<'i>,
         title: String,
@@ -151,19 +154,29 @@ impl<'a, 'i> Section<'a, 'i> {
         );
     }
 
+    /// Everything in it, unread.
+    pub(crate) fn table(&self) -> &'a DeTable<'i> {
+        self.table
+    }
+
+    /// File and line.
+    pub(crate) fn place(&self) -> String {
+        self.source.place(&self.at)
+    }
+
     /// Whether the key is there.
-    pub(super) fn has(&self, key: &'static str) -> bool {
+    pub(crate) fn has(&self, key: &'static str) -> bool {
         self.get(key).is_some()
     }
 
     /// Whether the key is there and holds a table.
-    pub(super) fn is_table(&self, key: &'static str) -> bool {
+    pub(crate) fn is_table(&self, key: &'static str) -> bool {
         self.get(key)
             .is_some_and(|value| value.get_ref().is_table())
     }
 
     /// Reports a key that must be there and is not.
-    pub(super) fn require(&self, key: &'static str, example: &str) {
+    pub(crate) fn require(&self, key: &'static str, example: &str) {
         if !self.has(key) && self.misspelt(key).is_none() {
             self.report(
                 &self.at,
@@ -187,7 +200,7 @@ impl<'a, 'i> Section<'a, 'i> {
     /// How messages call it, the file itself included.
     fn name(&self) -> &str {
         if self.title.is_empty() {
-            "the scene"
+            self.source.what
         } else {
             &self.title
         }
@@ -202,7 +215,7 @@ impl<'a, 'i> Section<'a, 'i> {
             .find(|name| strsim::normalized_damerau_levenshtein(name, key) > 0.7)
     }
 
-    pub(super) fn number(&self, key: &'static str, accept: Accept) -> Option<f64> {
+    pub(crate) fn number(&self, key: &'static str, accept: Accept) -> Option<f64> {
         let value = self.get(key)?;
         self.as_number(key, value, accept)
     }
@@ -223,7 +236,7 @@ impl<'a, 'i> Section<'a, 'i> {
         Some(number)
     }
 
-    pub(super) fn flag(&self, key: &'static str) -> Option<bool> {
+    pub(crate) fn flag(&self, key: &'static str) -> Option<bool> {
         let value = self.get(key)?;
         let flag = value.get_ref().as_bool();
         if flag.is_none() {
@@ -232,7 +245,7 @@ impl<'a, 'i> Section<'a, 'i> {
         flag
     }
 
-    pub(super) fn text(&self, key: &'static str) -> Option<&'a str> {
+    pub(crate) fn text(&self, key: &'static str) -> Option<&'a str> {
         let value = self.get(key)?;
         let text = value.get_ref().as_str();
         if text.is_none() {
@@ -242,12 +255,12 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Reports `key`'s value with a remedy.
-    pub(super) fn refuse(&self, key: &'static str, problem: String, remedy: impl Into<String>) {
+    pub(crate) fn refuse(&self, key: &'static str, problem: String, remedy: impl Into<String>) {
         let at = self.table.get(key).map_or(self.at.clone(), Spanned::span);
         self.report(&at, problem, remedy.into());
     }
 
-    pub(super) fn numbers(&self, key: &'static str, accept: Accept) -> Option<Vec<f64>> {
+    pub(crate) fn numbers(&self, key: &'static str, accept: Accept) -> Option<Vec<f64>> {
         let value = self.get(key)?;
         let Some(array) = value.get_ref().as_array() else {
             self.wrong_type(key, value, "numbers in brackets, e.g. [0.5, 1.0]");
@@ -259,7 +272,7 @@ impl<'a, 'i> Section<'a, 'i> {
             .collect()
     }
 
-    pub(super) fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
+    pub(crate) fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
         let numbers = self.numbers(key, Accept::Finite)?;
         let vector = <[f64; 3]>::try_from(numbers).ok();
         if vector.is_none() {
@@ -272,7 +285,30 @@ impl<'a, 'i> Section<'a, 'i> {
         vector
     }
 
-    pub(super) fn section(&self, key: &'static str) -> Option<Section<'a, 'i>> {
+    /// Points in brackets.
+    pub(crate) fn vectors(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
+        let value = self.get(key)?;
+        let wanted = "points in brackets, e.g. [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+        let point = |entry: &Spanned<DeValue<'i>>| -> Option<[f64; 3]> {
+            let numbers = entry.get_ref().as_array()?.iter();
+            let numbers = numbers.map(|number| self.as_number(key, number, Accept::Finite));
+            numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+        };
+        let points = value
+            .get_ref()
+            .as_array()
+            .map(|array| array.iter().map(point).collect());
+        if !matches!(points, Some(Some(_))) {
+            self.refuse(
+                key,
+                format!("`{key}` in {} is no list of points", self.title),
+                format!("write {wanted}"),
+            );
+        }
+        points.flatten()
+    }
+
+    pub(crate) fn section(&self, key: &'static str) -> Option<Section<'a, 'i>> {
         let value = self.get(key)?;
         let Some(table) = value.get_ref().as_table() else {
             self.wrong_type(key, value, &format!("a section: [{key}]"));
@@ -291,7 +327,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// All sections `[key.NAME]`.
-    pub(super) fn named_sections(&self, key: &'static str) -> Vec<(String, Section<'a, 'i>)> {
+    pub(crate) fn named_sections(&self, key: &'static str) -> Vec<(String, Section<'a, 'i>)> {
         let Some(parent) = self.section(key) else {
             return Vec::new();
         };
@@ -314,7 +350,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// All sections `[[key]]`.
-    pub(super) fn listed_sections(&self, key: &'static str) -> Vec<Section<'a, 'i>> {
+    pub(crate) fn listed_sections(&self, key: &'static str) -> Vec<Section<'a, 'i>> {
         let Some(value) = self.get(key) else {
             return Vec::new();
         };
@@ -336,7 +372,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// All keys of a table of numbers whose names are free.
-    pub(super) fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
+    pub(crate) fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
         let Some(section) = self.section(key) else {
             return Vec::new();
         };
@@ -350,7 +386,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Reports the keys that nobody asked for, each with the nearest known one.
-    pub(super) fn finish(self) {
+    pub(crate) fn finish(self) {
         let known = self.asked.borrow();
         for (name, _) in self.table.iter() {
             let key = name.get_ref().as_ref();

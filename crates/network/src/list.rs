@@ -1,0 +1,238 @@
+//! Reads a list of fractures: one line a fracture, the header names the columns.
+
+use std::collections::HashMap;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use lie_mesh::Defect;
+
+use crate::list_row::{Row, place_of, polygon, suggestion};
+use crate::network::Given;
+use crate::polygon::check_name;
+
+const COLUMNS: [&str; 17] = [
+    "name",
+    "set",
+    "shape",
+    "x",
+    "y",
+    "z",
+    "dip",
+    "dip_direction",
+    "radius",
+    "semi_major",
+    "semi_minor",
+    "length",
+    "width",
+    "rotation",
+    "sides",
+    "points",
+    "comment",
+];
+
+/// Reads the text of a list; `file` is for messages. Fractures of a line without a set belong to
+/// `set`, and a line may name no other if `only` is given.
+///
+/// # Errors
+/// Every defect with its line and column, and a remedy.
+pub fn read_list(text: &str, file: &str, set: &str, only: bool) -> Result<Vec<Given>, Vec<Defect>> {
+    let mut defects = Vec::new();
+    let mut fractures = Vec::new();
+    let mut reader = ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let columns = match reader.headers() {
+        Ok(headers) => columns(headers, text, file, &mut defects),
+        Err(error) => return Err(vec![broken(file, &error)]),
+    };
+    for (number, record) in reader.records().enumerate() {
+        let record = match record {
+            Ok(record) => record,
+            Err(error) => {
+                defects.push(broken(file, &error));
+                continue;
+            }
+        };
+        let mut row = Row::new(&columns, &record, (text, file), &mut defects);
+        if columns.contains_key("shape") {
+            fractures.extend(fracture(&mut row, number, set, only));
+        }
+    }
+    repeated_names(&fractures, &mut defects);
+    if defects.is_empty() {
+        Ok(fractures)
+    } else {
+        Err(defects)
+    }
+}
+
+fn broken(file: &str, error: &csv::Error) -> Defect {
+    let line = error.position().map_or(1, csv::Position::line);
+    let remedy = "write UTF-8 text, with quotes around values that hold a comma";
+    Defect::new(format!("{file}:{line}"), error.to_string(), remedy)
+}
+
+/// Number of each known column; unknown, doubled and missing ones are defects.
+fn columns(
+    headers: &StringRecord,
+    text: &str,
+    file: &str,
+    defects: &mut Vec<Defect>,
+) -> HashMap<&'static str, usize> {
+    let place = place_of(headers, text, file);
+    let mut found = HashMap::new();
+    for (index, name) in headers.iter().enumerate() {
+        let name = name.trim_start_matches('\u{feff}');
+        let known = COLUMNS.iter().copied().find(|known| *known == name);
+        let Some(known) = known else {
+            defects.push(Defect::new(
+                &place,
+                format!("unknown column `{name}`"),
+                suggestion(name, &COLUMNS),
+            ));
+            continue;
+        };
+        if found.insert(known, index).is_some() {
+            defects.push(Defect::new(
+                &place,
+                format!("column `{name}` stands twice"),
+                "remove one of them",
+            ));
+        }
+    }
+    if !found.contains_key("shape") && defects.is_empty() {
+        let remedy =
+            "begin with a line of column names, e.g. name,shape,x,y,z,dip,dip_direction,radius";
+        defects.push(Defect::new(&place, "there is no column `shape`", remedy));
+    }
+    found
+}
+
+fn repeated_names(fractures: &[Given], defects: &mut Vec<Defect>) {
+    let mut first: HashMap<&str, &str> = HashMap::new();
+    for fracture in fractures {
+        if let Some(other) = first.insert(&fracture.name, &fracture.place) {
+            let problem = format!("the name `{}` is taken ({other})", fracture.name);
+            defects.push(Defect::new(
+                &fracture.place,
+                problem,
+                "give each fracture a name of its own",
+            ));
+        }
+    }
+}
+
+fn fracture(row: &mut Row<'_>, number: usize, set: &str, only: bool) -> Option<Given> {
+    let named_set = row.text("set").unwrap_or(set).to_owned();
+    if only && named_set != set {
+        let remedy = format!("leave the column out, or write {set}");
+        row.refuse(
+            "set",
+            &format!("set `{named_set}` in the list of set `{set}`"),
+            &remedy,
+        );
+    }
+    let name = row
+        .text("name")
+        .map_or_else(|| format!("{named_set}-{}", number + 1), str::to_owned);
+    for (column, name) in [("name", &name), ("set", &named_set)] {
+        if let Err((problem, remedy)) = check_name(name) {
+            row.refuse(column, &problem, &remedy);
+        }
+    }
+    Some(Given {
+        name,
+        set: named_set,
+        place: row.place.clone(),
+        polygon: polygon(row)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIST: &str = "\
+# four fractures
+name, set, shape, x, y, z, dip, dip_direction, radius, semi_major, semi_minor, length, width, rotation, points
+a, north, disc, 1, 2, 3, 30, 90, 2,,,,,,
+b, north, ellipse, 1, 2, 3, 30, 90,, 2, 1,,, 45,
+# a comment between
+c, , rectangle, 1, 2, 3, 90, 0,,,, 4, 2,,
+d, , polygon,,,,,,,,,,,, 0 0 0; 2 0 0; 0 2 0
+";
+
+    #[test]
+    fn every_shape_is_read() {
+        let list = read_list(LIST, "list.csv", "rest", false).expect("a list");
+        let pi = std::f64::consts::PI;
+        for (fracture, (name, set, area)) in list.iter().zip([
+            ("a", "north", 4.0 * pi),
+            ("b", "north", 2.0 * pi),
+            ("c", "rest", 8.0),
+            ("d", "rest", 2.0),
+        ]) {
+            assert_eq!((fracture.name.as_str(), fracture.set.as_str()), (name, set));
+            assert!((fracture.polygon.area() - area).abs() < 1e-12);
+        }
+        assert_eq!(list.len(), 4);
+        assert_eq!(list[2].place, "list.csv:6");
+    }
+
+    #[test]
+    fn every_defect_is_told_at_once_with_line_and_column() {
+        let text = LIST
+            .replace("disc, 1", "disk, one")
+            .replace("ellipse, 1", "ellipse, one")
+            .replace("rectangle, 1, 2, 3, 90", "rectangle, 1, 2, 3, 95")
+            .replace("2 0 0;", "2 0;");
+        let defects = read_list(&text, "list.csv", "rest", false).expect_err("defects");
+        let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
+        for (defect, parts) in text.iter().zip([
+            ["list.csv:3, column `shape`", "did you mean `disc`?"],
+            ["list.csv:4, column `x`", "`one` is not a coordinate"],
+            ["list.csv:6, column `dip`", "0 to 90"],
+            ["list.csv:7, column `points`", "`2 0` is not a point"],
+        ]) {
+            assert!(parts.iter().all(|part| defect.contains(part)), "{defect}");
+        }
+        assert_eq!(text.len(), 4, "{text:#?}");
+    }
+
+    #[test]
+    fn misspelt_columns_are_told_with_the_nearest() {
+        let text = LIST.replace("dip_direction,", "dip_diretion,");
+        let defects = read_list(&text, "list.csv", "rest", false).expect_err("defects");
+        assert!(defects[0].problem.contains("`dip_diretion`"));
+        assert!(defects[0].remedy.contains("`dip_direction`"));
+    }
+
+    #[test]
+    fn names_stand_once() {
+        let text = LIST.replace("\nb,", "\na,");
+        let defects = read_list(&text, "list.csv", "rest", false).expect_err("defects");
+        assert!(
+            defects[0].problem.contains("`a` is taken (list.csv:3)"),
+            "{}",
+            defects[0]
+        );
+    }
+
+    #[test]
+    fn other_sets_are_refused_in_the_list_of_one() {
+        let defects = read_list(LIST, "list.csv", "rest", true).expect_err("defects");
+        assert_eq!(defects.len(), 2);
+    }
+
+    #[test]
+    fn values_of_other_shapes_are_refused() {
+        let text = LIST.replace("disc, 1, 2, 3, 30, 90, 2,,", "disc, 1, 2, 3, 30, 90, 2, 5,");
+        let defects = read_list(&text, "list.csv", "rest", false).expect_err("defects");
+        assert!(
+            defects[0].problem.contains("a disc has no `semi_major`"),
+            "{}",
+            defects[0]
+        );
+    }
+}

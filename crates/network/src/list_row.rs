@@ -1,0 +1,298 @@
+//! One line of a list of fractures, and the shapes it may describe.
+
+use std::collections::HashMap;
+
+use csv::StringRecord;
+use glam::DVec3;
+use lie_mesh::Defect;
+
+use crate::orientation::Orientation;
+use crate::polygon::{Outline, Polygon};
+
+const SHAPES: [&str; 4] = ["disc", "ellipse", "rectangle", "polygon"];
+
+/// Corners of a disc or an ellipse unless the input says otherwise.
+pub const SIDES: usize = 12;
+
+/// File and line of a record. Its position is where the search for it began, before the comments
+/// and empty lines above it.
+pub(crate) fn place_of(record: &StringRecord, text: &str, file: &str) -> String {
+    let (line, byte) = record
+        .position()
+        .map_or((1, 0), |at| (at.line(), at.byte() as usize));
+    let above = text.get(byte..).unwrap_or_default().lines();
+    let skipped = above.take_while(|line| line.trim().is_empty() || line.starts_with('#'));
+    format!("{file}:{}", line + skipped.count() as u64)
+}
+
+/// Points out the nearest of the known names, or lists them.
+pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
+    let alike = |known: &&&str| (strsim::normalized_damerau_levenshtein(name, known) * 1e6) as u64;
+    match known
+        .iter()
+        .max_by_key(alike)
+        .filter(|near| alike(near) >= 500_000)
+    {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("known: {}", known.join(", ")),
+    }
+}
+
+/// One line of the list.
+pub(crate) struct Row<'a> {
+    columns: &'a HashMap<&'static str, usize>,
+    record: &'a StringRecord,
+    pub(crate) place: String,
+    defects: &'a mut Vec<Defect>,
+}
+
+impl<'a> Row<'a> {
+    pub(crate) fn new(
+        columns: &'a HashMap<&'static str, usize>,
+        record: &'a StringRecord,
+        (text, file): (&str, &str),
+        defects: &'a mut Vec<Defect>,
+    ) -> Self {
+        Self {
+            columns,
+            record,
+            place: place_of(record, text, file),
+            defects,
+        }
+    }
+
+    /// What stands in a column; empty counts as nothing.
+    pub(crate) fn text(&self, column: &'static str) -> Option<&'a str> {
+        let text = self.record.get(*self.columns.get(column)?)?;
+        (!text.is_empty()).then_some(text)
+    }
+
+    pub(crate) fn refuse(&mut self, column: &str, problem: &str, remedy: &str) {
+        let place = format!("{}, column `{column}`", self.place);
+        self.defects.push(Defect::new(place, problem, remedy));
+    }
+
+    fn optional(
+        &mut self,
+        column: &'static str,
+        fits: fn(f64) -> bool,
+        wanted: &str,
+    ) -> Option<f64> {
+        let text = self.text(column)?;
+        let number = text
+            .parse::<f64>()
+            .ok()
+            .filter(|number| number.is_finite() && fits(*number));
+        if number.is_none() {
+            self.refuse(
+                column,
+                &format!("`{text}` is not {wanted}"),
+                &format!("write {wanted}"),
+            );
+        }
+        number
+    }
+
+    fn number(&mut self, column: &'static str, fits: fn(f64) -> bool, wanted: &str) -> Option<f64> {
+        if self.text(column).is_none() {
+            self.refuse(column, "the value is missing", &format!("write {wanted}"));
+        }
+        self.optional(column, fits, wanted)
+    }
+
+    fn length(&mut self, column: &'static str) -> Option<f64> {
+        self.number(column, |x| x > 0.0, "a length in metres, greater than 0")
+    }
+
+    fn rotation(&mut self) -> f64 {
+        self.optional("rotation", |_| true, "an angle in degrees")
+            .unwrap_or(0.0)
+    }
+
+    fn sides(&mut self) -> usize {
+        let wanted = "a whole number of sides, 3 to 100";
+        let sides = self.optional(
+            "sides",
+            |n| (3.0..=100.0).contains(&n) && n.fract() == 0.0,
+            wanted,
+        );
+        sides.map_or(SIDES, |sides| sides as usize)
+    }
+
+    /// Reports values in columns that mean nothing for this shape.
+    fn unused(&mut self, shape: &str, used: &[&str]) {
+        let of_shapes = [
+            "x",
+            "y",
+            "z",
+            "dip",
+            "dip_direction",
+            "radius",
+            "semi_major",
+            "semi_minor",
+            "length",
+            "width",
+            "rotation",
+            "sides",
+            "points",
+        ];
+        for column in of_shapes
+            .into_iter()
+            .filter(|column| !used.contains(column))
+        {
+            if self.text(column).is_some() {
+                let problem = format!("a {shape} has no `{column}`");
+                self.refuse(
+                    column,
+                    &problem,
+                    &format!("leave it empty; a {shape} has {}", used.join(", ")),
+                );
+            }
+        }
+    }
+}
+
+/// The polygon that a line describes.
+pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
+    let outline = match row.text("shape") {
+        Some("polygon") => return through_points(row),
+        Some("disc") => disc(row),
+        Some("ellipse") => ellipse(row),
+        Some("rectangle") => rectangle(row),
+        Some(other) => {
+            let problem = format!("unknown shape `{other}`");
+            row.refuse("shape", &problem, &suggestion(other, &SHAPES));
+            return None;
+        }
+        None => {
+            row.refuse(
+                "shape",
+                "the value is missing",
+                &format!("write one of {}", SHAPES.join(", ")),
+            );
+            return None;
+        }
+    };
+    let mut coordinate = |column| row.number(column, |_| true, "a coordinate in metres");
+    let (x, y, z) = (coordinate("x"), coordinate("y"), coordinate("z"));
+    let dip = row.number(
+        "dip",
+        |dip| (0.0..=90.0).contains(&dip),
+        "an angle from 0 to 90 degrees",
+    );
+    let turn = |angle: f64| (-360.0..=360.0).contains(&angle);
+    let dip_direction = row.number(
+        "dip_direction",
+        turn,
+        "an angle in degrees, clockwise from north",
+    );
+    let orientation = Orientation {
+        dip: dip?,
+        dip_direction: dip_direction?,
+    };
+    Some(Polygon::placed(
+        outline?,
+        DVec3::new(x?, y?, z?),
+        orientation,
+    ))
+}
+
+fn disc(row: &mut Row<'_>) -> Option<Outline> {
+    row.unused(
+        "disc",
+        &[
+            "x",
+            "y",
+            "z",
+            "dip",
+            "dip_direction",
+            "radius",
+            "rotation",
+            "sides",
+        ],
+    );
+    let (radius, rotation, sides) = (row.length("radius"), row.rotation(), row.sides());
+    Some(Outline::Disc {
+        radius: radius?,
+        sides,
+        rotation,
+    })
+}
+
+fn ellipse(row: &mut Row<'_>) -> Option<Outline> {
+    let used = [
+        "x",
+        "y",
+        "z",
+        "dip",
+        "dip_direction",
+        "semi_major",
+        "semi_minor",
+        "rotation",
+        "sides",
+    ];
+    row.unused("ellipse", &used);
+    let (semi_major, semi_minor) = (row.length("semi_major"), row.length("semi_minor"));
+    let (rotation, sides) = (row.rotation(), row.sides());
+    Some(Outline::Ellipse {
+        semi_major: semi_major?,
+        semi_minor: semi_minor?,
+        rotation,
+        sides,
+    })
+}
+
+fn rectangle(row: &mut Row<'_>) -> Option<Outline> {
+    row.unused(
+        "rectangle",
+        &[
+            "x",
+            "y",
+            "z",
+            "dip",
+            "dip_direction",
+            "length",
+            "width",
+            "rotation",
+        ],
+    );
+    let (length, width, rotation) = (row.length("length"), row.length("width"), row.rotation());
+    Some(Outline::Rectangle {
+        length: length?,
+        width: width?,
+        rotation,
+    })
+}
+
+fn through_points(row: &mut Row<'_>) -> Option<Polygon> {
+    row.unused("polygon", &["points"]);
+    let remedy = "write \"x y z; x y z; x y z\", three points or more, in metres";
+    let Some(text) = row.text("points") else {
+        row.refuse("points", "the value is missing", remedy);
+        return None;
+    };
+    let point = |text: &str| -> Option<DVec3> {
+        let numbers: Vec<f64> = text
+            .split_whitespace()
+            .map_while(|word| word.parse().ok())
+            .collect();
+        let is_whole = numbers.len() == text.split_whitespace().count();
+        let point = DVec3::from(<[f64; 3]>::try_from(numbers).ok()?);
+        (is_whole && point.is_finite()).then_some(point)
+    };
+    let mut corners = Vec::new();
+    for text in text.trim_end_matches(';').split(';') {
+        let Some(corner) = point(text) else {
+            row.refuse(
+                "points",
+                &format!("`{}` is not a point", text.trim()),
+                remedy,
+            );
+            return None;
+        };
+        corners.push(corner);
+    }
+    Polygon::through(&corners)
+        .map_err(|(problem, remedy)| row.refuse("points", &problem, &remedy))
+        .ok()
+}

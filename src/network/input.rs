@@ -1,0 +1,459 @@
+//! Reads what a network is to be made of.
+
+use std::path::Path;
+
+use glam::DVec3;
+use lie_mesh::Defect;
+use lie_network::{
+    Domain, Given, Orientation, Outline, Polygon, SIDES, Sizes, check_name, read_list,
+};
+
+use super::scene::{Passages, passages};
+use super::sets::{Set, read_set};
+use crate::reader::{self, Accept, Section, Source};
+use crate::scene::check_conditions;
+
+/// What the command line says.
+pub(super) struct Wish {
+    pub(super) domain: Option<Domain>,
+    pub(super) h: Option<f64>,
+    pub(super) keep_small: bool,
+}
+
+/// What a network is made of.
+pub(super) struct Input {
+    pub(super) title: String,
+    pub(super) domain: Domain,
+    pub(super) sizes: Sizes,
+    pub(super) sets: Vec<Set>,
+    pub(super) given: Vec<Given>,
+    /// Sections for the scene, as the input has them.
+    pub(super) passages: Passages,
+    /// What was assumed because nobody said it, one line each.
+    pub(super) assumptions: Vec<String>,
+}
+
+impl Input {
+    /// Reads a list or a description, going by the ending of its name.
+    pub(super) fn read(file: &Path, wish: &Wish) -> Result<Self, Vec<Defect>> {
+        let name = file.display().to_string();
+        let text = read_text(
+            file,
+            "give the path of a list (.csv) or a description (.toml)",
+        )?;
+        match file.extension().and_then(|ending| ending.to_str()) {
+            Some("csv") => Self::from_list(&text, &name, wish),
+            Some("toml") => Self::from_description(&text, &name, file, wish),
+            _ => Err(vec![Defect::new(
+                name,
+                "the name ends neither in .csv nor in .toml",
+                "give a list of fractures as FILE.csv, or a description as FILE.toml",
+            )]),
+        }
+    }
+
+    fn from_list(text: &str, name: &str, wish: &Wish) -> Result<Self, Vec<Defect>> {
+        let given = read_list(text, name, "fractures", false)?;
+        let mut assumptions = Vec::new();
+        let domain = wish
+            .domain
+            .or_else(|| around(&given, &mut assumptions))
+            .ok_or_else(|| {
+                vec![Defect::new(
+                    name,
+                    "the list holds no fracture",
+                    "add one line for each fracture",
+                )]
+            })?;
+        let h = wish.h.unwrap_or_else(|| {
+            let h = rounded((domain.high - domain.low).min_element() / 10.0);
+            assumptions.push(format!(
+                "cells of {h} m, a tenth of the shortest side; --h sets it"
+            ));
+            h
+        });
+        let mut sets: Vec<Set> = Vec::new();
+        for fracture in &given {
+            if sets.iter().all(|set| set.name != fracture.set) {
+                sets.push(Set::listed(&fracture.set));
+            }
+        }
+        Ok(Self {
+            title: "Fracture network".into(),
+            domain,
+            sizes: sizes(h, None, None, wish),
+            sets,
+            given,
+            passages: Passages::default(),
+            assumptions,
+        })
+    }
+
+    fn from_description(
+        text: &str,
+        name: &str,
+        file: &Path,
+        wish: &Wish,
+    ) -> Result<Self, Vec<Defect>> {
+        let source = Source::new(name, text, "the description");
+        let folder = file.parent().unwrap_or(Path::new("."));
+        let table = source.parse();
+        let mut more = Vec::new();
+        let input = table.as_ref().and_then(|table| {
+            let root = Section::new(&source, table.get_ref(), String::new(), 0..0);
+            let input = read_description(&source, &root, folder, wish, &mut more);
+            root.finish();
+            input
+        });
+        let mut defects = source.into_defects();
+        defects.append(&mut more);
+        match input {
+            Some(input) if defects.is_empty() => Ok(input),
+            _ => Err(defects),
+        }
+    }
+}
+
+/// Reads a text file.
+pub(super) fn read_text(file: &Path, remedy: &str) -> Result<String, Vec<Defect>> {
+    std::fs::read_to_string(file).map_err(|error| {
+        let problem = format!("the file cannot be read: {error}");
+        vec![Defect::new(file.display().to_string(), problem, remedy)]
+    })
+}
+
+/// A box around all fractures, a quarter of their extent larger on each side.
+fn around(given: &[Given], assumptions: &mut Vec<String>) -> Option<Domain> {
+    let start = given.first()?.polygon.bounds();
+    let widen = |(low, high): (DVec3, DVec3), fracture: &Given| {
+        let (a, b) = fracture.polygon.bounds();
+        (low.min(a), high.max(b))
+    };
+    let (low, high) = given.iter().fold(start, widen);
+    let margin = rounded((high - low).max_element() / 4.0);
+    // Whole margins make coordinates that a person can read.
+    let domain = Domain {
+        low: ((low - margin) / margin).floor() * margin,
+        high: ((high + margin) / margin).ceil() * margin,
+    };
+    assumptions.push(format!(
+        "the domain from {} to {}; --domain sets it",
+        domain.low, domain.high
+    ));
+    Some(domain)
+}
+
+/// One significant digit.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.0e}").parse().unwrap_or(value)
+}
+
+fn sizes(h: f64, h_fracture: Option<f64>, h_intersection: Option<f64>, wish: &Wish) -> Sizes {
+    let h_fracture = h_fracture.unwrap_or(h / 2.0).min(h);
+    Sizes {
+        h,
+        h_fracture,
+        h_intersection: h_intersection.unwrap_or(h_fracture).min(h_fracture),
+        growth: 0.5,
+        small: 0.2,
+        small_angle: 10.0,
+        mend: !wish.keep_small,
+    }
+}
+
+fn read_description(
+    source: &Source<'_>,
+    root: &Section<'_, '_>,
+    folder: &Path,
+    wish: &Wish,
+    defects: &mut Vec<Defect>,
+) -> Option<Input> {
+    check_conditions(source, root);
+    let domain = read_domain(root, wish.domain);
+    let sizes = read_sizes(root, wish);
+    let seed = read_seed(root).unwrap_or(0);
+    root.require("fracture_set", "a section: [fracture_set.NAME]");
+    let mut sets = Vec::new();
+    let mut given = Vec::new();
+    for (name, section) in root.named_sections("fracture_set") {
+        let read = read_set(source, section, name, folder, seed, domain);
+        match read {
+            Ok(Some((set, mut fractures))) => {
+                sets.push(set);
+                given.append(&mut fractures);
+            }
+            Ok(None) => {}
+            Err(mut found) => defects.append(&mut found),
+        }
+    }
+    let names: Vec<String> = root
+        .named_sections("fracture_set")
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
+    for section in root.listed_sections("fracture") {
+        given.extend(read_fracture(section, &names));
+    }
+    names_once(&given, defects);
+    Some(Input {
+        title: root.text("title").unwrap_or("Fracture network").to_owned(),
+        domain: domain?,
+        sizes: sizes?,
+        sets,
+        given,
+        passages: passages(root),
+        assumptions: Vec::new(),
+    })
+}
+
+fn names_once(given: &[Given], defects: &mut Vec<Defect>) {
+    let mut first = std::collections::HashMap::new();
+    for fracture in given {
+        if let Some(other) = first.insert(&fracture.name, &fracture.place) {
+            let problem = format!("the name `{}` is taken ({other})", fracture.name);
+            defects.push(Defect::new(
+                &fracture.place,
+                problem,
+                "give each fracture a name of its own",
+            ));
+        }
+    }
+}
+
+/// The domain of the description, or that of the command line in its place.
+fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain> {
+    if wished.is_none() {
+        root.require("domain", "a section: [domain]");
+    }
+    let Some(section) = root.section("domain") else {
+        return wished;
+    };
+    section.require("low", "[0, 0, 0]");
+    section.require("high", "[10, 10, 10]");
+    let corners = section.vector("low").zip(section.vector("high"));
+    let domain = corners.map(|(low, high)| Domain::between(low, high));
+    let is_box = domain.is_none_or(|domain| (domain.high - domain.low).min_element() > 0.0);
+    if !is_box {
+        let remedy = "high must be above low in every coordinate";
+        section.refuse("high", "the domain has no volume".into(), remedy);
+    }
+    section.finish();
+    wished.or(domain.filter(|_| is_box))
+}
+
+fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<Sizes> {
+    if wish.h.is_none() {
+        root.require("mesh", "a section: [mesh]");
+    }
+    let Some(section) = root.section("mesh") else {
+        return wish.h.map(|h| sizes(h, None, None, wish));
+    };
+    if wish.h.is_none() {
+        section.require("h", "0.5");
+    }
+    let number = |key| section.number(key, Accept::Positive);
+    let (h, h_fracture, h_intersection) =
+        (number("h"), number("h_fracture"), number("h_intersection"));
+    let (growth, small) = (
+        number("growth"),
+        section.number("small", Accept::NotNegative),
+    );
+    let small_angle = section.number("small_angle", Accept::NotNegative);
+    let mend = section.flag("mend").unwrap_or(true);
+    for (key, fine, coarse) in [
+        ("h_fracture", h_fracture, h),
+        ("h_intersection", h_intersection, h_fracture.or(h)),
+    ] {
+        if let (None, Some(fine), Some(coarse)) = (wish.h, fine, coarse)
+            && fine > coarse
+        {
+            let remedy = "cells become finer towards fractures: h >= h_fracture >= h_intersection";
+            section.refuse(
+                key,
+                format!("{key} = {fine} is coarser than {coarse}"),
+                remedy,
+            );
+        }
+    }
+    section.finish();
+    let plain = sizes(wish.h.or(h)?, h_fracture, h_intersection, wish);
+    Some(Sizes {
+        growth: growth.unwrap_or(plain.growth),
+        small: small.unwrap_or(plain.small),
+        small_angle: small_angle.unwrap_or(plain.small_angle),
+        mend: plain.mend && mend,
+        ..plain
+    })
+}
+
+/// A whole number that a seed may be.
+pub(super) fn read_seed(section: &Section<'_, '_>) -> Option<u64> {
+    let seed = section.number("seed", Accept::NotNegative)?;
+    if seed.fract() != 0.0 || seed > 2.0_f64.powi(53) {
+        section.refuse(
+            "seed",
+            format!("the seed {seed} is no whole number"),
+            "write seed = 1",
+        );
+        return None;
+    }
+    Some(seed as u64)
+}
+
+/// What is one of some words; anything else is reported with the nearest.
+pub(super) fn one_of<'a>(
+    section: &Section<'a, '_>,
+    key: &'static str,
+    known: &[&'static str],
+) -> Option<&'a str> {
+    let word = section.text(key)?;
+    if known.contains(&word) {
+        return Some(word);
+    }
+    let list = known.join(", ");
+    let remedy = reader::nearest(word, known.iter().copied()).map_or_else(
+        || format!("known: {list}"),
+        |near| format!("did you mean \"{near}\"? (known: {list})"),
+    );
+    section.refuse(key, format!("unknown {key} \"{word}\""), remedy);
+    None
+}
+
+/// Dip and dip direction in a section.
+pub(super) fn read_orientation(section: &Section<'_, '_>) -> Option<Orientation> {
+    section.require("dip", "60");
+    section.require("dip_direction", "135");
+    let dip = section.number("dip", Accept::NotNegative);
+    if dip.is_some_and(|dip| dip > 90.0) {
+        section.refuse(
+            "dip",
+            "a dip is at most 90 degrees".into(),
+            "turn the dip direction by 180 instead",
+        );
+    }
+    let dip_direction = section.number("dip_direction", Accept::Finite);
+    Some(Orientation {
+        dip: dip.filter(|dip| *dip <= 90.0)?,
+        dip_direction: dip_direction?,
+    })
+}
+
+/// Number of corners of a disc or an ellipse.
+pub(super) fn read_sides(section: &Section<'_, '_>) -> usize {
+    let sides = section
+        .number("sides", Accept::Between(2.0, 101.0))
+        .unwrap_or(SIDES as f64);
+    if sides.fract() != 0.0 {
+        section.refuse(
+            "sides",
+            format!("{sides} sides"),
+            "write a whole number, e.g. sides = 12",
+        );
+    }
+    sides as usize
+}
+
+fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<Given> {
+    section.require("name", "\"fault-1\"");
+    section.require("set", "\"NAME\"");
+    let name = section.text("name").map(str::to_owned);
+    let set = section.text("set").map(str::to_owned);
+    if let Some(Err((problem, remedy))) = name.as_deref().map(check_name) {
+        section.refuse("name", problem, remedy);
+    }
+    if let Some(set) = set
+        .as_deref()
+        .filter(|set| sets.iter().all(|known| known != set))
+    {
+        let known = sets.iter().map(String::as_str);
+        let remedy = reader::nearest(set, known).map_or_else(
+            || format!("add a section [fracture_set.{set}]"),
+            |near| format!("did you mean \"{near}\"?"),
+        );
+        section.refuse("set", format!("there is no set \"{set}\""), remedy);
+    }
+    let polygon = read_polygon(&section);
+    let place = section.place();
+    section.finish();
+    Some(Given {
+        name: name?,
+        set: set?,
+        place,
+        polygon: polygon?,
+    })
+}
+
+fn read_polygon(section: &Section<'_, '_>) -> Option<Polygon> {
+    section.require("shape", "\"disc\"");
+    let outline = match one_of(
+        section,
+        "shape",
+        &["disc", "ellipse", "rectangle", "polygon"],
+    )? {
+        "polygon" => {
+            section.require("points", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]");
+            let corners: Vec<DVec3> = section
+                .vectors("points")?
+                .into_iter()
+                .map(DVec3::from)
+                .collect();
+            let refuse =
+                |(problem, remedy): (String, String)| section.refuse("points", problem, remedy);
+            return Polygon::through(&corners).map_err(refuse).ok();
+        }
+        "disc" => read_disc(section),
+        "ellipse" => read_ellipse(section),
+        _ => read_rectangle(section),
+    };
+    section.require("centre", "[5, 5, 5]");
+    let (centre, orientation) = (section.vector("centre"), read_orientation(section));
+    Some(Polygon::placed(outline?, centre?.into(), orientation?))
+}
+
+fn read_length(section: &Section<'_, '_>, key: &'static str) -> Option<f64> {
+    section.require(key, "2.0");
+    section.number(key, Accept::Positive)
+}
+
+fn read_rotation(section: &Section<'_, '_>) -> f64 {
+    section.number("rotation", Accept::Finite).unwrap_or(0.0)
+}
+
+fn read_disc(section: &Section<'_, '_>) -> Option<Outline> {
+    let (radius, sides, rotation) = (
+        read_length(section, "radius"),
+        read_sides(section),
+        read_rotation(section),
+    );
+    Some(Outline::Disc {
+        radius: radius?,
+        sides,
+        rotation,
+    })
+}
+
+fn read_ellipse(section: &Section<'_, '_>) -> Option<Outline> {
+    let (semi_major, semi_minor) = (
+        read_length(section, "semi_major"),
+        read_length(section, "semi_minor"),
+    );
+    let (rotation, sides) = (read_rotation(section), read_sides(section));
+    Some(Outline::Ellipse {
+        semi_major: semi_major?,
+        semi_minor: semi_minor?,
+        rotation,
+        sides,
+    })
+}
+
+fn read_rectangle(section: &Section<'_, '_>) -> Option<Outline> {
+    let (length, width) = (
+        read_length(section, "length"),
+        read_length(section, "width"),
+    );
+    Some(Outline::Rectangle {
+        length: length?,
+        width: width?,
+        rotation: read_rotation(section),
+    })
+}

@@ -1,0 +1,246 @@
+//! Sets of fractures: listed or random, with the material they share.
+
+use std::path::Path;
+
+use lie_mesh::Defect;
+use lie_network::{
+    Amount, Domain, Drawn, Fisher, Given, Shape, SizeLaw, StochasticSet, check_name, read_list,
+};
+
+use super::input::{one_of, read_orientation, read_seed, read_sides, read_text};
+use super::scene::{Passage, passage};
+use crate::reader::{Accept, Section, Source};
+use crate::scene::read_fracture;
+
+/// Keys of a set that are not its material.
+const OWN: [&str; 9] = [
+    "list",
+    "orientation",
+    "size",
+    "shape",
+    "sides",
+    "aspect",
+    "p32",
+    "count",
+    "seed",
+];
+
+/// A set of fractures.
+pub(super) struct Set {
+    pub(super) name: String,
+    /// Its material as keys and values; none if the input has no word on it.
+    pub(super) material: Option<Passage>,
+    /// The random part of it, as asked and as drawn.
+    pub(super) drawn: Option<(StochasticSet, Vec<Drawn>)>,
+}
+
+impl Set {
+    /// A set of which nothing is known but its fractures.
+    pub(super) fn listed(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            material: None,
+            drawn: None,
+        }
+    }
+}
+
+type SetAndFractures = Option<(Set, Vec<Given>)>;
+
+/// Reads a set and draws its fractures; defects of the list it names are the error.
+pub(super) fn read_set(
+    source: &Source<'_>,
+    section: Section<'_, '_>,
+    name: String,
+    folder: &Path,
+    seed: u64,
+    domain: Option<Domain>,
+) -> Result<SetAndFractures, Vec<Defect>> {
+    if let Err((problem, remedy)) = check_name(&name) {
+        source.report(&section.at, problem, remedy);
+    }
+    read_fracture(&section);
+    let list = section.text("list").map(|list| folder.join(list));
+    let is_random = ["p32", "count", "orientation", "size"]
+        .into_iter()
+        .any(|key| section.has(key));
+    if list.is_some() && is_random {
+        let remedy = "make two sets of it, one with the list and one at random";
+        section.refuse(
+            "list",
+            format!("{} is listed and random", section.title),
+            remedy,
+        );
+    }
+    let asked = is_random
+        .then(|| read_random(&section, &name, seed))
+        .flatten();
+    let material = passage(section.table(), &OWN);
+    let place = section.place();
+    let refuse = |(problem, remedy): (String, String)| source.report(&section.at, problem, remedy);
+    let drawn = match (asked, domain) {
+        (Some(asked), Some(domain)) => {
+            let drawn = asked.draw(&domain).map_err(refuse).ok();
+            drawn.map(|drawn| (asked, drawn))
+        }
+        _ => None,
+    };
+    section.finish();
+    let given = match &list {
+        Some(list) => {
+            let text = read_text(list, "paths are relative to the folder of the description")?;
+            read_list(&text, &list.display().to_string(), &name, true)?
+        }
+        None => drawn
+            .as_ref()
+            .map_or(Vec::new(), |(_, drawn)| named(drawn, &name, &place)),
+    };
+    let set = Set {
+        name,
+        material: Some(material),
+        drawn,
+    };
+    Ok(Some((set, given)))
+}
+
+/// The drawn fractures that reach the domain, numbered.
+fn named(drawn: &[Drawn], set: &str, place: &str) -> Vec<Given> {
+    let inside: Vec<&Drawn> = drawn.iter().filter(|one| one.area_inside > 0.0).collect();
+    let digits = inside.len().to_string().len();
+    let numbered = inside.into_iter().zip(1..);
+    numbered
+        .map(|(one, number)| Given {
+            name: format!("{set}-{number:0digits$}"),
+            set: set.to_owned(),
+            place: place.to_owned(),
+            polygon: one.polygon.clone(),
+        })
+        .collect()
+}
+
+fn read_random(section: &Section<'_, '_>, name: &str, seed: u64) -> Option<StochasticSet> {
+    section.require(
+        "orientation",
+        "{ dip = 60, dip_direction = 135, kappa = 20 }",
+    );
+    section.require(
+        "size",
+        "{ law = \"power\", exponent = 2.5, min = 0.5, max = 5.0 }",
+    );
+    let orientation = section.section("orientation").and_then(read_fisher);
+    let size = section.section("size").and_then(read_size);
+    let shape = read_shape(section);
+    let amount = read_amount(section);
+    let own_seed = read_seed(section);
+    Some(StochasticSet {
+        name: name.to_owned(),
+        orientation: orientation?,
+        size: size?,
+        shape: shape?,
+        amount: amount?,
+        seed: own_seed.unwrap_or(seed),
+    })
+}
+
+fn read_fisher(section: Section<'_, '_>) -> Option<Fisher> {
+    let mean = read_orientation(&section);
+    section.require("kappa", "20");
+    let kappa = section.number("kappa", Accept::NotNegative);
+    section.finish();
+    Some(Fisher {
+        mean: mean?,
+        kappa: kappa?,
+    })
+}
+
+fn read_size(section: Section<'_, '_>) -> Option<SizeLaw> {
+    section.require("law", "\"power\"");
+    let number = |key: &'static str, example: &str, accept: Accept| {
+        section.require(key, example);
+        section.number(key, accept)
+    };
+    let length = |key: &'static str| number(key, "1.0", Accept::Positive);
+    let law = match one_of(&section, "law", &["constant", "power", "lognormal"]) {
+        Some("constant") => length("radius").map(|radius| SizeLaw::Constant { radius }),
+        Some("power") => {
+            let exponent = number("exponent", "2.5", Accept::Finite);
+            let bounds = length("min").zip(length("max"));
+            exponent
+                .zip(bounds)
+                .map(|(exponent, (min, max))| SizeLaw::PowerLaw { exponent, min, max })
+        }
+        Some(_) => {
+            let moments = length("mean").zip(length("sd"));
+            let bounds = length("min").zip(length("max"));
+            moments
+                .zip(bounds)
+                .map(|((mean, sd), (min, max))| SizeLaw::Lognormal { mean, sd, min, max })
+        }
+        None => return None,
+    };
+    let law = law.filter(|law| bounded(&section, law));
+    section.finish();
+    law
+}
+
+fn bounded(section: &Section<'_, '_>, law: &SizeLaw) -> bool {
+    let (SizeLaw::PowerLaw { min, max, .. } | SizeLaw::Lognormal { min, max, .. }) = *law else {
+        return true;
+    };
+    if min >= max {
+        section.refuse(
+            "max",
+            format!("max {max} is not above min {min}"),
+            "min and max enclose all sizes",
+        );
+    }
+    min < max
+}
+
+fn read_shape(section: &Section<'_, '_>) -> Option<Shape> {
+    if !section.has("shape") {
+        return Some(Shape::Disc {
+            sides: read_sides(section),
+        });
+    }
+    match one_of(section, "shape", &["disc", "rectangle"])? {
+        "disc" => Some(Shape::Disc {
+            sides: read_sides(section),
+        }),
+        _ => {
+            let aspect = section.number("aspect", Accept::Positive).unwrap_or(1.0);
+            Some(Shape::Rectangle { aspect })
+        }
+    }
+}
+
+fn read_amount(section: &Section<'_, '_>) -> Option<Amount> {
+    let p32 = section.number("p32", Accept::Positive);
+    let count = section.number("count", Accept::Positive);
+    match (section.has("p32"), section.has("count")) {
+        (true, true) => {
+            section.refuse(
+                "count",
+                "both p32 and count are given".into(),
+                "keep one of them",
+            );
+            None
+        }
+        (false, false) => {
+            section.require("p32", "0.5");
+            None
+        }
+        (true, false) => p32.map(Amount::P32),
+        (false, true) => {
+            let count = count?;
+            if count.fract() != 0.0 {
+                section.refuse(
+                    "count",
+                    format!("{count} fractures"),
+                    "write a whole number",
+                );
+            }
+            Some(Amount::Count(count as usize))
+        }
+    }
+}
