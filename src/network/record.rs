@@ -119,7 +119,8 @@ impl Record {
             left_out: left_out(network),
             intersections: IntersectionsRecord {
                 count: network.intersections.len(),
-                total_length: lengths.sum(),
+                // The sum of nothing would be -0.
+                total_length: lengths.fold(0.0, |sum, length| sum + length),
             },
             small_features: network.features.iter().map(feature_record).collect(),
             assumptions: input.assumptions.clone(),

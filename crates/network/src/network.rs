@@ -76,6 +76,9 @@ impl Sizes {
     }
 }
 
+/// OpenCASCADE takes points closer than 1e-7 m for one, whatever the size of the domain [m].
+const FINEST: f64 = 1e-5;
+
 /// A network ready for gmsh.
 #[derive(Debug, Clone)]
 pub struct Network {
@@ -98,8 +101,13 @@ impl Network {
     /// small for the mesh.
     ///
     /// # Errors
-    /// Fractures that overlap in one plane, by name.
+    /// Fractures that overlap in one plane, by name; cells too fine for gmsh.
     pub fn build(domain: Domain, sizes: Sizes, given: Vec<Given>) -> Result<Self, Vec<Defect>> {
+        if sizes.h_intersection < FINEST {
+            let problem = format!("cells of {:e} m are asked for", sizes.h_intersection);
+            let remedy = "gmsh takes points closer than 1e-7 m for one: give lengths in metres, cells above 1e-5";
+            return Err(vec![Defect::new("the network", problem, remedy)]);
+        }
         let (mut fractures, left_out) = clip_all(&domain, &sizes, given);
         let defects = overlaps(&domain, &fractures);
         if !defects.is_empty() {
@@ -264,11 +272,11 @@ fn half(polygon: &Polygon, point: DVec3, inwards: DVec3) -> Option<Polygon> {
 mod tests {
     use super::*;
 
-    pub(crate) const DOMAIN: Domain = Domain {
+    const DOMAIN: Domain = Domain {
         low: DVec3::ZERO,
         high: DVec3::splat(10.0),
     };
-    pub(crate) const SIZES: Sizes = Sizes {
+    const SIZES: Sizes = Sizes {
         h: 1.0,
         h_fracture: 1.0,
         h_intersection: 1.0,
@@ -328,6 +336,16 @@ mod tests {
             text.contains("`a`") && text.contains("`b`") && text.contains("1.000e0 m2"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn cells_below_the_tolerance_of_the_kernel_are_refused() {
+        let sizes = Sizes {
+            h_intersection: 1e-6,
+            ..SIZES
+        };
+        let defects = Network::build(DOMAIN, sizes, Vec::new()).expect_err("refused");
+        assert!(defects[0].remedy.contains("1e-7"));
     }
 
     #[test]

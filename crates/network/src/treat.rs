@@ -183,10 +183,16 @@ fn mend(
     has_changed | merge_short_edges(domain, gap, fractures, index, lines)
 }
 
-/// The polygon with one corner elsewhere; none if that is another one altogether.
+/// The polygon with one corner elsewhere; none if that is another one altogether, or leaves the
+/// domain.
 fn with_corner(domain: &Domain, polygon: &Polygon, corner: usize, to: DVec3) -> Option<Polygon> {
+    // Clamping more than rounding would leave the plane.
+    let inside = to.clamp(domain.low, domain.high);
+    if inside.distance(to) > tolerance(domain) {
+        return None;
+    }
     let mut corners = polygon.corners().to_vec();
-    corners[corner] = to.clamp(domain.low, domain.high);
+    corners[corner] = inside;
     drop_doubles(&mut corners, tolerance(domain));
     straighten(&mut corners, polygon.normal());
     let changed = Polygon::new(corners, polygon.normal())?;
@@ -414,6 +420,40 @@ mod tests {
             .iter()
             .filter(|corner| corner.z == 5.0);
         assert!(lowest.count() >= 2, "{:?}", fractures[1]);
+    }
+
+    #[test]
+    fn mended_corners_stay_in_their_plane_and_in_the_domain() {
+        // The roof meets the wall's plane beyond the face `front`, within reach of the wall's corner.
+        let roof = fracture(
+            "roof",
+            &[
+                [4.0, 0.0, 7.05],
+                [6.0, 0.0, 7.05],
+                [6.0, 3.0, 7.95],
+                [4.0, 3.0, 7.95],
+            ],
+        );
+        let wall = fracture(
+            "wall",
+            &[
+                [5.0, 0.01, 5.0],
+                [5.0, 3.0, 5.0],
+                [5.0, 3.0, 7.0],
+                [5.0, 0.01, 7.0],
+            ],
+        );
+        for fracture in treated(vec![roof, wall]) {
+            let polygon = &fracture.polygon;
+            for &corner in polygon.corners() {
+                assert!(polygon.height(corner).abs() < 1e-12, "{fracture:?}");
+                assert_eq!(
+                    corner,
+                    corner.clamp(DOMAIN.low, DOMAIN.high),
+                    "{fracture:?}"
+                );
+            }
+        }
     }
 
     #[test]
