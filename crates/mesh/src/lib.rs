@@ -26,6 +26,7 @@ mod orient;
 mod roles;
 mod sectors;
 mod shape;
+mod survey;
 pub mod structured;
 
 pub use defect::{Defect, sample};
@@ -35,3 +36,7 @@ pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};
 pub use roles::inner_surfaces;
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
+pub use survey::{
+    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, FracturesAtNodes, MutePatch,
+    Orientation, Survey, cell_angles,
+};
