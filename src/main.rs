@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use kluft::{Failure, Options, Verbosity, run};
+use kluft::{Failure, InspectOptions, Options, Verbosity, inspect, run};
 
 /// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
 ///
@@ -22,10 +22,11 @@ const EXAMPLES: &str = "\
 Examples:
   kluft run geometries/inclined-joint/scene.toml          mesh, solve, write beside the scene
   kluft run scene.toml --out results --threads 2 -v       say where and how
+  kluft inspect scene.toml                                look at the mesh before solving
   paraview results/rock.pvd results/fractures.pvd         look at it
 
 Exit status:
-  0  solved
+  0  solved, or inspected
   1  not converged; the converged steps are kept, the message says where and why
   2  the input is wrong; every defect is listed with its place and its remedy";
 
@@ -34,7 +35,16 @@ enum Command {
     /// Mesh, enrich, solve and write a scene
     #[command(after_help = RUN_HELP)]
     Run(RunArgs),
+    /// Report on a scene or a mesh without solving
+    #[command(after_help = INSPECT_HELP)]
+    Inspect(InspectArgs),
 }
+
+const INSPECT_HELP: &str = "\
+Says what every physical group is, how fractures lie, end and meet, which blocks they cut free,
+which cells are bad and where, how many unknowns there are, what the solver will need, and whether
+the loads would push the walls of a fracture through each other. A mesh without a scene is guessed
+at: surfaces with rock on both sides are fractures. Writes inspect.vtu and inspect.json.";
 
 const RUN_HELP: &str = "\
 A scene names its geometry, rocks, fractures and conditions, all in SI units:
@@ -75,8 +85,38 @@ struct RunArgs {
     verbose: bool,
 }
 
+#[derive(Args)]
+struct InspectArgs {
+    /// The scene file (TOML), or a gmsh mesh (.msh)
+    input: PathBuf,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+    /// Folder for inspect.vtu and inspect.json [default: `out` beside the input]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
 fn main() -> ExitCode {
-    let Command::Run(args) = Cli::parse().command;
+    let result = match Cli::parse().command {
+        Command::Run(args) => run_scene(args),
+        Command::Inspect(InspectArgs { input, json, out }) => {
+            inspect(&input, &InspectOptions { out, json })
+        }
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            kluft::print_failure(&failure);
+            ExitCode::from(match failure {
+                Failure::NotConverged(_) => 1,
+                Failure::BadInput(_) => 2,
+            })
+        }
+    }
+}
+
+fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let verbosity = match (args.quiet, args.verbose) {
         (true, _) => Verbosity::Quiet,
         (_, true) => Verbosity::Verbose,
@@ -87,14 +127,5 @@ fn main() -> ExitCode {
         threads: args.threads.map(usize::from),
         verbosity,
     };
-    match run(&args.scene, &options) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            kluft::print_failure(&failure);
-            ExitCode::from(match failure {
-                Failure::NotConverged(_) => 1,
-                Failure::BadInput(_) => 2,
-            })
-        }
-    }
+    run(&args.scene, &options)
 }

@@ -26,8 +26,8 @@ mod orient;
 mod roles;
 mod sectors;
 mod shape;
-mod survey;
 pub mod structured;
+mod survey;
 
 pub use defect::{Defect, sample};
 pub use draft::{Draft, Elements, Group, TaggedElements};

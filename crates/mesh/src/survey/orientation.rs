@@ -23,11 +23,8 @@ pub(super) fn of_fractures(areas: &[DVec3], fracture: &[u32], count: usize) -> V
     let mut tensors = vec![DMat3::ZERO; count];
     for (&area, &fracture) in areas.iter().zip(fracture) {
         let normal = area.normalize_or_zero();
-        tensors[fracture as usize] += DMat3::from_cols(
-            area * normal.x,
-            area * normal.y,
-            area * normal.z,
-        );
+        tensors[fracture as usize] +=
+            DMat3::from_cols(area * normal.x, area * normal.y, area * normal.z);
     }
     let mut orientations: Vec<Orientation> = tensors.into_iter().map(of_tensor).collect();
     for (&area, &fracture) in areas.iter().zip(fracture) {
@@ -43,7 +40,10 @@ pub(super) fn of_fractures(areas: &[DVec3], fracture: &[u32], count: usize) -> V
 
 fn of_tensor(tensor: DMat3) -> Orientation {
     let axis = leading_axis(tensor);
-    let up = match [axis.z, axis.y, axis.x].into_iter().find(|c| c.abs() > 1e-9) {
+    let up = match [axis.z, axis.y, axis.x]
+        .into_iter()
+        .find(|c| c.abs() > 1e-9)
+    {
         Some(leading) if leading < 0.0 => -axis,
         _ => axis,
     };

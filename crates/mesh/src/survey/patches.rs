@@ -69,7 +69,9 @@ fn is_mute(mesh: &Mesh, facet: usize) -> bool {
         &mesh.facets.minus_slots[range],
     );
     let sector = |slot: u32| mesh.sectors.of_cell_node[slot as usize];
-    plus.iter().zip(minus).all(|(&a, &b)| sector(a) == sector(b))
+    plus.iter()
+        .zip(minus)
+        .all(|(&a, &b)| sector(a) == sector(b))
 }
 
 fn collect(

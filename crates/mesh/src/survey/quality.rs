@@ -50,8 +50,8 @@ impl CellQuality {
             let found = pairs.iter().find(|(other, _)| *other == shape);
             found.map_or(&[][..], |(_, pairs)| pairs)
         };
-        let angles = (0..mesh.cells.len())
-            .map(|cell| angles(mesh, cell, of_shape(mesh.cells.shapes[cell])));
+        let angles =
+            (0..mesh.cells.len()).map(|cell| angles(mesh, cell, of_shape(mesh.cells.shapes[cell])));
         let (of_cell, volumes): (Vec<f64>, Vec<f64>) =
             angles.map(|angles| (angles.quality, angles.volume)).unzip();
         let mut histogram = [0; 10];
@@ -104,10 +104,17 @@ impl<'a> Worst<'a> {
     fn offer(&mut self, cell: u32) {
         let quality = |cell: u32| self.quality[cell as usize];
         let is_full = self.cells.len() == KEPT;
-        if is_full && self.cells.last().is_some_and(|&last| quality(last) <= quality(cell)) {
+        if is_full
+            && self
+                .cells
+                .last()
+                .is_some_and(|&last| quality(last) <= quality(cell))
+        {
             return;
         }
-        let place = self.cells.partition_point(|&other| quality(other) <= quality(cell));
+        let place = self
+            .cells
+            .partition_point(|&other| quality(other) <= quality(cell));
         self.cells.insert(place, cell);
         self.cells.truncate(KEPT);
     }
@@ -120,9 +127,8 @@ pub fn cell_angles(mesh: &Mesh, cell: usize) -> CellAngles {
 
 /// Pairs of faces of a cell that share an edge.
 fn adjacent_faces(shape: Shape) -> Vec<(u8, u8)> {
-    let corners = |face: usize| -> BTreeSet<u8> {
-        shape.faces()[face].corners().iter().copied().collect()
-    };
+    let corners =
+        |face: usize| -> BTreeSet<u8> { shape.faces()[face].corners().iter().copied().collect() };
     let count = shape.faces().len();
     let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
     all.filter(|&(a, b)| corners(a).intersection(&corners(b)).count() == 2)
