@@ -121,14 +121,14 @@ fn surface(
 
 fn what_acts(entry: &BoundaryEntry) -> String {
     let load = entry.load.map(|load| match load {
-        SurfaceLoad::Pressure(p) => format!("pressure {p:e} Pa"),
-        SurfaceLoad::Traction(t) => format!("traction ({:e}, {:e}, {:e}) Pa", t.x, t.y, t.z),
+        SurfaceLoad::Pressure(p) => format!("pressure {p} Pa"),
+        SurfaceLoad::Traction(t) => format!("traction ({}, {}, {}) Pa", t.x, t.y, t.z),
     });
     let support = entry.support.map(|support| match support {
         Support::Symmetry => "symmetry".to_owned(),
         Support::Displacement(components) => {
             let named = ["x", "y", "z"].into_iter().zip(components);
-            let parts = named.filter_map(|(axis, value)| Some(format!("{axis} = {:e}", value?)));
+            let parts = named.filter_map(|(axis, value)| Some(format!("{axis} = {}", value?)));
             format!("displacement {} m", parts.collect::<Vec<_>>().join(", "))
         }
     });

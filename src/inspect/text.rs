@@ -39,7 +39,9 @@ fn line(out: &mut String, text: &str) {
     let _ = writeln!(out, "{}", text.trim_end());
 }
 
-fn at([x, y, z]: Place) -> String {
+fn at(place: Place) -> String {
+    // Without rounding first, -1e-9 would be printed as -0.0000.
+    let [x, y, z] = place.map(|value| (1e4 * value).round() / 1e4 + 0.0);
     format!("({x:.4}, {y:.4}, {z:.4})")
 }
 
