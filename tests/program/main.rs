@@ -3,6 +3,7 @@
 mod bad_input;
 mod fuzz_scene;
 mod harness;
+mod inspect;
 mod read_back;
 mod renumbered;
 mod results;
