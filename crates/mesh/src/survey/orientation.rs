@@ -67,7 +67,7 @@ fn leading_axis(mut matrix: DMat3) -> DVec3 {
         if trace <= 0.0 {
             return DVec3::Z;
         }
-        matrix = matrix * (1.0 / trace);
+        matrix *= 1.0 / trace;
         matrix = matrix * matrix;
     }
     let columns = [matrix.z_axis, matrix.y_axis, matrix.x_axis];
