@@ -30,6 +30,14 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
             .collect::<Vec<_>>()
             .join(", ")
     };
+    for &(left, kept, count) in &problem.mesh.shared_facets {
+        let name = |index: u32| &problem.mesh.fractures[index as usize];
+        lines.push(format!(
+            "{count} facets of {} also belong to {}, whose law they follow",
+            name(left),
+            name(kept)
+        ));
+    }
     if problem.fractures.is_empty() {
         lines.push("no fracture: plain elasticity, one linear solve a step".into());
     } else {

@@ -1,8 +1,10 @@
 //! A run of Kluft, told as a story: read the scene, mesh, enrich, assemble, solve, write.
 
 mod decisions;
+mod inspect;
 mod network;
 mod output;
+mod prepare;
 mod reader;
 mod report;
 mod scene;
@@ -11,12 +13,13 @@ mod summary;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use lie_io::{Meshing, load_msh, mesh_geometry};
-use lie_mesh::{Draft, Mesh, SurfaceRole, inner_surfaces};
+use lie_io::load_msh;
+use lie_mesh::{Draft, Mesh, inner_surfaces};
 use lie_solver::{
     Discretisation, Newton, NewtonSettings, Problem, State, StepRecord, System, solution,
 };
 
+pub use inspect::{InspectOptions, inspect};
 pub use lie_network::{Domain, Grouping};
 pub use network::{NetworkOptions, make_network};
 pub use report::{Failure, Verbosity, print_failure};
@@ -53,9 +56,8 @@ pub fn run(scene_file: &Path, options: &Options) -> Result<(), Failure> {
         .build_global();
     let mut report = Report::new(options.verbosity);
     let scene = Scene::read(scene_file)?;
-    let beside = scene_file.parent().unwrap_or(Path::new(".")).join("out");
-    let mut output = Output::prepare(options.out.as_deref().unwrap_or(&beside))
-        .map_err(|defect| vec![defect])?;
+    let folder = prepare::folder_for(scene_file, options.out.as_deref());
+    let mut output = Output::prepare(&folder).map_err(|defect| vec![defect])?;
     let mut summary = Summary {
         kluft: env!("CARGO_PKG_VERSION"),
         title: scene.title.clone(),
@@ -82,32 +84,14 @@ fn prepare(
     report: &mut Report,
     summary: &mut Summary,
 ) -> Result<Problem, Failure> {
-    let file = match &scene.mesh {
-        MeshSource::File(file) => file.clone(),
-        MeshSource::Geometry {
-            geometry,
-            parameters,
-            order,
-        } => {
-            let file = output.path("mesh.msh");
-            let meshing = Meshing {
-                geometry,
-                parameters,
-                order: *order,
-                output: &file,
-            };
-            let (warnings, took) = report.stage("meshing (gmsh)", |_| mesh_geometry(&meshing));
-            for warning in warnings? {
-                report.detail("gmsh", &warning);
-            }
-            summary.seconds.mesh = took.as_secs_f64();
-            report.entry("meshed", &timed(&geometry.display().to_string(), took));
-            file
-        }
-    };
+    let file = prepare::mesh_file(scene, output, report)?;
+    if let (Some(took), MeshSource::Geometry { geometry, .. }) = (file.meshing, &scene.mesh) {
+        summary.seconds.mesh = took.as_secs_f64();
+        report.entry("meshed", &timed(&geometry.display().to_string(), took));
+    }
     let (problem, took) = report.stage("reading", |_| {
         let scratch = output.path("");
-        let draft = load_msh(&file, &scratch)?;
+        let draft = load_msh(&file.path, &scratch)?;
         build_problem(scene, draft, summary)
     });
     summary.seconds.read = took.as_secs_f64();
@@ -126,18 +110,9 @@ fn build_problem(
     draft: Draft,
     summary: &mut Summary,
 ) -> Result<Problem, Vec<lie_mesh::Defect>> {
-    let inner = inner_surfaces(&draft);
-    let roles = surface_roles(scene, &draft, |group| inner[group])?;
-    let unused = |inside: bool| -> Vec<&str> {
-        let groups = draft.groups.iter().zip(&roles).zip(&inner);
-        let chosen = groups.filter(|((group, role), inner)| {
-            group.dimension == 2 && **role == SurfaceRole::Unused && **inner == inside
-        });
-        chosen.map(|((group, _), _)| group.name.as_str()).collect()
-    };
-    let lines = decisions::unused_surfaces(&unused(true), &unused(false));
-    summary.decisions.extend(lines);
-    let binding = bind(scene, Mesh::build(draft, &roles)?)?;
+    let roles = prepare::roles(scene, &draft, &inner_surfaces(&draft))?;
+    summary.decisions.extend(roles.decisions);
+    let binding = bind(scene, Mesh::build(draft, &roles.of_group)?)?;
     summary.decisions.extend(binding.decisions);
     let mesh = &binding.problem.mesh;
     summary.mesh = summary::MeshSummary {

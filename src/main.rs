@@ -4,7 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use kluft::{Domain, Failure, Grouping, NetworkOptions, Options, Verbosity, make_network, run};
+use kluft::{
+    Domain, Failure, Grouping, InspectOptions, NetworkOptions, Options, Verbosity, inspect,
+    make_network, run,
+};
 
 /// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
 ///
@@ -23,10 +26,11 @@ Examples:
   kluft run geometries/inclined-joint/scene.toml          mesh, solve, write beside the scene
   kluft network fractures.csv -o network                  a geometry and a scene from a list
   kluft run scene.toml --out results --threads 2 -v       say where and how
+  kluft inspect scene.toml                                look at the mesh before solving
   paraview results/rock.pvd results/fractures.pvd         look at it
 
 Exit status:
-  0  solved
+  0  solved, or inspected
   1  not converged; the converged steps are kept, the message says where and why
   2  the input is wrong; every defect is listed with its place and its remedy";
 
@@ -38,7 +42,16 @@ enum Command {
     /// Make a geometry and a scene from a list or random sets of fractures
     #[command(after_help = NETWORK_HELP)]
     Network(NetworkArgs),
+    /// Report on a scene or a mesh without solving
+    #[command(after_help = INSPECT_HELP)]
+    Inspect(InspectArgs),
 }
+
+const INSPECT_HELP: &str = "\
+Says what every physical group is, how fractures lie, end and meet, which blocks they cut free,
+which cells are bad and where, how many unknowns there are, what the solver will need, and whether
+the loads would push the walls of a fracture through each other. A mesh without a scene is guessed
+at: surfaces with rock on both sides are fractures. Writes inspect.vtu and inspect.json.";
 
 const RUN_HELP: &str = "\
 A scene names its geometry, rocks, fractures and conditions, all in SI units:
@@ -222,10 +235,25 @@ fn network(args: NetworkArgs) -> Result<(), Failure> {
     make_network(&args.input, &options)
 }
 
+#[derive(Args)]
+struct InspectArgs {
+    /// The scene file (TOML), or a gmsh mesh (.msh)
+    input: PathBuf,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+    /// Folder for inspect.vtu and inspect.json [default: `out` beside the input]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(args) => solve(args),
         Command::Network(args) => network(args),
+        Command::Inspect(InspectArgs { input, json, out }) => {
+            inspect(&input, &InspectOptions { out, json })
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -171,7 +171,11 @@ fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
     }
 }
 
-fn real(name: &'static str, components: u32, values: impl Iterator<Item = f64>) -> Field {
+pub(crate) fn real(
+    name: &'static str,
+    components: u32,
+    values: impl Iterator<Item = f64>,
+) -> Field {
     Field {
         name,
         components,
@@ -179,7 +183,7 @@ fn real(name: &'static str, components: u32, values: impl Iterator<Item = f64>) 
     }
 }
 
-fn integer(name: &'static str, values: impl Iterator<Item = i32>) -> Field {
+pub(crate) fn integer(name: &'static str, values: impl Iterator<Item = i32>) -> Field {
     Field {
         name,
         components: 1,

@@ -1,9 +1,11 @@
 """Reads the output of a run with VTK and prints what it found as one JSON object.
 
     python read_back.py DIR
+    python read_back.py GRID.vtu
 
 reads DIR/rock.pvd and DIR/fractures.pvd with every .vtu they list. Needs vtk==9.7.2 and numpy
 from PyPI.
+With a single grid it prints its STEP, without "time", "file", "fractures" and "walls".
 Prints to standard output:
 
     {"rock": {"steps": [STEP, ...]}, "fractures": {"steps": [STEP, ...]}}
@@ -243,7 +245,7 @@ def describe_fractures(cells, point_data, cell_data, path):
     }
 
 
-def describe_grid(grid, path):
+def describe_grid(grid, path, of_run=True):
     cells = Cells(grid, path)
     point_data = arrays_of(grid.GetPointData(), grid.GetNumberOfPoints(), path)
     cell_data = arrays_of(grid.GetCellData(), grid.GetNumberOfCells(), path)
@@ -258,7 +260,7 @@ def describe_grid(grid, path):
         "point_data": {name: describe_array(values) for name, values in point_data.items()},
         "cell_data": {name: describe_array(values) for name, values in cell_data.items()},
     }
-    if "fracture" in cell_data:
+    if of_run and "fracture" in cell_data:
         described["fractures"] = describe_fractures(cells, point_data, cell_data, path)
     return described
 
@@ -322,11 +324,16 @@ def describe_collections(folder, complaints):
 
 def main(arguments):
     if len(arguments) != 1:
-        print("usage: python read_back.py DIR", file=sys.stderr)
+        print("usage: python read_back.py DIR|GRID.vtu", file=sys.stderr)
         return 2
     complaints = Complaints()
     try:
-        found = describe_collections(Path(arguments[0]), complaints)
+        path = Path(arguments[0])
+        if path.suffix == ".vtu":
+            found = describe_grid(read_grid(path, complaints), path, of_run=False)
+            complaints.raise_any(path)
+        else:
+            found = describe_collections(path, complaints)
     except Broken as broken:
         print(broken, file=sys.stderr)
         return 1

@@ -3,6 +3,7 @@
 mod bad_input;
 mod fuzz_scene;
 mod harness;
+mod inspect;
 mod network;
 mod network_seeds;
 mod read_back;

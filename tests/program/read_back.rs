@@ -22,7 +22,7 @@ fn python() -> PathBuf {
     python
 }
 
-/// What `tests/read_back.py` finds in a folder of results.
+/// What `tests/read_back.py` finds in a folder of results, or in a single grid.
 pub fn read_back(folder: &Path) -> Value {
     let script = root().join("tests/read_back.py");
     let output = Command::new(python())

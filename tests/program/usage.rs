@@ -23,6 +23,8 @@ fn wrong_arguments_are_named_with_the_usage() {
     for (arguments, named) in [
         (&["run"][..], "SCENE"),
         (&["walk"], "walk"),
+        (&["inspect"], "INPUT"),
+        (&["inspect", "scene.toml", "--jsn"], "--json"),
         (&["run", "scene.toml", "--thread", "2"], "--threads"),
         (&["run", "scene.toml", "--threads", "0"], "--threads"),
         (&["run", "scene.toml", "--threads", "many"], "many"),
@@ -55,6 +57,7 @@ fn help_and_version_are_answers() {
         (&["--help"][..], "Exit status:"),
         (&["run", "--help"], "[fracture.joint]"),
         (&["network", "--help"], "dip_direction"),
+        (&["inspect", "--help"], "inspect.vtu"),
         (&["--version"], env!("CARGO_PKG_VERSION")),
     ] {
         let run = kluft(arguments);

@@ -12,7 +12,7 @@ pub(crate) const NONE: u32 = u32::MAX;
 const NODES_PER_TASK: usize = 4096;
 
 /// A face of a cell by its corner nodes, ascending; triangles end in [`NONE`].
-type Key = [u32; 4];
+pub(crate) type Key = [u32; 4];
 
 /// The faces of all cells and how they pair up.
 #[derive(Debug, Clone)]
@@ -31,7 +31,7 @@ pub(crate) struct Adjacency {
 }
 
 /// Sorted corner nodes of an element's face or of a facet.
-fn key(nodes: impl Iterator<Item = u32>) -> Key {
+pub(crate) fn key(nodes: impl Iterator<Item = u32>) -> Key {
     let mut key = [NONE; 4];
     for (slot, node) in key.iter_mut().zip(nodes) {
         *slot = node;

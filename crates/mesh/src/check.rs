@@ -1,5 +1,7 @@
 //! Everything that may be wrong with a mesh.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -31,6 +33,8 @@ pub(crate) struct Surfaces {
     pub(crate) facets: Vec<DraftFacet>,
     /// Groups that are boundaries, with their cell faces.
     pub(crate) boundaries: Vec<(usize, Vec<u32>)>,
+    /// How many facets a fracture (first) left to another (second) that holds them too.
+    pub(crate) shared: BTreeMap<(u32, u32), usize>,
 }
 
 /// What can be wrong, and the remedy.
@@ -197,6 +201,7 @@ pub(crate) fn surfaces(
         fractures: Vec::new(),
         facets: Vec::new(),
         boundaries: Vec::new(),
+        shared: BTreeMap::new(),
     };
     let mut defects = Vec::new();
     let mut taken = vec![NONE; adjacency.face_count()];
@@ -267,7 +272,12 @@ fn fracture<'a>(
             [] => loose.push(tag),
             [_] => outer.push(tag),
             [a, ..] if taken[a as usize] == number => double.push(tag),
-            [a, ..] if taken[a as usize] != NONE => {}
+            [a, ..] if taken[a as usize] != NONE => {
+                *surfaces
+                    .shared
+                    .entry((number, taken[a as usize]))
+                    .or_default() += 1;
+            }
             [a, b, ..] => {
                 taken[a as usize] = number;
                 taken[b as usize] = number;

@@ -27,6 +27,7 @@ mod roles;
 mod sectors;
 mod shape;
 pub mod structured;
+mod survey;
 
 pub use defect::{Defect, sample};
 pub use draft::{Draft, Elements, Group, TaggedElements};
@@ -35,3 +36,7 @@ pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};
 pub use roles::inner_surfaces;
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
+pub use survey::{
+    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, FracturesAtNodes, MutePatch,
+    Orientation, Survey, cell_angles,
+};

@@ -71,6 +71,8 @@ pub struct Mesh {
     pub groups: Vec<Group>,
     /// Names of the fractures.
     pub fractures: Vec<String>,
+    /// How many facets a fracture (first) left to another (second) whose group holds them too.
+    pub shared_facets: Vec<(u32, u32, usize)>,
     /// Their facets.
     pub facets: Facets,
     /// The named parts of the outer surface.
@@ -120,10 +122,14 @@ impl Mesh {
         let (block, block_count) = blocks::find(cells.len(), &adjacency, &is_fractured);
         let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
         let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
+        let shared = surfaces.shared.iter();
+        let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
+        let shared_facets = shared_facets.collect();
         let fractures = surfaces.fractures.iter();
         Ok(Self {
             fractures: fractures.map(|&g| draft.groups[g].name.clone()).collect(),
             nodes,
+            shared_facets,
             facets,
             boundaries,
             sectors,

@@ -6,6 +6,7 @@
 //! Newton iteration changes only the blocks of nodes on fractures. No result depends on the number
 //! of threads: every sum has a fixed order.
 
+mod analysis;
 mod assembly;
 mod folded;
 mod interface;
@@ -21,6 +22,7 @@ mod solution;
 mod supports;
 mod system;
 
+pub use analysis::{Analysis, measured_rate};
 pub use interface::{FacetPoint, Interface};
 pub use linear::{DirectSolver, LinearFailure};
 pub use loads::Loads;

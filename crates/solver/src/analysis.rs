@@ -1,0 +1,195 @@
+//! Ordering and symbolic factorisation of the matrix, and what its factor will cost.
+
+use std::time::Instant;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::{Mat, Side};
+use feral_metis::{CscPattern, metis_order};
+use glam::DMat3;
+
+use crate::linear::{LinearFailure, parallelism};
+use crate::pattern::Pattern;
+use crate::points::Points;
+
+/// Nested dissection and symbolic Cholesky factorisation of a pattern, without values.
+pub struct Analysis {
+    pub(crate) symbolic: SymbolicCholesky<usize>,
+    pub(crate) column_offset: Vec<usize>,
+    pub(crate) row_index: Vec<usize>,
+    /// Number of blocks left of the diagonal in each block row.
+    pub(crate) lower_blocks: Vec<usize>,
+    /// Number of blocks of the matrix.
+    blocks: usize,
+}
+
+impl Analysis {
+    /// Analyses a pattern.
+    ///
+    /// # Errors
+    /// If ordering or analysis fails.
+    pub fn of(pattern: &Pattern, points: &Points) -> Result<Self, LinearFailure> {
+        let lower_blocks: Vec<usize> = (0..points.len())
+            .map(|row| pattern.address(row, row) - pattern.row_offset[row])
+            .collect();
+        let (column_offset, row_index) = upper_triangle(pattern, &lower_blocks);
+        let (forward, inverse) = scalar_ordering(pattern, points)?;
+        let size = 3 * points.len();
+        let shape =
+            SymbolicSparseColMatRef::new_checked(size, size, &column_offset, None, &row_index);
+        let symbolic = factorize_symbolic_cholesky(
+            shape,
+            Side::Upper,
+            SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size)),
+            CholeskySymbolicParams::default(),
+        )
+        .map_err(|error| LinearFailure::Analysis(format!("{error:?}")))?;
+        Ok(Self {
+            blocks: pattern.columns.len(),
+            symbolic,
+            column_offset,
+            row_index,
+            lower_blocks,
+        })
+    }
+
+    /// The scalar pattern of the upper triangle.
+    pub(crate) fn shape(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let size = self.column_offset.len() - 1;
+        SymbolicSparseColMatRef::new_checked(size, size, &self.column_offset, None, &self.row_index)
+    }
+
+    /// Number of entries of the factor.
+    pub fn factor_entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// Floating-point operations of one factorisation: the sum over the columns of the factor of
+    /// the square of the number of their entries.
+    pub fn factor_operations(&self) -> f64 {
+        let squares = |tallest: usize, columns: usize| -> f64 {
+            (0..columns).map(|j| ((tallest - j) as f64).powi(2)).sum()
+        };
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                let columns = factor.col_ptr().windows(2);
+                columns.map(|pair| squares(pair[1] - pair[0], 1)).sum()
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => (0..factor.n_supernodes())
+                .map(|index| {
+                    let columns = factor.supernode_end()[index] - factor.supernode_begin()[index];
+                    let below = factor.supernode(index).pattern().len();
+                    squares(below + columns, columns)
+                })
+                .sum(),
+        }
+    }
+
+    /// Memory of a solve [bytes]: the factor, its work space, the matrix of the rock and of the
+    /// tangent, and their scalar copy.
+    pub fn memory_bytes(&self) -> usize {
+        let work = self
+            .symbolic
+            .factorize_numeric_llt_scratch::<f64>(parallelism(), faer::Spec::default());
+        let scalars = self.row_index.len() * (size_of::<f64>() + size_of::<usize>());
+        let blocks = 2 * self.blocks * size_of::<DMat3>();
+        self.factor_entries() * size_of::<f64>()
+            + work.unaligned_bytes_required()
+            + scalars
+            + blocks
+    }
+}
+
+/// Floating-point operations that this machine does in a second [1/s], measured on the Cholesky
+/// factorisation of a full matrix.
+pub fn measured_rate() -> f64 {
+    const SIZE: usize = 1000;
+    let matrix = Mat::<f64>::from_fn(SIZE, SIZE, |i, j| match i == j {
+        true => SIZE as f64,
+        false => 1.0 / (1 + i.abs_diff(j)) as f64,
+    });
+    let par = parallelism();
+    let request = cholesky_in_place_scratch::<f64>(SIZE, par, faer::Spec::default());
+    let mut memory = MemBuffer::new(request);
+    let fastest = (0..3).map(|_| {
+        let mut factor = matrix.clone();
+        let stack = MemStack::new(&mut memory);
+        let start = Instant::now();
+        let _ = cholesky_in_place(
+            factor.as_mut(),
+            Default::default(),
+            par,
+            stack,
+            faer::Spec::default(),
+        );
+        start.elapsed().as_secs_f64()
+    });
+    let seconds = fastest.fold(f64::INFINITY, f64::min);
+    (SIZE as f64).powi(3) / 3.0 / seconds
+}
+
+/// Column offsets and row indices of the upper triangle. Column `3 i + c` holds the blocks of block
+/// row `i` up to the diagonal, which by symmetry are those of block column `i`.
+fn upper_triangle(pattern: &Pattern, lower_blocks: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let mut column_offset = vec![0];
+    let mut row_index = Vec::new();
+    for (row, &lower) in lower_blocks.iter().enumerate() {
+        let columns = &pattern.columns[pattern.row(row)][..lower];
+        for c in 0..3 {
+            let left = columns
+                .iter()
+                .flat_map(|&block| (0..3).map(move |r| 3 * block as usize + r));
+            row_index.extend(left);
+            row_index.extend((0..=c).map(|r| 3 * row + r));
+            column_offset.push(row_index.len());
+        }
+    }
+    (column_offset, row_index)
+}
+
+/// Nested dissection of the graph of nodes that carry unknowns; a node's unknowns stay together.
+/// Returns the scalar permutation (new to old) and its inverse.
+fn scalar_ordering(
+    pattern: &Pattern,
+    points: &Points,
+) -> Result<(Vec<usize>, Vec<usize>), LinearFailure> {
+    let fault = |what: &str| LinearFailure::Analysis(what.to_owned());
+    let used: Vec<usize> = (0..points.offset.len() - 1)
+        .filter(|&node| !points.of_node(node).is_empty())
+        .collect();
+    let mut number = vec![0_i32; points.offset.len() - 1];
+    for (index, &node) in used.iter().enumerate() {
+        number[node] = i32::try_from(index).map_err(|_| fault("too many nodes"))?;
+    }
+    let mut column_offset = vec![0_i32];
+    let mut row_index = Vec::new();
+    for &node in &used {
+        let others = pattern
+            .neighbours
+            .of(node)
+            .iter()
+            .filter(|&&other| other as usize != node);
+        row_index.extend(others.map(|&other| number[other as usize]));
+        let end = i32::try_from(row_index.len()).map_err(|_| fault("node graph too large"))?;
+        column_offset.push(end);
+    }
+    let graph = CscPattern::new(used.len(), &column_offset, &row_index)
+        .ok_or_else(|| fault("malformed node graph"))?;
+    let order = metis_order(&graph).map_err(|error| fault(&error.to_string()))?;
+    let forward: Vec<usize> = order
+        .iter()
+        .flat_map(|&index| points.of_node(used[index as usize]))
+        .flat_map(|block| [3 * block, 3 * block + 1, 3 * block + 2])
+        .collect();
+    let mut inverse = vec![0; forward.len()];
+    for (new, &old) in forward.iter().enumerate() {
+        inverse[old] = new;
+    }
+    Ok((forward, inverse))
+}

@@ -1,0 +1,140 @@
+//! Physical groups: how many elements they hold and what the scene makes of them.
+
+use lie_mesh::{Draft, SurfaceRole, TaggedElements};
+use lie_solver::{Support, SurfaceLoad};
+
+use super::findings::GroupFinding;
+use crate::scene::{BoundaryEntry, Scene};
+
+/// Roles for a mesh without a scene: surfaces with rock on both sides are fractures.
+pub fn guess(draft: &Draft, inner: &[bool]) -> Vec<SurfaceRole> {
+    let role = |inside: &bool| match inside {
+        true => SurfaceRole::Fracture,
+        false => SurfaceRole::Boundary,
+    };
+    let is_empty = counts(draft, &draft.facets);
+    let roles = inner.iter().zip(is_empty).zip(&draft.groups);
+    roles
+        .map(|((inside, count), group)| match (group.dimension, count) {
+            (2, 1..) => role(inside),
+            _ => SurfaceRole::Unused,
+        })
+        .collect()
+}
+
+/// All groups; without roles (the scene names groups that are not there) the surfaces' are unknown.
+pub fn list(
+    draft: &Draft,
+    inner: &[bool],
+    roles: Option<&[SurfaceRole]>,
+    scene: Option<&Scene>,
+) -> Vec<GroupFinding> {
+    let (cells, facets) = (counts(draft, &draft.cells), counts(draft, &draft.facets));
+    let groups = draft.groups.iter().enumerate();
+    groups
+        .map(|(index, group)| {
+            let (role, detail) = match group.dimension {
+                3 => ("rock", rock(scene, &group.name)),
+                2 => surface(
+                    scene,
+                    &group.name,
+                    roles.map(|roles| roles[index]),
+                    inner[index],
+                ),
+                _ => ("unused", String::new()),
+            };
+            GroupFinding {
+                name: group.name.clone(),
+                dimension: group.dimension,
+                tag: group.tag,
+                elements: match group.dimension {
+                    3 => Some(cells[index]),
+                    2 => Some(facets[index]),
+                    _ => None,
+                },
+                role,
+                detail,
+            }
+        })
+        .collect()
+}
+
+/// Number of elements in each group.
+fn counts(draft: &Draft, elements: &TaggedElements) -> Vec<usize> {
+    let mut of_set = vec![0; draft.group_sets.len()];
+    for &set in &elements.group_set {
+        of_set[set as usize] += 1;
+    }
+    let mut of_group = vec![0; draft.groups.len()];
+    for (set, count) in draft.group_sets.iter().zip(of_set) {
+        for &group in set {
+            of_group[group] += count;
+        }
+    }
+    of_group
+}
+
+fn rock(scene: Option<&Scene>, name: &str) -> String {
+    let Some(scene) = scene else {
+        return String::new();
+    };
+    let names = [name, "default"];
+    let found = names
+        .into_iter()
+        .find(|name| scene.rocks.iter().any(|entry| entry.name == *name));
+    found.map_or("no rock is given".into(), |name| format!("[rock.{name}]"))
+}
+
+fn surface(
+    scene: Option<&Scene>,
+    name: &str,
+    role: Option<SurfaceRole>,
+    inside: bool,
+) -> (&'static str, String) {
+    let side = if inside {
+        "inside the rock"
+    } else {
+        "on the outside"
+    };
+    let guessed = |text: &str| match scene {
+        None => format!("guessed: {text}"),
+        Some(_) => String::new(),
+    };
+    match role {
+        None => ("unknown", side.into()),
+        Some(SurfaceRole::Fracture) => ("fracture", guessed("rock on both sides")),
+        Some(SurfaceRole::Boundary) => {
+            let entry = scene.and_then(|scene| {
+                let mut entries = scene.boundaries.iter();
+                entries.find(|entry| entry.name == name)
+            });
+            let acts = entry.map(|entry| what_acts(&entry.value));
+            (
+                "boundary",
+                acts.unwrap_or_else(|| guessed("no rock behind it")),
+            )
+        }
+        Some(SurfaceRole::Unused) if inside => ("welded", "not named in the scene".into()),
+        Some(SurfaceRole::Unused) => ("free", "not named in the scene".into()),
+    }
+}
+
+fn what_acts(entry: &BoundaryEntry) -> String {
+    let load = entry.load.map(|load| match load {
+        SurfaceLoad::Pressure(p) => format!("pressure {p} Pa"),
+        SurfaceLoad::Traction(t) => format!("traction ({}, {}, {}) Pa", t.x, t.y, t.z),
+    });
+    let support = entry.support.map(|support| match support {
+        Support::Symmetry => "symmetry".to_owned(),
+        Support::Displacement(components) => {
+            let named = ["x", "y", "z"].into_iter().zip(components);
+            let parts = named.filter_map(|(axis, value)| Some(format!("{axis} = {}", value?)));
+            format!("displacement {} m", parts.collect::<Vec<_>>().join(", "))
+        }
+    });
+    [load, support]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join("; ")
+}

@@ -1,0 +1,386 @@
+//! The report of an inspection as text.
+
+use std::fmt::Write;
+
+use super::findings::{
+    BlockFinding, CellFinding, FractureFinding, Inspection, Place, SectorCounts, SolverFinding,
+};
+
+/// Lists longer than this are cut; `--json` has all of them.
+const SHOWN: usize = 12;
+
+/// The whole report.
+pub fn of(inspection: &Inspection) -> String {
+    let mut text = String::new();
+    let out = &mut text;
+    head(out, inspection);
+    groups(out, inspection);
+    fractures(out, inspection);
+    contacts(out, inspection);
+    patches(out, inspection);
+    blocks(out, inspection);
+    cells(out, inspection);
+    unknowns(out, inspection);
+    for solver in &inspection.solvers {
+        cost(out, solver);
+    }
+    walls(out, inspection);
+    if !inspection.warnings.is_empty() {
+        line(out, "\nwarnings");
+        for warning in &inspection.warnings {
+            line(out, &format!("  {warning}"));
+        }
+    }
+    text
+}
+
+fn line(out: &mut String, text: &str) {
+    // Writing to a string does not fail.
+    let _ = writeln!(out, "{}", text.trim_end());
+}
+
+fn at(place: Place) -> String {
+    // Without rounding first, -1e-9 would be printed as -0.0000.
+    let [x, y, z] = place.map(|value| (1e4 * value).round() / 1e4 + 0.0);
+    format!("({x:.4}, {y:.4}, {z:.4})")
+}
+
+/// Prints the first few entries of a list and counts the others.
+fn list<T>(out: &mut String, entries: &[T], print: impl Fn(&T) -> String) {
+    for entry in entries.iter().take(SHOWN) {
+        line(out, &print(entry));
+    }
+    if entries.len() > SHOWN {
+        line(
+            out,
+            &format!("  and {} more (--json lists them)", entries.len() - SHOWN),
+        );
+    }
+}
+
+fn head(out: &mut String, inspection: &Inspection) {
+    let title = inspection
+        .title
+        .as_deref()
+        .unwrap_or("a mesh without a scene");
+    line(out, &format!("kluft      {}  {title}", inspection.kluft));
+    let mesh = &inspection.mesh;
+    let size = format!(
+        "{} nodes, {} cells, {} surface elements",
+        mesh.nodes, mesh.cells, mesh.facets
+    );
+    let place = mesh
+        .bounds
+        .map(|[low, high]| format!(", from {} to {} m", at(low), at(high)));
+    line(
+        out,
+        &format!("mesh       {size}{}", place.unwrap_or_default()),
+    );
+}
+
+fn groups(out: &mut String, inspection: &Inspection) {
+    let width = inspection.groups.iter().map(|group| group.name.len());
+    let width = width.max().unwrap_or(0).max(5);
+    line(
+        out,
+        &format!("\n{:<width$}  dimension  elements  role", "group"),
+    );
+    for group in &inspection.groups {
+        let elements = group
+            .elements
+            .map_or("-".to_owned(), |count| count.to_string());
+        line(
+            out,
+            &format!(
+                "{:<width$}  {:>9}  {elements:>8}  {:<8}  {}",
+                group.name, group.dimension, group.role, group.detail
+            ),
+        );
+    }
+}
+
+fn fractures(out: &mut String, inspection: &Inspection) {
+    for fracture in &inspection.fractures {
+        line(out, &format!("\nfracture   {}", fracture.name));
+        fracture_lines(out, fracture);
+    }
+}
+
+fn fracture_lines(out: &mut String, fracture: &FractureFinding) {
+    let surface = if fracture.closed { "closed" } else { "open" };
+    let pieces = match fracture.pieces {
+        1 => String::new(),
+        count => format!(" in {count} pieces"),
+    };
+    line(
+        out,
+        &format!(
+            "  {:.6} m2, {} facets, {surface} surface{pieces}",
+            fracture.area, fracture.facets
+        ),
+    );
+    if let (Some(dip), Some(direction), Some(deviation)) =
+        (fracture.dip, fracture.dip_direction, fracture.deviation)
+    {
+        let shape = match deviation < 1e-3 {
+            true => "plane".to_owned(),
+            false => format!("facets up to {deviation:.1} degrees off that plane"),
+        };
+        line(
+            out,
+            &format!("  dip {dip:.1}, dip direction {direction:.1} degrees; {shape}"),
+        );
+    }
+    line(
+        out,
+        &format!(
+            "  tips {:.4} m ({} edges), on the outer surface {:.4} m ({} edges)",
+            fracture.tip_length, fracture.tip_edges, fracture.trace_length, fracture.trace_edges
+        ),
+    );
+    if fracture.branching_length > 0.0 {
+        line(
+            out,
+            &format!("  crosses itself along {:.4} m", fracture.branching_length),
+        );
+    }
+    if fracture.junction_nodes != SectorCounts::default() {
+        line(
+            out,
+            &format!("  junctions: {}", sectors(&fracture.junction_nodes)),
+        );
+    }
+    if fracture.mute_facets > 0 {
+        line(
+            out,
+            &format!(
+                "  {} facets without a jump of their own",
+                fracture.mute_facets
+            ),
+        );
+    }
+    if let Some(cell) = &fracture.worst_cell {
+        line(out, &format!("  worst cell {}", cell_text(cell)));
+    }
+}
+
+fn sectors(counts: &SectorCounts) -> String {
+    let named = [
+        ("3", counts.three),
+        ("4", counts.four),
+        ("5", counts.five),
+        ("6", counts.six),
+        ("7", counts.seven),
+        ("8 or more", counts.many),
+    ];
+    let present = named.into_iter().filter(|(_, count)| *count > 0);
+    let parts = present.map(|(sectors, count)| format!("{count} nodes with {sectors} sectors"));
+    parts.collect::<Vec<_>>().join(", ")
+}
+
+fn contacts(out: &mut String, inspection: &Inspection) {
+    if inspection.contacts.is_empty() {
+        return;
+    }
+    line(out, "\nfractures that meet");
+    list(out, &inspection.contacts, |contact| {
+        let [first, second] = &contact.fractures;
+        let kind = match contact.kind {
+            "first ends on second" => format!("{first} ends on {second}"),
+            "second ends on first" => format!("{second} ends on {first}"),
+            "rim to rim" => format!("{first} and {second} share a rim"),
+            "touches" => format!("{first} touches {second}"),
+            _ => format!("{first} crosses {second}"),
+        };
+        let length = contact.crossing_length
+            + contact.first_ends_length
+            + contact.second_ends_length
+            + contact.rim_length;
+        let angle = contact.smallest_angle.map_or(String::new(), |angle| {
+            format!(
+                ", at {angle:.1} degrees or more, least at {}",
+                at(contact.at)
+            )
+        });
+        format!(
+            "  {kind} along {length:.4} m ({} nodes){angle}",
+            contact.nodes
+        )
+    });
+}
+
+fn patches(out: &mut String, inspection: &Inspection) {
+    if inspection.mute_patches.is_empty() {
+        return;
+    }
+    line(out, "\npatches with no jump of their own");
+    list(out, &inspection.mute_patches, |patch| {
+        let what = if patch.whole {
+            "a whole piece"
+        } else {
+            "part of a piece"
+        };
+        format!(
+            "  {}: {} facets, {:.4e} m2 at {}, {what}",
+            patch.fracture,
+            patch.facets,
+            patch.area,
+            at(patch.at)
+        )
+    });
+}
+
+fn blocks(out: &mut String, inspection: &Inspection) {
+    let blocks = &inspection.blocks;
+    if blocks.len() < 2 {
+        return;
+    }
+    let loose = blocks
+        .iter()
+        .filter(|block| block.held_by_fractures_only == Some(true));
+    let loose = match inspection.unknowns.is_some() && blocks[0].supported.is_some() {
+        true => format!(", {} of them held by fractures only", loose.count()),
+        false => String::new(),
+    };
+    line(
+        out,
+        &format!("\n{} blocks that fractures cut free{loose}", blocks.len()),
+    );
+    list(out, blocks, block_text);
+}
+
+fn block_text(block: &BlockFinding) -> String {
+    let [low, high] = block.bounds;
+    let held = match (block.supported, block.held_by_fractures_only) {
+        (Some(true), _) => ", supported",
+        (_, Some(true)) => ", held by fractures only",
+        (Some(false), _) => ", not supported",
+        _ => "",
+    };
+    let loaded = if block.loaded == Some(true) {
+        ", loaded"
+    } else {
+        ""
+    };
+    format!(
+        "  {:.6} m3, {} cells, from {} to {}{held}{loaded}",
+        block.volume,
+        block.cells,
+        at(low),
+        at(high)
+    )
+}
+
+fn cells(out: &mut String, inspection: &Inspection) {
+    let Some(cells) = &inspection.cells else {
+        return;
+    };
+    line(
+        out,
+        &format!(
+            "\ncells      mean quality {:.3} (1 is regular, 0 is flat)",
+            cells.mean_quality
+        ),
+    );
+    line(
+        out,
+        &format!("  in tenths from 0 to 1: {:?}", cells.histogram),
+    );
+    for cell in cells.worst.iter().take(3) {
+        line(out, &format!("  worst {}", cell_text(cell)));
+    }
+    for cell in cells.worst_at_fractures.iter().take(3) {
+        line(out, &format!("  worst at fractures {}", cell_text(cell)));
+    }
+}
+
+fn cell_text(cell: &CellFinding) -> String {
+    let fractures = match cell.fractures.is_empty() {
+        true => String::new(),
+        false => format!(", at {}", cell.fractures.join(", ")),
+    };
+    format!(
+        "{}: quality {:.3}, dihedral angles {:.1} to {:.1} degrees, at {}{fractures}",
+        cell.tag,
+        cell.quality,
+        cell.smallest_angle,
+        cell.largest_angle,
+        at(cell.at)
+    )
+}
+
+fn unknowns(out: &mut String, inspection: &Inspection) {
+    let Some(unknowns) = &inspection.unknowns else {
+        return;
+    };
+    let held = match unknowns.without_held {
+        true => "held ones left out",
+        false => "without any supports",
+    };
+    line(
+        out,
+        &format!(
+            "\nunknowns   {} ({held}), {} of them jumps",
+            unknowns.total, unknowns.jumps
+        ),
+    );
+    let junctions = sectors(&unknowns.junction_nodes);
+    let junctions = if junctions.is_empty() {
+        junctions
+    } else {
+        format!(", {junctions}")
+    };
+    line(
+        out,
+        &format!(
+            "  {} nodes with one sector, {} inside a fracture{junctions}",
+            unknowns.plain_nodes, unknowns.fracture_nodes
+        ),
+    );
+}
+
+fn cost(out: &mut String, solver: &SolverFinding) {
+    line(
+        out,
+        &format!(
+            "solver     {}, predicted: {:.2} GB, {:.2} s for a factorisation (one each iteration)",
+            solver.name,
+            solver.memory_bytes as f64 / 1e9,
+            solver.factorisation_seconds
+        ),
+    );
+    line(
+        out,
+        &format!(
+            "  {:.3e} entries in the factor, {:.3e} operations at a measured {:.1} Gflop/s",
+            solver.factor_entries as f64,
+            solver.operations,
+            solver.operations_per_second / 1e9
+        ),
+    );
+}
+
+fn walls(out: &mut String, inspection: &Inspection) {
+    if inspection.walls.is_empty() {
+        return;
+    }
+    line(
+        out,
+        "\nwalls      do they pass through each other? (an estimate from the loads)",
+    );
+    list(out, &inspection.walls, |wall| {
+        let limit = wall.limit.map_or("they never meet".to_owned(), |limit| {
+            format!("they meet at {limit:.3e} Pa")
+        });
+        let expected = wall
+            .expected
+            .map_or("unknown: displacements are prescribed".into(), |load| {
+                format!("the loads suggest {load:.3e} Pa")
+            });
+        let verdict = wall.overlap;
+        format!(
+            "  {}: {verdict} ({}; {limit}, {expected})",
+            wall.fracture, wall.law
+        )
+    });
+}

@@ -1,0 +1,182 @@
+//! Whether the loads are enough to push the walls of fractures through each other.
+
+use glam::{DMat3, DVec3};
+use lie_core::{Closure, ClosureKind};
+use lie_mesh::{Survey, facet_area_vector};
+use lie_solver::{Condition, Problem, Support, SurfaceLoad};
+
+use super::findings::{Inspection, WallFinding};
+
+/// Compares the compression that the loads suggest with the one at which the walls of each
+/// fracture meet.
+pub fn judge(problem: &Problem, survey: &Survey, inspection: &mut Inspection) {
+    let outside = compression(problem);
+    for (index, fracture) in problem.fractures.iter().enumerate() {
+        let closure = &fracture.law.closure;
+        let factor = largest_factor(problem);
+        let suction = factor.map_or(0.0, |f| (-f * fracture.fluid_pressure).max(0.0));
+        let expected = outside.map(|outside| outside + suction);
+        let (law, limit) = meeting(closure);
+        let overlap = match (limit, expected) {
+            (None, _) => "never",
+            (Some(_), None) => "unknown",
+            (Some(limit), Some(expected)) if expected > limit => "yes",
+            _ => "no",
+        };
+        let finding = WallFinding {
+            fracture: problem.mesh.fractures[index].clone(),
+            law,
+            limit,
+            expected,
+            overlap,
+        };
+        if survey.fractures[index].facets > 0 {
+            inspection.warnings.extend(warning(&finding));
+        }
+        inspection.walls.push(finding);
+    }
+}
+
+fn warning(finding: &WallFinding) -> Option<String> {
+    let (limit, expected) = (finding.limit?, finding.expected?);
+    (finding.overlap == "yes").then(|| {
+        format!(
+            "the walls of `{}` meet at {limit:.3e} Pa and the loads suggest up to {expected:.3e} Pa: they may overlap; closure = \"logarithmic\" without cutoff_aperture never does",
+            finding.fracture
+        )
+    })
+}
+
+/// The law in words, and the compression [Pa] at which its walls meet:
+/// `K_n0 b0 (1 - ln(b_cut/b0))^2` with a cutoff, `K_n0 b0` for a linear one.
+fn meeting(closure: &Closure) -> (&'static str, Option<f64>) {
+    let scale = closure.normal_stiffness * closure.aperture;
+    match closure.kind {
+        _ if scale == 0.0 => ("free crack", Some(0.0)),
+        ClosureKind::Linear => ("linear", Some(scale)),
+        ClosureKind::Logarithmic { cutoff: None } => ("logarithmic", None),
+        ClosureKind::Logarithmic {
+            cutoff: Some(cutoff),
+        } => {
+            let stretch = 1.0 - (cutoff / closure.aperture).ln();
+            ("logarithmic with cutoff", Some(scale * stretch.powi(2)))
+        }
+    }
+}
+
+/// Compression [Pa] that surface loads, weight and initial stress can cause in rock without
+/// fractures: the sum of the largest of each. None if displacements are prescribed. Corners, tips
+/// and fractures can concentrate it further.
+fn compression(problem: &Problem) -> Option<f64> {
+    let factor = largest_factor(problem)?;
+    if factor != 0.0 && prescribes_displacement(problem) {
+        return None;
+    }
+    let surface = problem.conditions.iter().map(|condition| {
+        let steps = problem.steps.iter();
+        let of_steps = steps.map(|&factor| pressed(problem, condition, factor));
+        of_steps.fold(0.0, f64::max)
+    });
+    let (low, high) = problem.mesh.bounds();
+    let density = problem.rocks.iter().map(|rock| rock.density);
+    let gravity = factor * problem.gravity.abs();
+    let weight = density.fold(0.0, f64::max) * gravity.dot(high - low);
+    let initial = problem.initial_stress.map_or(0.0, |stress| {
+        let ends = [low, high].map(|at| -smallest_principal(&stress.at(at)));
+        ends[0].max(ends[1]).max(0.0)
+    });
+    Some(surface.fold(0.0, f64::max) + weight + initial)
+}
+
+fn largest_factor(problem: &Problem) -> Option<f64> {
+    let sizes = problem.steps.iter().map(|factor| factor.abs());
+    sizes.max_by(f64::total_cmp)
+}
+
+fn prescribes_displacement(problem: &Problem) -> bool {
+    let moves = |components: &[Option<f64>; 3]| components.iter().flatten().any(|d| *d != 0.0);
+    let conditions = problem.conditions.iter();
+    let of_conditions = conditions.filter_map(|condition| match condition.support {
+        Some(Support::Displacement(components)) => Some(components),
+        _ => None,
+    });
+    let fixed = problem.fixed_points.iter().map(|point| point.displacement);
+    of_conditions
+        .chain(fixed)
+        .any(|components| moves(&components))
+}
+
+/// Largest compression [Pa] beside a loaded face: for a traction with normal part `s` and
+/// tangential part `t` it is `sqrt(s^2/4 + t^2) - s/2`.
+fn pressed(problem: &Problem, condition: &Condition, factor: f64) -> f64 {
+    let boundary = &problem.mesh.boundaries[condition.boundary];
+    match condition.load {
+        None => 0.0,
+        Some(SurfaceLoad::Pressure(pressure)) => (factor * pressure).max(0.0),
+        Some(SurfaceLoad::Traction(traction)) => {
+            let facets = 0..boundary.elements.len();
+            let normals = facets.map(|facet| {
+                let corners = problem.mesh.corners(&boundary.elements, facet);
+                facet_area_vector(&corners).normalize_or_zero()
+            });
+            let beside = |normal: DVec3| {
+                let across = factor * traction.dot(normal);
+                let along = (factor * traction - across * normal).length();
+                (0.25 * across * across + along * along).sqrt() - 0.5 * across
+            };
+            normals.map(beside).fold(0.0, f64::max)
+        }
+    }
+}
+
+/// Smallest eigenvalue of a symmetric matrix (Smith 1961).
+fn smallest_principal(stress: &DMat3) -> f64 {
+    let mean = (stress.x_axis.x + stress.y_axis.y + stress.z_axis.z) / 3.0;
+    let deviator = *stress - DMat3::from_diagonal(DVec3::splat(mean));
+    let squares = [deviator.x_axis, deviator.y_axis, deviator.z_axis].map(DVec3::length_squared);
+    let size = (squares.iter().sum::<f64>() / 6.0).sqrt();
+    if size == 0.0 {
+        return mean;
+    }
+    let half = (deviator * (1.0 / size)).determinant() / 2.0;
+    let angle = half.clamp(-1.0, 1.0).acos() / 3.0;
+    mean + 2.0 * size * (angle + 2.0 * std::f64::consts::PI / 3.0).cos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_principal_stress_is_an_eigenvalue() {
+        let turned = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+        for values in [[-5.0, 2.0, 1.0], [3.0, 3.0, 3.0], [0.0, -1.0, -1.0]] {
+            let stress = turned * DMat3::from_diagonal(values.into()) * turned.transpose();
+            let smallest = values.into_iter().fold(f64::INFINITY, f64::min);
+            assert!(
+                (smallest_principal(&stress) - smallest).abs() < 1e-7,
+                "{values:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn walls_meet_at_the_cutoff_where_the_law_says() {
+        let closure = |kind| Closure {
+            aperture: 1e-4,
+            normal_stiffness: 5e10,
+            kind,
+        };
+        for kind in [
+            ClosureKind::Linear,
+            ClosureKind::Logarithmic { cutoff: Some(1e-5) },
+        ] {
+            let closure = closure(kind);
+            let limit = meeting(&closure).1.expect("a limit");
+            let traction = closure.at_aperture(0.0).traction;
+            assert!((limit + traction).abs() < 1e-9 * limit, "{kind:?}");
+        }
+        let exact = closure(ClosureKind::Logarithmic { cutoff: None });
+        assert_eq!(meeting(&exact).1, None);
+    }
+}
