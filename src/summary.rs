@@ -23,21 +23,21 @@ pub struct Spread {
 pub struct FractureSummary {
     /// Number of facets.
     pub facets: usize,
-    /// Area [m^2].
+    /// Area (m^2).
     pub area: f64,
-    /// Aperture [m].
+    /// Aperture (m).
     pub aperture: Spread,
-    /// Normal traction [Pa], tension positive.
+    /// Normal traction (Pa), tension positive.
     pub normal_traction: Spread,
-    /// Largest slip [m].
+    /// Largest slip (m).
     pub slip_max: f64,
-    /// Area that is open [m^2].
+    /// Area that is open (m^2).
     pub open_area: f64,
-    /// Area below the cutoff of the law [m^2].
+    /// Area below the cutoff of the law (m^2).
     pub below_cutoff_area: f64,
     /// Number of facets with a node below the cutoff.
     pub below_cutoff_facets: usize,
-    /// Area whose walls overlap (negative aperture) [m^2].
+    /// Area whose walls overlap (negative aperture) (m^2).
     pub overlap_area: f64,
 }
 
@@ -98,7 +98,7 @@ impl From<&StepRecord> for StepSummary {
     }
 }
 
-/// Wall-clock time of each stage [s].
+/// Wall-clock time of each stage (s).
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Seconds {
     /// gmsh.

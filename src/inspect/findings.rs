@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::scene::Scene;
 
-/// A position [m].
+/// A position (m).
 pub type Place = [f64; 3];
 
 /// Everything. Lists stay empty and options none where a defect of the input stood in the way.
@@ -45,7 +45,7 @@ pub struct Inspection {
     pub warnings: Vec<String>,
     /// What is wrong with the input.
     pub defects: Vec<DefectFinding>,
-    /// Wall-clock time of the inspection, with gmsh [s].
+    /// Wall-clock time of the inspection, with gmsh (s).
     pub seconds: f64,
 }
 
@@ -58,7 +58,7 @@ pub struct MeshCounts {
     pub cells: usize,
     /// Surface elements in the file.
     pub facets: usize,
-    /// Lowest and highest coordinates [m].
+    /// Lowest and highest coordinates (m).
     pub bounds: Option<[Place; 2]>,
 }
 
@@ -86,29 +86,29 @@ pub struct FractureFinding {
     pub name: String,
     /// Number of facets.
     pub facets: usize,
-    /// Area [m^2].
+    /// Area (m^2).
     pub area: f64,
-    /// Mean dip [degrees]; none for a closed surface.
+    /// Mean dip (degrees); none for a closed surface.
     pub dip: Option<f64>,
-    /// Mean dip direction, clockwise from north = +y [degrees]; none for a closed surface.
+    /// Mean dip direction, clockwise from north = +y (degrees); none for a closed surface.
     pub dip_direction: Option<f64>,
-    /// Largest angle of a facet against the mean plane [degrees]; none for a closed surface.
+    /// Largest angle of a facet against the mean plane (degrees); none for a closed surface.
     pub deviation: Option<f64>,
     /// Whether the surface has no rim.
     pub closed: bool,
     /// Number of separate surfaces.
     pub pieces: usize,
-    /// Lowest and highest coordinates [m].
+    /// Lowest and highest coordinates (m).
     pub bounds: [Place; 2],
     /// Edges where it ends in the rock.
     pub tip_edges: usize,
-    /// Their length [m].
+    /// Their length (m).
     pub tip_length: f64,
     /// Edges on the outer surface.
     pub trace_edges: usize,
-    /// Their length [m].
+    /// Their length (m).
     pub trace_length: f64,
-    /// Length along which it crosses itself [m].
+    /// Length along which it crosses itself (m).
     pub branching_length: f64,
     /// Its nodes by number of sectors: 3, 4, 5, 6, 7, `8+`.
     pub junction_nodes: SectorCounts,
@@ -162,19 +162,19 @@ pub struct ContactFinding {
     /// `crosses`, `first ends on second`, `second ends on first`, `rim to rim` or `touches`: the
     /// longest of these.
     pub kind: &'static str,
-    /// Length along which they cross [m].
+    /// Length along which they cross (m).
     pub crossing_length: f64,
-    /// Length along which the first ends on the second [m].
+    /// Length along which the first ends on the second (m).
     pub first_ends_length: f64,
-    /// Length along which the second ends on the first [m].
+    /// Length along which the second ends on the first (m).
     pub second_ends_length: f64,
-    /// Length along which both end [m].
+    /// Length along which both end (m).
     pub rim_length: f64,
     /// Number of nodes they share.
     pub nodes: usize,
-    /// Smallest angle between them [degrees].
+    /// Smallest angle between them (degrees).
     pub smallest_angle: Option<f64>,
-    /// Where that is [m].
+    /// Where that is (m).
     pub at: Place,
 }
 
@@ -185,9 +185,9 @@ pub struct PatchFinding {
     pub fracture: String,
     /// Number of facets.
     pub facets: usize,
-    /// Area [m^2].
+    /// Area (m^2).
     pub area: f64,
-    /// Its middle [m].
+    /// Its middle (m).
     pub at: Place,
     /// Whether it is a whole piece of the fracture and not a corner of one.
     pub whole: bool,
@@ -198,9 +198,9 @@ pub struct PatchFinding {
 pub struct BlockFinding {
     /// Number of cells.
     pub cells: usize,
-    /// Volume [m^3].
+    /// Volume (m^3).
     pub volume: f64,
-    /// Lowest and highest coordinates [m].
+    /// Lowest and highest coordinates (m).
     pub bounds: [Place; 2],
     /// Boundaries it has a part of.
     pub boundaries: Vec<String>,
@@ -236,11 +236,11 @@ pub struct CellFinding {
     pub tag: u64,
     /// Quality, 0 to 1.
     pub quality: f64,
-    /// Smallest dihedral angle [degrees].
+    /// Smallest dihedral angle (degrees).
     pub smallest_angle: f64,
-    /// Largest dihedral angle [degrees].
+    /// Largest dihedral angle (degrees).
     pub largest_angle: f64,
-    /// Its middle [m].
+    /// Its middle (m).
     pub at: Place,
     /// Fractures it touches.
     pub fractures: Vec<String>,
@@ -272,15 +272,15 @@ pub struct SolverFinding {
     pub is_prediction: bool,
     /// Entries of the factor.
     pub factor_entries: usize,
-    /// Memory of the solver at its largest, mesh not included [bytes].
+    /// Memory of the solver at its largest, mesh not included (bytes).
     pub memory_bytes: usize,
     /// Floating-point operations of one factorisation.
     pub operations: f64,
     /// Rate measured on a full matrix of this machine [1/s].
     pub operations_per_second: f64,
-    /// Time of one factorisation [s]; a nonlinear step takes one for each iteration.
+    /// Time of one factorisation (s); a nonlinear step takes one for each iteration.
     pub factorisation_seconds: f64,
-    /// Time that ordering and symbolic factorisation took [s].
+    /// Time that ordering and symbolic factorisation took (s).
     pub analysis_seconds: f64,
 }
 
@@ -291,9 +291,9 @@ pub struct WallFinding {
     pub fracture: String,
     /// `linear`, `logarithmic with cutoff`, `logarithmic` or `free crack`.
     pub law: &'static str,
-    /// Compression at which the walls meet [Pa]; none if they never do.
+    /// Compression at which the walls meet (Pa); none if they never do.
     pub limit: Option<f64>,
-    /// Compression that the loads suggest [Pa]; none if displacements are prescribed.
+    /// Compression that the loads suggest (Pa); none if displacements are prescribed.
     pub expected: Option<f64>,
     /// `never`, `no`, `yes` or `unknown`.
     pub overlap: &'static str,

@@ -10,7 +10,7 @@ use super::findings::{
 
 /// Cells below this quality are worth a warning.
 const POOR: f64 = 0.05;
-/// Fractures that meet at a smaller angle [degrees] are worth a warning.
+/// Fractures that meet at a smaller angle (degrees) are worth a warning.
 const SHARP: f64 = 10.0;
 
 const MEASURE: &str = "equiangle: the smallest and the largest dihedral angle against those of the \

@@ -47,7 +47,7 @@ fn warning(finding: &WallFinding) -> Option<String> {
     })
 }
 
-/// The law in words, and the compression [Pa] at which its walls meet:
+/// The law in words, and the compression (Pa) at which its walls meet:
 /// `K_n0 b0 (1 - ln(b_cut/b0))^2` with a cutoff, `K_n0 b0` for a linear one.
 fn meeting(closure: &Closure) -> (&'static str, Option<f64>) {
     let scale = closure.normal_stiffness * closure.aperture;
@@ -64,7 +64,7 @@ fn meeting(closure: &Closure) -> (&'static str, Option<f64>) {
     }
 }
 
-/// Compression [Pa] that surface loads, weight and initial stress can cause in rock without
+/// Compression (Pa) that surface loads, weight and initial stress can cause in rock without
 /// fractures: the sum of the largest of each. None if displacements are prescribed. Corners, tips
 /// and fractures can concentrate it further.
 fn compression(problem: &Problem) -> Option<f64> {
@@ -106,7 +106,7 @@ fn prescribes_displacement(problem: &Problem) -> bool {
         .any(|components| moves(&components))
 }
 
-/// Largest compression [Pa] beside a loaded face: for a traction with normal part `s` and
+/// Largest compression (Pa) beside a loaded face: for a traction with normal part `s` and
 /// tangential part `t` it is `sqrt(s^2/4 + t^2) - s/2`.
 fn pressed(problem: &Problem, condition: &Condition, factor: f64) -> f64 {
     let boundary = &problem.mesh.boundaries[condition.boundary];

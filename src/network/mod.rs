@@ -30,7 +30,7 @@ pub struct NetworkOptions {
     pub grouping: Grouping,
     /// Box of rock, instead of the one in the input.
     pub domain: Option<Domain>,
-    /// Cell size away from fractures [m], instead of the one in the input.
+    /// Cell size away from fractures (m), instead of the one in the input.
     pub h: Option<f64>,
     /// Whether features too small for the mesh stay as they are.
     pub keep_small: bool,

@@ -51,12 +51,12 @@ struct Numbers {
     /// Area per volume [m^2/m^3].
     #[serde(skip_serializing_if = "Option::is_none")]
     p32: Option<f64>,
-    /// Mean orientation [degrees].
+    /// Mean orientation (degrees).
     dip: f64,
     dip_direction: f64,
     /// Concentration; null if infinite.
     kappa: f64,
-    /// Mean and standard deviation of the size [m].
+    /// Mean and standard deviation of the size (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<Moments>,
 }
@@ -66,7 +66,7 @@ struct FractureRecord {
     name: String,
     set: String,
     place: String,
-    /// Area in the geometry, and as given [m^2].
+    /// Area in the geometry, and as given (m^2).
     area: f64,
     area_given: f64,
     dip: f64,

@@ -52,9 +52,9 @@ pub struct BoundaryEntry {
 /// A node held by itself.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedPointEntry {
-    /// Where the node is [m].
+    /// Where the node is (m).
     pub at: DVec3,
-    /// Prescribed components [m].
+    /// Prescribed components (m).
     pub displacement: [Option<f64>; 3],
 }
 
@@ -73,7 +73,7 @@ pub struct Scene {
     pub boundaries: Vec<Named<BoundaryEntry>>,
     /// Nodes held by themselves.
     pub fixed_points: Vec<Named<FixedPointEntry>>,
-    /// Acceleration of gravity [m/s^2].
+    /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,

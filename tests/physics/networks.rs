@@ -12,7 +12,7 @@ use lie_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 use crate::dice::Dice;
 use crate::scenes;
 
-/// Facets this close to the plane of a polygon [m] lie in it; gmsh keeps planes to about 1e-12.
+/// Facets this close to the plane of a polygon (m) lie in it; gmsh keeps planes to about 1e-12.
 const IN_PLANE: f64 = 1e-8;
 
 /// A plane convex polygon.

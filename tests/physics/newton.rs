@@ -14,13 +14,18 @@ use crate::closed_forms::column;
 use crate::scenes::{self, EXACT, joint};
 
 const LOADS: [f64; 9] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
-const CUTOFFS: [Option<f64>; 7] = [
+const CUTOFFS: [Option<f64>; 12] = [
     None,
     Some(1e-2),
+    Some(1e-3),
     Some(1e-4),
+    Some(1e-5),
     Some(1e-6),
+    Some(1e-7),
     Some(1e-8),
+    Some(1e-9),
     Some(1e-10),
+    Some(1e-11),
     Some(1e-12),
 ];
 

@@ -12,7 +12,7 @@ use lie_solver::{Fracture, Problem};
 use crate::oracles::closed_aperture;
 use crate::scenes::{self, EXACT, joint};
 
-/// Compression with shear on every plane [Pa].
+/// Compression with shear on every plane (Pa).
 const STRESS: DMat3 = DMat3::from_cols(
     DVec3::new(-4.0e6, 1.0e6, -0.5e6),
     DVec3::new(1.0e6, -6.0e6, 0.7e6),

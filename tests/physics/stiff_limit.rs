@@ -6,7 +6,7 @@ use lie_solver::{NewtonSettings, Points, Problem};
 use crate::networks;
 use crate::scenes;
 
-/// Cell size of the networks [m].
+/// Cell size of the networks (m).
 const SIZE: f64 = 0.25;
 
 /// The same mesh and loads without any fracture.

@@ -12,9 +12,9 @@ use crate::read_back::read_back;
 struct Expected {
     geometry: &'static str,
     edits: &'static [(&'static str, &'static str)],
-    /// Volume of the rock [m^3].
+    /// Volume of the rock (m^3).
     volume: f64,
-    /// Stress of every cell in ParaView's order [Pa], where it is uniform.
+    /// Stress of every cell in ParaView's order (Pa), where it is uniform.
     stress: Option<[f64; 6]>,
 }
 

@@ -20,7 +20,7 @@ pub enum ClosureKind {
     Linear,
     /// Stiffness growing without bound as the fracture closes.
     Logarithmic {
-        /// Aperture [m] below which the stiffness continues linearly, `0 < b_cut <= b0`. Without
+        /// Aperture (m) below which the stiffness continues linearly, `0 < b_cut <= b0`. Without
         /// it the law is exact and the aperture stays positive under any load; with it the walls
         /// overlap beyond `|sigma_n| = K_n0 b0 (1 - ln x_c)^2`.
         cutoff: Option<f64>,
@@ -31,14 +31,14 @@ pub enum ClosureKind {
 /// the opening near the initial aperture, the aperture near closure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation {
-    /// Opening `w_n` [m].
+    /// Opening `w_n` (m).
     pub opening: f64,
-    /// Aperture `b = b0 + w_n` [m].
+    /// Aperture `b = b0 + w_n` (m).
     pub aperture: f64,
 }
 
 impl Separation {
-    /// Moved apart by `opening` [m].
+    /// Moved apart by `opening` (m).
     #[must_use]
     pub fn moved(self, opening: f64) -> Self {
         Self {
@@ -47,7 +47,7 @@ impl Separation {
         }
     }
 
-    /// How much further apart than `other` [m].
+    /// How much further apart than `other` (m).
     pub fn beyond(self, other: Self) -> f64 {
         if self.aperture.abs() < self.opening.abs() {
             self.aperture - other.aperture
@@ -60,9 +60,9 @@ impl Separation {
 /// Normal closure law of a fracture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closure {
-    /// Aperture without load, `b0` [m].
+    /// Aperture without load, `b0` (m).
     pub aperture: f64,
-    /// Stiffness without load, `K_n0` [Pa/m]; 0 is a free crack.
+    /// Stiffness without load, `K_n0` (Pa/m); 0 is a free crack.
     pub normal_stiffness: f64,
     /// Dependence on the aperture.
     pub kind: ClosureKind,
@@ -71,16 +71,16 @@ pub struct Closure {
 /// Answer of the closure law at one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalResponse {
-    /// Normal traction `sigma_n` [Pa], tension positive.
+    /// Normal traction `sigma_n` (Pa), tension positive.
     pub traction: f64,
-    /// Slope `d sigma_n / d b` [Pa/m].
+    /// Slope `d sigma_n / d b` (Pa/m).
     pub tangent: f64,
-    /// Energy per area `Psi` [J/m^2], zero at `b0`.
+    /// Energy per area `Psi` (J/m^2), zero at `b0`.
     pub potential: f64,
 }
 
 impl Closure {
-    /// Separation at an opening [m].
+    /// Separation at an opening (m).
     pub fn opened(&self, opening: f64) -> Separation {
         Separation {
             opening,
@@ -88,7 +88,7 @@ impl Closure {
         }
     }
 
-    /// Response at aperture `b` [m]; see [`Closure::at`].
+    /// Response at aperture `b` (m); see [`Closure::at`].
     pub fn at_aperture(&self, b: f64) -> NormalResponse {
         self.at(Separation {
             opening: b - self.aperture,
@@ -124,7 +124,7 @@ impl Closure {
     }
 
     /// Separation at which the law balances a spring: `sigma_n(w) + k w = load`, with
-    /// `spring` = `k >= 0` [Pa/m] and `load` [Pa].
+    /// `spring` = `k >= 0` (Pa/m) and `load` (Pa).
     ///
     /// The left side grows monotonically, so there is one solution for any load. With a free crack
     /// and no spring the opening is 0.
@@ -157,7 +157,7 @@ impl Closure {
         }
     }
 
-    /// The cutoff aperture [m], if the law has one.
+    /// The cutoff aperture (m), if the law has one.
     pub fn cutoff(&self) -> Option<f64> {
         match self.kind {
             ClosureKind::Linear => None,

@@ -31,15 +31,15 @@ pub enum FacetQuadrature {
 /// A point where a fracture is evaluated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FacetRulePoint {
-    /// Area vector it stands for [m^2].
+    /// Area vector it stands for (m^2).
     pub area: DVec3,
-    /// Where a linear field is to be taken so that it does its exact work [m].
+    /// Where a linear field is to be taken so that it does its exact work (m).
     pub position: DVec3,
     /// Local nodes and their shape functions at the point; zeros left out.
     pub nodes: Vec<(u8, f64)>,
 }
 
-/// Points of a facet with the given `nodes` [m]; with the nodal rule the first ones are the nodes,
+/// Points of a facet with the given `nodes` (m); with the nodal rule the first ones are the nodes,
 /// in order.
 pub fn facet_points(
     shape: Shape,
@@ -58,7 +58,7 @@ pub fn facet_points(
     points
 }
 
-/// `int N_a dA` [m^2] for all nodes of a facet, along the mean normal of the point: what a uniform
+/// `int N_a dA` (m^2) for all nodes of a facet, along the mean normal of the point: what a uniform
 /// load puts on each node, as `(area, area vector)`.
 pub fn load_areas(shape: Shape, nodes: &[DVec3]) -> Vec<(f64, DVec3)> {
     let mut areas = vec![(0.0, DVec3::ZERO); nodes.len()];

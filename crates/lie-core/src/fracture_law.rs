@@ -11,30 +11,30 @@ use crate::closure::{Closure, Separation};
 pub struct FractureLaw {
     /// Normal part.
     pub closure: Closure,
-    /// Shear stiffness `K_s` [Pa/m].
+    /// Shear stiffness `K_s` (Pa/m).
     pub shear_stiffness: f64,
 }
 
 /// Answer of a fracture law at one jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
-    /// Traction `t = stress . n` [Pa]: what the plus side does to the wall of the minus side.
+    /// Traction `t = stress . n` (Pa): what the plus side does to the wall of the minus side.
     pub traction: DVec3,
-    /// `dt/dw` [Pa/m], symmetric.
+    /// `dt/dw` (Pa/m), symmetric.
     pub tangent: DMat3,
-    /// Energy per area [J/m^2].
+    /// Energy per area (J/m^2).
     pub potential: f64,
 }
 
 impl FractureLaw {
-    /// Response to `jump` [m] across a facet with unit `normal`.
+    /// Response to `jump` (m) across a facet with unit `normal`.
     pub fn response(&self, jump: DVec3, normal: DVec3) -> Response {
         let opening = jump.dot(normal);
         let slip = jump - opening * normal;
         self.at(self.closure.opened(opening), slip, normal)
     }
 
-    /// Response at a separation and `slip` [m].
+    /// Response at a separation and `slip` (m).
     pub fn at(&self, separation: Separation, slip: DVec3, normal: DVec3) -> Response {
         let across = self.closure.at(separation);
         let shear = self.shear_stiffness;

@@ -10,7 +10,7 @@ use crate::rock::Rock;
 /// Most nodes a cell can have.
 pub const MAX_NODES: usize = 27;
 
-/// Gradients of the shape functions in space [1/m] and the volume of one quadrature point [m^3].
+/// Gradients of the shape functions in space (1/m) and the volume of one quadrature point (m^3).
 struct Gradients {
     of_node: [DVec3; MAX_NODES],
     volume: f64,
@@ -34,7 +34,7 @@ fn gradients(point: &RulePoint, nodes: &[DVec3]) -> Gradients {
     }
 }
 
-/// Adds row `a` of the stiffness of a cell with the given `nodes` [m] to `blocks[b]` [N/m]:
+/// Adds row `a` of the stiffness of a cell with the given `nodes` (m) to `blocks[b]` (N/m):
 /// `K_ab = int lambda g_a (x) g_b + mu g_b (x) g_a + mu (g_a . g_b) I dV`, `g = grad N`.
 pub fn add_stiffness_row(
     shape: Shape,
@@ -55,7 +55,7 @@ pub fn add_stiffness_row(
     }
 }
 
-/// Adds the nodal forces of a stress field, `f_a = int sigma(x) . grad N_a dV` [N].
+/// Adds the nodal forces of a stress field, `f_a = int sigma(x) . grad N_a dV` (N).
 pub fn add_stress_forces(
     shape: Shape,
     nodes: &[DVec3],
@@ -71,7 +71,7 @@ pub fn add_stress_forces(
     }
 }
 
-/// Adds the nodal forces of a body force, `f_a = int N_a q(x) dV` [N], with `q` in N/m^3.
+/// Adds the nodal forces of a body force, `f_a = int N_a q(x) dV` (N), with `q` in N/m^3.
 pub fn add_body_forces(
     shape: Shape,
     nodes: &[DVec3],
@@ -107,7 +107,7 @@ pub fn mean_gradient(shape: Shape, nodes: &[DVec3], displacement: &[DVec3]) -> D
     sum * (1.0 / whole)
 }
 
-/// Mean position of a cell [m], weighted by volume.
+/// Mean position of a cell (m), weighted by volume.
 pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
     let mut sum = DVec3::ZERO;
     let mut whole = 0.0;

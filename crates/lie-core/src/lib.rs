@@ -5,13 +5,13 @@
 //!
 //! | quantity | sign and unit |
 //! |---|---|
-//! | stress, traction | tension positive [Pa] |
+//! | stress, traction | tension positive (Pa) |
 //! | normal of a fracture `n` | from its minus to its plus side |
-//! | traction of a fracture `t` | `stress . n` [Pa] |
-//! | jump `w` | `u(plus) - u(minus)` [m] |
-//! | opening `w_n` | `w . n` [m], positive when the walls part |
-//! | slip `w_s` | `w - w_n n` [m] |
-//! | aperture `b` | `b0 + w_n` [m] |
+//! | traction of a fracture `t` | `stress . n` (Pa) |
+//! | jump `w` | `u(plus) - u(minus)` (m) |
+//! | opening `w_n` | `w . n` (m), positive when the walls part |
+//! | slip `w_s` | `w - w_n n` (m) |
+//! | aperture `b` | `b0 + w_n` (m) |
 //!
 //! # The closure law
 //!

@@ -2,22 +2,22 @@
 
 use glam::{DMat3, DVec3};
 
-/// Stress as its six components `xx, yy, zz, xy, yz, xz` [Pa], tension positive.
+/// Stress as its six components `xx, yy, zz, xy, yz, xz` (Pa), tension positive.
 pub type SymmetricStress = [f64; 6];
 
 /// Elastic constants of an isotropic rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rock {
-    /// Young's modulus `E` [Pa].
+    /// Young's modulus `E` (Pa).
     pub young_modulus: f64,
     /// Poisson's ratio.
     pub poisson_ratio: f64,
-    /// Density [kg/m^3]; 0 where gravity plays no part.
+    /// Density (kg/m^3); 0 where gravity plays no part.
     pub density: f64,
 }
 
 impl Rock {
-    /// Lamé's constants `(lambda, mu)` [Pa].
+    /// Lamé's constants `(lambda, mu)` (Pa).
     pub fn lame(&self) -> (f64, f64) {
         let (e, nu) = (self.young_modulus, self.poisson_ratio);
         (
@@ -26,7 +26,7 @@ impl Rock {
         )
     }
 
-    /// Constrained modulus `lambda + 2 mu` [Pa].
+    /// Constrained modulus `lambda + 2 mu` (Pa).
     pub fn constrained_modulus(&self) -> f64 {
         let (lambda, mu) = self.lame();
         lambda + 2.0 * mu

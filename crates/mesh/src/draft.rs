@@ -94,7 +94,7 @@ impl TaggedElements {
 pub struct Draft {
     /// Where it came from, for messages.
     pub source: String,
-    /// Coordinates of the nodes [m].
+    /// Coordinates of the nodes (m).
     pub nodes: Vec<[f64; 3]>,
     /// The number each node has in the file, for messages.
     pub node_tags: Vec<u64>,

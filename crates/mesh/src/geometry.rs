@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::draft::Elements;
 use crate::shape::{Face, Shape};
 
-/// Area vector of a facet [m^2]: its area along the right-hand normal of its corners.
+/// Area vector of a facet (m^2): its area along the right-hand normal of its corners.
 ///
 /// `A = 1/2 sum_i (x_i - x_0) x (x_{i+1} - x_0)`, exact for flat facets, the mean area vector
 /// for warped ones.
@@ -18,12 +18,12 @@ pub fn facet_area_vector(corners: &[DVec3]) -> DVec3 {
         * 0.5
 }
 
-/// Mean of the corners of a facet [m].
+/// Mean of the corners of a facet (m).
 pub fn facet_centre(corners: &[DVec3]) -> DVec3 {
     corners.iter().sum::<DVec3>() / corners.len() as f64
 }
 
-/// Signed volume of a cell [m^3] from its corners, by the divergence theorem over its faces:
+/// Signed volume of a cell (m^3) from its corners, by the divergence theorem over its faces:
 /// `V = 1/3 sum_f (c_f - x_0) . A_f`.
 pub fn cell_volume(shape: Shape, corners: &[DVec3]) -> f64 {
     let origin = corners[0];

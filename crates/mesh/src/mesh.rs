@@ -55,7 +55,7 @@ pub struct Boundary {
 pub struct Mesh {
     /// Where it came from, for messages.
     pub source: String,
-    /// Coordinates of the nodes [m].
+    /// Coordinates of the nodes (m).
     pub nodes: Vec<DVec3>,
     /// Numbers of the nodes in the file.
     pub node_tags: Vec<u64>,
@@ -145,19 +145,19 @@ impl Mesh {
         })
     }
 
-    /// Coordinates of the corners of an element of this mesh [m].
+    /// Coordinates of the corners of an element of this mesh (m).
     pub fn corners(&self, elements: &Elements, index: usize) -> Vec<DVec3> {
         crate::geometry::corners(elements, index, &self.nodes)
     }
 
-    /// Area vectors of all fracture facets [m^2], from minus to plus.
+    /// Area vectors of all fracture facets (m^2), from minus to plus.
     pub fn facet_areas(&self) -> Vec<DVec3> {
         (0..self.facets.elements.len())
             .map(|facet| crate::facet_area_vector(&self.corners(&self.facets.elements, facet)))
             .collect()
     }
 
-    /// Lowest and highest coordinates of the nodes that are in cells [m].
+    /// Lowest and highest coordinates of the nodes that are in cells (m).
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let used = self
             .cells

@@ -17,14 +17,14 @@ pub const FACES: [(&str, usize, bool); 6] = [
 /// A box of rock with edges along the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Domain {
-    /// Lowest corner [m].
+    /// Lowest corner (m).
     pub low: DVec3,
-    /// Highest corner [m].
+    /// Highest corner (m).
     pub high: DVec3,
 }
 
 impl Domain {
-    /// The box between two corners [m].
+    /// The box between two corners (m).
     pub fn between(low: [f64; 3], high: [f64; 3]) -> Self {
         Self {
             low: low.into(),
@@ -32,17 +32,17 @@ impl Domain {
         }
     }
 
-    /// Volume [m^3].
+    /// Volume (m^3).
     pub fn volume(&self) -> f64 {
         (self.high - self.low).element_product()
     }
 
-    /// Length of the space diagonal [m].
+    /// Length of the space diagonal (m).
     pub fn diagonal(&self) -> f64 {
         self.low.distance(self.high)
     }
 
-    /// Coordinate of a face [m], along its axis.
+    /// Coordinate of a face (m), along its axis.
     pub fn face(&self, face: usize) -> f64 {
         let (_, axis, upper) = FACES[face];
         if upper {
@@ -64,7 +64,7 @@ impl Domain {
         (clipped.area() > apart * self.diagonal()).then_some(clipped)
     }
 
-    /// The face that all corners lie on, if there is one, within `tolerance` [m].
+    /// The face that all corners lie on, if there is one, within `tolerance` (m).
     pub fn face_under(&self, polygon: &Polygon, tolerance: f64) -> Option<&'static str> {
         let is_under = |&face: &usize| {
             let (axis, level) = (FACES[face].1, self.face(face));

@@ -10,22 +10,22 @@ const PARALLEL: f64 = 1e-6;
 /// The segment that two polygons share; of length 0 when they touch in a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intersection {
-    /// One end [m].
+    /// One end (m).
     pub from: DVec3,
-    /// The other end [m].
+    /// The other end (m).
     pub to: DVec3,
-    /// Angle between the planes, 0 to 90 [degrees].
+    /// Angle between the planes, 0 to 90 (degrees).
     pub angle: f64,
 }
 
 impl Intersection {
-    /// Length [m].
+    /// Length (m).
     pub fn length(&self) -> f64 {
         self.from.distance(self.to)
     }
 }
 
-/// Angle between two planes, 0 to 90 [degrees].
+/// Angle between two planes, 0 to 90 (degrees).
 pub fn angle_between(a: &Polygon, b: &Polygon) -> f64 {
     let (sin, cos) = (
         a.normal().cross(b.normal()).length(),
@@ -51,7 +51,7 @@ pub(crate) fn common_line(
     Some((point_a + step * across, along))
 }
 
-/// What two polygons share, if anything; corners within `tolerance` [m] of the other plane count
+/// What two polygons share, if anything; corners within `tolerance` (m) of the other plane count
 /// as on it, and ends as near as that as meeting. Polygons in one plane share no segment.
 pub fn intersection(a: &Polygon, b: &Polygon, tolerance: f64) -> Option<Intersection> {
     let plane = |p: &Polygon| (p.middle(), p.normal());
@@ -142,7 +142,7 @@ fn nearest_on_polygon(polygon: &Polygon, point: DVec3) -> DVec3 {
     candidates.min_by(nearer).unwrap_or(foot)
 }
 
-/// Distance between two polygons that do not cross [m], and the middle between the nearest points.
+/// Distance between two polygons that do not cross (m), and the middle between the nearest points.
 pub fn distance(a: &Polygon, b: &Polygon) -> (f64, DVec3) {
     let on_b = a
         .corners()
@@ -167,7 +167,7 @@ pub fn distance(a: &Polygon, b: &Polygon) -> (f64, DVec3) {
     })
 }
 
-/// Whether the bounds of two polygons come closer than `gap` [m].
+/// Whether the bounds of two polygons come closer than `gap` (m).
 pub(crate) fn may_meet(a: (DVec3, DVec3), b: (DVec3, DVec3), gap: f64) -> bool {
     (a.0 - b.1).cmple(DVec3::splat(gap)).all() && (b.0 - a.1).cmple(DVec3::splat(gap)).all()
 }

@@ -31,7 +31,7 @@ pub struct Fracture {
     pub set: String,
     /// File and line, or the set that drew it.
     pub place: String,
-    /// Area as given [m^2].
+    /// Area as given (m^2).
     pub area_given: f64,
     /// What is in the geometry.
     pub polygon: Polygon,
@@ -53,30 +53,30 @@ pub struct LeftOut {
 /// Cell sizes, and what is too small for them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sizes {
-    /// Cell size away from fractures [m].
+    /// Cell size away from fractures (m).
     pub h: f64,
-    /// Cell size on fractures [m].
+    /// Cell size on fractures (m).
     pub h_fracture: f64,
-    /// Cell size on intersections of fractures [m].
+    /// Cell size on intersections of fractures (m).
     pub h_intersection: f64,
     /// Growth of the cell size per length away from fractures.
     pub growth: f64,
     /// Lengths below this part of the local cell size are too small.
     pub small: f64,
-    /// Angles below this are too small [degrees].
+    /// Angles below this are too small (degrees).
     pub small_angle: f64,
     /// Whether features that are too small are mended where that is possible.
     pub mend: bool,
 }
 
 impl Sizes {
-    /// Distances below this are too small [m].
+    /// Distances below this are too small (m).
     pub fn gap(&self) -> f64 {
         self.small * self.h_fracture
     }
 }
 
-/// OpenCASCADE takes points closer than 1e-7 m for one, whatever the size of the domain [m].
+/// OpenCASCADE takes points closer than 1e-7 m for one, whatever the size of the domain (m).
 const FINEST: f64 = 1e-5;
 
 /// A network ready for gmsh.
@@ -134,7 +134,7 @@ impl Network {
     }
 }
 
-/// Lengths that rounding may leave [m].
+/// Lengths that rounding may leave (m).
 pub(crate) fn tolerance(domain: &Domain) -> f64 {
     1e-9 * domain.diagonal()
 }
@@ -161,7 +161,7 @@ fn clip_all(domain: &Domain, sizes: &Sizes, given: Vec<Given>) -> (Vec<Fracture>
     (fractures, left_out)
 }
 
-/// What is in the domain of a polygon, or why nothing is; a rest less than `gap` [m] across is
+/// What is in the domain of a polygon, or why nothing is; a rest less than `gap` (m) across is
 /// nothing.
 pub(crate) fn clip_one(domain: &Domain, gap: f64, polygon: &Polygon) -> Result<Polygon, String> {
     let Some(clipped) = domain.clip(polygon) else {
@@ -183,7 +183,7 @@ pub(crate) fn clip_one(domain: &Domain, gap: f64, polygon: &Polygon) -> Result<P
     Ok(clipped)
 }
 
-/// Pairs of fractures whose bounds come closer than `gap` [m], in ascending order.
+/// Pairs of fractures whose bounds come closer than `gap` (m), in ascending order.
 pub(crate) fn close_pairs(fractures: &[Fracture], gap: f64) -> Vec<[usize; 2]> {
     let bounds: Vec<(DVec3, DVec3)> = fractures.iter().map(|f| f.polygon.bounds()).collect();
     let mut order: Vec<usize> = (0..fractures.len()).collect();
@@ -232,7 +232,7 @@ fn overlaps(domain: &Domain, fractures: &[Fracture]) -> Vec<Defect> {
     overlapping.collect()
 }
 
-/// The area that two polygons share if they are in one plane within `flat` [m].
+/// The area that two polygons share if they are in one plane within `flat` (m).
 fn overlap_area(a: &Polygon, b: &Polygon, flat: f64) -> Option<f64> {
     if angle_between(a, b) > 1.0 {
         return None;

@@ -5,9 +5,9 @@ use glam::DVec3;
 /// Dip and dip direction of a plane; north is +y, east is +x, up is +z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orientation {
-    /// Angle below the horizontal, 0 to 90 [degrees].
+    /// Angle below the horizontal, 0 to 90 (degrees).
     pub dip: f64,
-    /// Where the plane dips to, clockwise from north [degrees].
+    /// Where the plane dips to, clockwise from north (degrees).
     pub dip_direction: f64,
 }
 

@@ -18,31 +18,31 @@ const CONVEX: f64 = 1e-9;
 pub enum Outline {
     /// A regular polygon with the area of the disc.
     Disc {
-        /// Radius of the disc [m].
+        /// Radius of the disc (m).
         radius: f64,
         /// Number of corners.
         sides: usize,
-        /// Turn of the first corner from the strike towards the dip [degrees].
+        /// Turn of the first corner from the strike towards the dip (degrees).
         rotation: f64,
     },
     /// A polygon with the area of the ellipse.
     Ellipse {
-        /// Longer half axis [m].
+        /// Longer half axis (m).
         semi_major: f64,
-        /// Shorter half axis [m].
+        /// Shorter half axis (m).
         semi_minor: f64,
-        /// Turn of the longer axis from the strike towards the dip [degrees].
+        /// Turn of the longer axis from the strike towards the dip (degrees).
         rotation: f64,
         /// Number of corners.
         sides: usize,
     },
     /// A rectangle.
     Rectangle {
-        /// Length of the first side [m].
+        /// Length of the first side (m).
         length: f64,
-        /// Length of the second side [m].
+        /// Length of the second side (m).
         width: f64,
-        /// Turn of the first side from the strike towards the dip [degrees].
+        /// Turn of the first side from the strike towards the dip (degrees).
         rotation: f64,
     },
 }
@@ -99,7 +99,7 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// An outline around `centre` [m] in a plane of the given orientation.
+    /// An outline around `centre` (m) in a plane of the given orientation.
     pub fn placed(outline: Outline, centre: DVec3, orientation: Orientation) -> Self {
         let (strike, fall) = orientation.strike_and_fall();
         let corners = outline.corners().into_iter().rev();
@@ -111,7 +111,7 @@ impl Polygon {
         }
     }
 
-    /// The polygon with these corners [m], moved into their common plane.
+    /// The polygon with these corners (m), moved into their common plane.
     ///
     /// # Errors
     /// What is wrong with the corners, and what to do.
@@ -161,7 +161,7 @@ impl Polygon {
         fits.then_some(Self { corners, normal })
     }
 
-    /// The corners [m].
+    /// The corners (m).
     pub fn corners(&self) -> &[DVec3] {
         &self.corners
     }
@@ -177,29 +177,29 @@ impl Polygon {
         self.corners.iter().zip(next).map(|(a, b)| [*a, *b])
     }
 
-    /// Area [m^2].
+    /// Area (m^2).
     pub fn area(&self) -> f64 {
         newell(&self.corners).dot(self.normal) / 2.0
     }
 
-    /// Mean of the corners [m].
+    /// Mean of the corners (m).
     pub fn middle(&self) -> DVec3 {
         self.corners.iter().sum::<DVec3>() / self.corners.len() as f64
     }
 
-    /// Height of a point above the plane [m], along the normal.
+    /// Height of a point above the plane (m), along the normal.
     pub fn height(&self, point: DVec3) -> f64 {
         (point - self.corners[0]).dot(self.normal)
     }
 
-    /// Lowest and highest coordinates [m].
+    /// Lowest and highest coordinates (m).
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let widen = |(low, high): (DVec3, DVec3), c: &DVec3| (low.min(*c), high.max(*c));
         self.corners.iter().fold(start, widen)
     }
 
-    /// How far a point of the plane lies inside of the nearest edge [m]; negative outside.
+    /// How far a point of the plane lies inside of the nearest edge (m); negative outside.
     pub fn depth(&self, point: DVec3) -> f64 {
         let inside = |[a, b]: [DVec3; 2]| {
             let inwards = self.normal.cross(b - a).normalize_or_zero();

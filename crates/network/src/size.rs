@@ -5,38 +5,38 @@ use std::f64::consts::SQRT_2;
 use crate::random::Stream;
 use crate::statistics::Moments;
 
-/// How sizes [m] are distributed.
+/// How sizes (m) are distributed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SizeLaw {
     /// All alike.
     Constant {
-        /// The size [m].
+        /// The size (m).
         radius: f64,
     },
     /// Density proportional to `size^-exponent` between two bounds.
     PowerLaw {
         /// Exponent of the density.
         exponent: f64,
-        /// Smallest size [m].
+        /// Smallest size (m).
         min: f64,
-        /// Largest size [m].
+        /// Largest size (m).
         max: f64,
     },
     /// The logarithm is normal; sizes out of bounds are drawn again.
     Lognormal {
-        /// Mean without the bounds [m].
+        /// Mean without the bounds (m).
         mean: f64,
-        /// Standard deviation without the bounds [m].
+        /// Standard deviation without the bounds (m).
         sd: f64,
-        /// Smallest size [m].
+        /// Smallest size (m).
         min: f64,
-        /// Largest size [m].
+        /// Largest size (m).
         max: f64,
     },
 }
 
 impl SizeLaw {
-    /// Draws a size [m].
+    /// Draws a size (m).
     pub fn draw(&self, stream: &mut Stream) -> f64 {
         match *self {
             SizeLaw::Constant { radius } => radius,
@@ -53,7 +53,7 @@ impl SizeLaw {
         }
     }
 
-    /// Largest possible size [m].
+    /// Largest possible size (m).
     pub fn largest(&self) -> f64 {
         match *self {
             SizeLaw::Constant { radius } => radius,
@@ -61,7 +61,7 @@ impl SizeLaw {
         }
     }
 
-    /// Smallest possible size [m].
+    /// Smallest possible size (m).
     pub fn smallest(&self) -> f64 {
         match *self {
             SizeLaw::Constant { radius } => radius,
@@ -98,7 +98,7 @@ impl SizeLaw {
         phi(z(max)) - phi(z(min))
     }
 
-    /// Mean and standard deviation [m], bounds included.
+    /// Mean and standard deviation (m), bounds included.
     pub fn moments(&self) -> Moments {
         let mean = self.moment(1.0);
         let variance = self.moment(2.0) - mean * mean;

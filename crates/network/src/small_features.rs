@@ -11,15 +11,15 @@ use crate::network::{Fracture, Sizes, close_pairs, tolerance};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FeatureKind {
-    /// Two fractures share a short segment [m].
+    /// Two fractures share a short segment (m).
     ShortIntersection,
-    /// Two fractures come close without touching [m].
+    /// Two fractures come close without touching (m).
     Gap,
-    /// Two fractures, or a fracture and a face, meet at a small angle [degrees].
+    /// Two fractures, or a fracture and a face, meet at a small angle (degrees).
     SmallAngle,
-    /// On one fracture, lines that others leave on it, or its outline, come close [m].
+    /// On one fracture, lines that others leave on it, or its outline, come close (m).
     CloseLines,
-    /// A fracture comes close to a face of the domain without touching it [m].
+    /// A fracture comes close to a face of the domain without touching it (m).
     GapToFace,
 }
 
@@ -34,7 +34,7 @@ pub struct Feature {
     pub size: f64,
     /// What would be large enough [m or degrees].
     pub enough: f64,
-    /// Where it is [m].
+    /// Where it is (m).
     pub at: DVec3,
 }
 

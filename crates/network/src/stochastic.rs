@@ -62,11 +62,11 @@ pub struct StochasticSet {
 pub struct Drawn {
     /// The whole of it.
     pub polygon: Polygon,
-    /// Its size [m].
+    /// Its size (m).
     pub size: f64,
     /// Its pole, which may point down.
     pub pole: DVec3,
-    /// Area inside the domain [m^2].
+    /// Area inside the domain (m^2).
     pub area_inside: f64,
 }
 
@@ -146,7 +146,7 @@ impl StochasticSet {
 const TOO_MANY: &str = "ask for a smaller p32 or count, for larger fractures or a smaller domain";
 
 impl Shape {
-    /// Area of a fracture of this size [m^2].
+    /// Area of a fracture of this size (m^2).
     pub fn area(self, size: f64) -> f64 {
         match self {
             Shape::Disc { .. } => std::f64::consts::PI * size * size,
@@ -154,7 +154,7 @@ impl Shape {
         }
     }
 
-    /// How far a fracture of this size reaches from its centre, at most [m].
+    /// How far a fracture of this size reaches from its centre, at most (m).
     fn reach(self, size: f64) -> f64 {
         match self {
             Shape::Disc { sides } => {

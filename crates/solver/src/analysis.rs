@@ -91,7 +91,7 @@ impl Analysis {
         }
     }
 
-    /// Memory of a solve [bytes]: the factor, its work space, the matrix of the rock and of the
+    /// Memory of a solve (bytes): the factor, its work space, the matrix of the rock and of the
     /// tangent, and their scalar copy.
     pub fn memory_bytes(&self) -> usize {
         let work = self

@@ -159,7 +159,7 @@ fn for_each_occurrence(frame: Frame<'_>, node: usize, mut visit: impl FnMut(&Occ
     }
 }
 
-/// Forces on all points [N], where `of_cell` adds one cell's nodal forces.
+/// Forces on all points (N), where `of_cell` adds one cell's nodal forces.
 fn gather_cells(
     frame: Frame<'_>,
     of_cell: impl Fn(usize, &[DVec3], &[u32], &mut [DVec3]) + Sync,
@@ -182,7 +182,7 @@ fn gather_cells(
     per_node.concat()
 }
 
-/// Weight of the rock [N] on all points: `f_a = int N_a rho g dV`.
+/// Weight of the rock (N) on all points: `f_a = int N_a rho g dV`.
 pub(crate) fn gravity_forces(frame: Frame<'_>) -> Vec<DVec3> {
     let problem = frame.problem;
     gather_cells(frame, |cell, positions, _, forces| {
@@ -192,7 +192,7 @@ pub(crate) fn gravity_forces(frame: Frame<'_>) -> Vec<DVec3> {
     })
 }
 
-/// Forces [N] by which the initial stress resists on all points: `f_a = int sigma_0 . grad N_a dV`.
+/// Forces (N) by which the initial stress resists on all points: `f_a = int sigma_0 . grad N_a dV`.
 pub(crate) fn initial_stress_forces(frame: Frame<'_>) -> Vec<DVec3> {
     let problem = frame.problem;
     let Some(stress) = &problem.initial_stress else {
@@ -204,7 +204,7 @@ pub(crate) fn initial_stress_forces(frame: Frame<'_>) -> Vec<DVec3> {
     })
 }
 
-/// Forces [N] by which the rock resists the prescribed displacements alone: `f = K g`.
+/// Forces (N) by which the rock resists the prescribed displacements alone: `f = K g`.
 pub(crate) fn prescribed_forces(frame: Frame<'_>) -> Vec<DVec3> {
     let problem = frame.problem;
     gather_cells(frame, |cell, positions, points, forces| {

@@ -24,19 +24,19 @@ pub struct FacetPoint {
     pub facet: u32,
     /// Index of its fracture.
     pub fracture: u32,
-    /// Area it stands for [m^2].
+    /// Area it stands for (m^2).
     pub area: f64,
     /// Unit normal, from minus to plus.
     pub normal: DVec3,
-    /// Upper bound of the stiffness of the rock next to it, about `E/h` [Pa/m]: constrained modulus
+    /// Upper bound of the stiffness of the rock next to it, about `E/h` (Pa/m): constrained modulus
     /// over the height of the cells on both sides, in series.
     pub spring: f64,
-    /// Jump of the prescribed displacements at load factor 1 [m], `w_g`.
+    /// Jump of the prescribed displacements at load factor 1 (m), `w_g`.
     pub prescribed: DVec3,
-    /// Jump [m] at which the law carries the initial stress. The law always sees
+    /// Jump (m) at which the law carries the initial stress. The law always sees
     /// `initial_jump + jump`.
     pub initial_jump: DVec3,
-    /// Aperture [m] that goes with it.
+    /// Aperture (m) that goes with it.
     pub initial_aperture: f64,
 }
 
@@ -127,7 +127,7 @@ impl Interface {
         self.terms_of(self.point_of_term[term as usize] as usize)
     }
 
-    /// Jumps `u(plus) - u(minus)` [m] at load factor `factor`.
+    /// Jumps `u(plus) - u(minus)` (m) at load factor `factor`.
     pub fn jumps(&self, unknowns: &[DVec3], factor: f64) -> Vec<DVec3> {
         (0..self.points.len())
             .into_par_iter()
@@ -139,7 +139,7 @@ impl Interface {
             .collect()
     }
 
-    /// Adds `sign` times the forces [N] by which `tractions` [Pa] resist to the forces on all
+    /// Adds `sign` times the forces (N) by which `tractions` (Pa) resist to the forces on all
     /// unknowns: `sum A J_i^T t`.
     pub fn add_forces(&self, tractions: &[DVec3], sign: f64, forces: &mut [DVec3]) {
         let sums: Vec<DVec3> = (0..self.unknowns.len())

@@ -8,7 +8,7 @@ use crate::assembly::{self, Frame};
 use crate::interface::Interface;
 use crate::problem::SurfaceLoad;
 
-/// Forces on all unknowns [N].
+/// Forces on all unknowns (N).
 #[derive(Debug, Clone)]
 pub struct Loads {
     /// Surface loads, gravity and fluid pressure at load factor 1.

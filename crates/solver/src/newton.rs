@@ -70,7 +70,7 @@ pub struct Iteration {
     /// `max(|t_n - sigma_n(b)|, k |w_n - (b - b0)|) / max |sigma_n|`: how far the traction and
     /// opening of the linear solve are from one point of the law.
     pub closure_error: f64,
-    /// Smallest aperture [m].
+    /// Smallest aperture (m).
     pub smallest_aperture: f64,
 }
 
@@ -98,9 +98,9 @@ pub struct StepRecord {
     pub outcome: Outcome,
     /// The facet point with the largest closure error at the end.
     pub worst_facet_point: Option<usize>,
-    /// Time spent in factorisations [s].
+    /// Time spent in factorisations (s).
     pub factorise_seconds: f64,
-    /// Time spent in all else [s].
+    /// Time spent in all else (s).
     pub solve_seconds: f64,
 }
 
@@ -125,7 +125,7 @@ pub struct Newton<'a> {
 struct Landing {
     /// Separation of the walls; none before the first solve.
     separation: Option<Separation>,
-    /// Normal traction on the tangent plane [Pa].
+    /// Normal traction on the tangent plane (Pa).
     traction: f64,
 }
 
@@ -291,7 +291,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Moves all facet points by the change of their jumps to where they are linearised next;
-    /// returns their closure errors [Pa].
+    /// returns their closure errors (Pa).
     fn follow(&self, state: &mut State, landings: &mut [Landing], changes: &[DVec3]) -> Vec<f64> {
         let points = self.interface().points.par_iter().zip(changes);
         points

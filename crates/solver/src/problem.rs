@@ -9,23 +9,23 @@ use lie_mesh::Mesh;
 pub struct Fracture {
     /// Its law.
     pub law: FractureLaw,
-    /// Fluid pressure on both walls [Pa], opening.
+    /// Fluid pressure on both walls (Pa), opening.
     pub fluid_pressure: f64,
 }
 
 /// A load on a part of the outer surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SurfaceLoad {
-    /// Force per area in global axes [Pa].
+    /// Force per area in global axes (Pa).
     Traction(DVec3),
-    /// Force per area along the inward normal [Pa].
+    /// Force per area along the inward normal (Pa).
     Pressure(f64),
 }
 
 /// A support of a part of the outer surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {
-    /// Prescribed displacement of the named components [m]; the others are free.
+    /// Prescribed displacement of the named components (m); the others are free.
     Displacement([Option<f64>; 3]),
     /// No displacement along the normal: a roller on any plane.
     Symmetry,
@@ -47,20 +47,20 @@ pub struct Condition {
 pub struct FixedPoint {
     /// Node index.
     pub node: u32,
-    /// Prescribed components [m].
+    /// Prescribed components (m).
     pub displacement: [Option<f64>; 3],
     /// How the user calls it, for messages.
     pub name: String,
 }
 
-/// A stress component that varies linearly with elevation: `value + per_metre (z - at)` [Pa].
+/// A stress component that varies linearly with elevation: `value + per_metre (z - at)` (Pa).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Profile {
-    /// Elevation of reference, `at` [m].
+    /// Elevation of reference, `at` (m).
     pub at: f64,
-    /// Stress there [Pa].
+    /// Stress there (Pa).
     pub value: f64,
-    /// Change per metre of elevation [Pa/m].
+    /// Change per metre of elevation (Pa/m).
     pub per_metre: f64,
 }
 
@@ -73,7 +73,7 @@ pub struct InitialStress {
 }
 
 impl InitialStress {
-    /// Stress at a position [Pa].
+    /// Stress at a position (Pa).
     pub fn at(&self, position: DVec3) -> DMat3 {
         let [xx, yy, zz, xy, yz, xz] = self
             .components
@@ -101,7 +101,7 @@ pub struct Problem {
     pub conditions: Vec<Condition>,
     /// Nodes held by themselves.
     pub fixed_points: Vec<FixedPoint>,
-    /// Acceleration of gravity [m/s^2].
+    /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,

@@ -23,17 +23,17 @@ pub enum FacetState {
 /// Results at one facet point.
 #[derive(Debug, Clone, Copy)]
 pub struct FacetResult {
-    /// `u(plus) - u(minus)` [m], since the state of initial stress.
+    /// `u(plus) - u(minus)` (m), since the state of initial stress.
     pub jump: DVec3,
-    /// Normal part of the jump [m].
+    /// Normal part of the jump (m).
     pub opening: f64,
-    /// Tangential part of the jump [m].
+    /// Tangential part of the jump (m).
     pub slip: DVec3,
-    /// Aperture `b` [m].
+    /// Aperture `b` (m).
     pub aperture: f64,
-    /// Traction of the law [Pa], without the fluid pressure.
+    /// Traction of the law (Pa), without the fluid pressure.
     pub traction: DVec3,
-    /// Its normal part [Pa].
+    /// Its normal part (Pa).
     pub normal_traction: f64,
     /// State.
     pub state: FacetState,
@@ -42,9 +42,9 @@ pub struct FacetResult {
 /// Fields of one converged state.
 #[derive(Debug, Clone)]
 pub struct Solution {
-    /// Displacement of every point [m].
+    /// Displacement of every point (m).
     pub displacements: Vec<DVec3>,
-    /// Mean stress of every cell, initial stress included [Pa].
+    /// Mean stress of every cell, initial stress included (Pa).
     pub stresses: Vec<SymmetricStress>,
     /// Results of every facet point.
     pub facet_points: Vec<FacetResult>,

@@ -25,7 +25,7 @@ const CONTRADICTION: f64 = 1e-9;
 pub struct Hold {
     /// Projector on the free directions, `P`.
     pub free: DMat3,
-    /// Prescribed displacement at load factor 1, `g` [m].
+    /// Prescribed displacement at load factor 1, `g` (m).
     pub prescribed: DVec3,
 }
 
@@ -130,7 +130,7 @@ impl Supports {
         })
     }
 
-    /// Prescribed displacement of a point at load factor 1 [m]; zero where nothing is prescribed.
+    /// Prescribed displacement of a point at load factor 1 (m); zero where nothing is prescribed.
     pub fn prescribed(&self, point: usize) -> DVec3 {
         self.hold(point).map_or(DVec3::ZERO, |hold| hold.prescribed)
     }

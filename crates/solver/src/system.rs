@@ -70,7 +70,7 @@ impl Discretisation {
 pub struct State {
     /// Load factor at which the state stands.
     pub load: f64,
-    /// Unknown 3-vectors [m].
+    /// Unknown 3-vectors (m).
     pub unknowns: Vec<DVec3>,
     /// State of each facet point.
     pub facet_points: Vec<FacetPointState>,
@@ -81,9 +81,9 @@ pub struct State {
 pub struct FacetPointState {
     /// Where the law is linearised, which is where the walls are once converged.
     pub separation: Separation,
-    /// Opening of the walls beyond that [m]; rounding once converged.
+    /// Opening of the walls beyond that (m); rounding once converged.
     pub mismatch: f64,
-    /// Shear traction [Pa].
+    /// Shear traction (Pa).
     pub shear: DVec3,
 }
 
@@ -146,7 +146,7 @@ impl<'a> System<'a> {
         &self.problem.fractures[point.fracture as usize].law
     }
 
-    /// Traction of the law of a facet point in its state [Pa].
+    /// Traction of the law of a facet point in its state (Pa).
     pub fn law_traction(&self, point: &FacetPoint, state: &FacetPointState) -> DVec3 {
         let across = self.law(point).closure.at(state.separation).traction;
         across * point.normal + state.shear
@@ -165,7 +165,7 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Displacement of all points [m] at load factor `factor`.
+    /// Displacement of all points (m) at load factor `factor`.
     pub fn displacements(&self, unknowns: &[DVec3], factor: f64) -> Vec<DVec3> {
         let Discretisation {
             points, supports, ..
@@ -176,7 +176,7 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Forces of the loads on all unknowns [N].
+    /// Forces of the loads on all unknowns (N).
     pub fn load_forces(&self, factor: f64) -> Vec<DVec3> {
         let loads = &self.loads;
         (0..loads.applied.len())
@@ -185,7 +185,7 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Out-of-balance forces `loads - K y - fractures` [N] for given tractions of the fractures.
+    /// Out-of-balance forces `loads - K y - fractures` (N) for given tractions of the fractures.
     pub fn residual(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> Vec<DVec3> {
         let rock = self.rock.times(&self.discretisation.pattern, unknowns);
         let mut residual = self.load_forces(factor);
@@ -199,7 +199,7 @@ impl<'a> System<'a> {
         residual
     }
 
-    /// Largest of the forces that must balance [N], as Euclidean norms over all unknowns: the
+    /// Largest of the forces that must balance (N), as Euclidean norms over all unknowns: the
     /// measure for "small" in a residual.
     pub fn force_scale(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> f64 {
         let loads = &self.loads;

@@ -9,9 +9,9 @@ use crate::mesh::Mesh;
 pub struct BlockSurvey {
     /// Number of cells.
     pub cells: usize,
-    /// Volume between the corners of the cells [m^3].
+    /// Volume between the corners of the cells (m^3).
     pub volume: f64,
-    /// Lowest and highest coordinates [m].
+    /// Lowest and highest coordinates (m).
     pub bounds: (DVec3, DVec3),
     /// Whether it has a facet on each of [`Mesh::boundaries`].
     pub on_boundary: Vec<bool>,
@@ -19,7 +19,7 @@ pub struct BlockSurvey {
     pub on_fracture: Vec<bool>,
 }
 
-/// Surveys the blocks of a mesh, given the volumes of its cells [m^3].
+/// Surveys the blocks of a mesh, given the volumes of its cells (m^3).
 pub(super) fn survey(mesh: &Mesh, volumes: &[f64]) -> Vec<BlockSurvey> {
     let empty = BlockSurvey {
         cells: 0,

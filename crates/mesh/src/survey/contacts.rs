@@ -15,16 +15,16 @@ pub struct Contact {
     pub fractures: [u32; 2],
     /// Number of nodes that they share.
     pub nodes: usize,
-    /// Length along which both go on [m]: an X.
+    /// Length along which both go on (m): an X.
     pub crossing_length: f64,
-    /// Length along which the first ends on the second, and the second on the first [m]: a T.
+    /// Length along which the first ends on the second, and the second on the first (m): a T.
     pub ending_length: [f64; 2],
-    /// Length along which both end [m]: an L, or one continues the other.
+    /// Length along which both end (m): an L, or one continues the other.
     pub rim_length: f64,
-    /// Smallest angle between facets of both at a common edge [degrees]; none if they share nodes
+    /// Smallest angle between facets of both at a common edge (degrees); none if they share nodes
     /// only.
     pub smallest_angle: Option<f64>,
-    /// Where that is, or one of the nodes they share [m].
+    /// Where that is, or one of the nodes they share (m).
     pub at: DVec3,
 }
 

@@ -75,7 +75,7 @@ impl FacetEdges {
     }
 }
 
-/// Length of the straight edge between two nodes [m].
+/// Length of the straight edge between two nodes (m).
 pub(super) fn length(mesh: &Mesh, [a, b]: [u32; 2]) -> f64 {
     mesh.nodes[a as usize].distance(mesh.nodes[b as usize])
 }

@@ -26,11 +26,11 @@ use edges::FacetEdges;
 pub struct FractureSurvey {
     /// Number of facets.
     pub facets: usize,
-    /// Area between the corners of the facets [m^2].
+    /// Area between the corners of the facets (m^2).
     pub area: f64,
     /// How it lies in space.
     pub orientation: Orientation,
-    /// Lowest and highest coordinates [m].
+    /// Lowest and highest coordinates (m).
     pub bounds: (DVec3, DVec3),
     /// Number of surfaces that do not share an edge.
     pub pieces: usize,
@@ -38,13 +38,13 @@ pub struct FractureSurvey {
     pub closed: bool,
     /// Number of edges where the fracture ends in the rock.
     pub tip_edges: usize,
-    /// Their length [m].
+    /// Their length (m).
     pub tip_length: f64,
     /// Number of edges on the outer surface.
     pub trace_edges: usize,
-    /// Their length [m].
+    /// Their length (m).
     pub trace_length: f64,
-    /// Length of the edges where three or more of its own facets meet [m].
+    /// Length of the edges where three or more of its own facets meet (m).
     pub branching_length: f64,
     /// Number of its nodes with 3, 4, 5, 6, 7 and at least 8 sectors.
     pub junction_nodes: [usize; 6],

@@ -7,12 +7,12 @@ use glam::{DMat3, DVec3};
 pub struct Orientation {
     /// Unit normal of the mean plane, upwards.
     pub normal: DVec3,
-    /// Angle between the mean plane and the horizontal, 0 to 90 [degrees].
+    /// Angle between the mean plane and the horizontal, 0 to 90 (degrees).
     pub dip: f64,
     /// Direction in which the mean plane falls, clockwise from north [degrees, 0 to 360]; north is
     /// +y, east is +x, up is +z. 0 for a horizontal plane.
     pub dip_direction: f64,
-    /// Largest angle between the normal of a facet and the mean normal [degrees]; 0 is plane.
+    /// Largest angle between the normal of a facet and the mean normal (degrees); 0 is plane.
     pub deviation: f64,
 }
 

@@ -15,9 +15,9 @@ pub struct MutePatch {
     pub fracture: u32,
     /// Number of facets.
     pub facets: usize,
-    /// Area [m^2].
+    /// Area (m^2).
     pub area: f64,
-    /// Middle of the patch, by area [m].
+    /// Middle of the patch, by area (m).
     pub centre: DVec3,
     /// Whether it is a whole piece of the fracture, and not a corner of one that moves.
     pub whole: bool,

@@ -14,11 +14,11 @@ const KEPT: usize = 10;
 /// Angles between the faces of a cell, and its volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellAngles {
-    /// Smallest dihedral angle [degrees].
+    /// Smallest dihedral angle (degrees).
     pub smallest: f64,
-    /// Largest dihedral angle [degrees].
+    /// Largest dihedral angle (degrees).
     pub largest: f64,
-    /// Volume between its corners [m^3].
+    /// Volume between its corners (m^3).
     pub volume: f64,
     /// 1 for the regular cell of its shape, 0 for a flat one: the smaller of `smallest / regular`
     /// and `(180 - largest) / (180 - regular)`, `regular` being the dihedral angle of the regular
@@ -31,7 +31,7 @@ pub struct CellAngles {
 pub struct CellQuality {
     /// One entry for each cell.
     pub of_cell: Vec<f64>,
-    /// Volumes of the cells [m^3].
+    /// Volumes of the cells (m^3).
     pub volumes: Vec<f64>,
     /// Number of cells by quality, in ten equal classes from 0 to 1.
     pub histogram: [usize; 10],
@@ -136,7 +136,7 @@ fn adjacent_faces(shape: Shape) -> Vec<(u8, u8)> {
         .collect()
 }
 
-/// Smallest and largest dihedral angle [degrees] of the cell with equal edges.
+/// Smallest and largest dihedral angle (degrees) of the cell with equal edges.
 fn regular(shape: Shape) -> (f64, f64) {
     match shape.corner_count() {
         // arccos(1/3)
