@@ -4,7 +4,7 @@
     python read_back.py GRID.vtu
 
 reads DIR/rock.pvd and DIR/fractures.pvd with every .vtu they list. Needs vtk==9.7.2 and numpy
-from PyPI.
+installed with pip (sh scripts/setup).
 With a single grid it prints its STEP, without "time", "file", "fractures" and "walls".
 Prints to standard output:
 
