@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use lie_io::load_msh;
-use lie_mesh::{Draft, Mesh, inner_surfaces};
+use lie_mesh::{Draft, Faces, Mesh};
 use lie_solver::{
     Discretisation, Newton, NewtonSettings, Problem, State, StepRecord, System, solution,
 };
@@ -110,9 +110,10 @@ fn build_problem(
     draft: Draft,
     summary: &mut Summary,
 ) -> Result<Problem, Vec<lie_mesh::Defect>> {
-    let roles = prepare::roles(scene, &draft, &inner_surfaces(&draft))?;
+    let faces = Faces::of(&draft);
+    let roles = prepare::roles(scene, &draft, &faces.inner_surfaces(&draft))?;
     summary.decisions.extend(roles.decisions);
-    let binding = bind(scene, Mesh::build(draft, &roles.of_group)?)?;
+    let binding = bind(scene, Mesh::build_on(draft, faces, &roles.of_group)?)?;
     summary.decisions.extend(binding.decisions);
     let mesh = &binding.problem.mesh;
     summary.mesh = summary::MeshSummary {

@@ -4,12 +4,9 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use lie_mesh::Defect;
+use lie_mesh::{Defect, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Names further from every known one than this (normalised similarity) get no suggestion.
-const ALIKE: f64 = 0.5;
 
 /// Which numbers a key accepts.
 #[derive(Clone, Copy)]
@@ -419,13 +416,4 @@ fn plain_number(value: &DeValue<'_>) -> Option<f64> {
     i64::from_str_radix(integer.as_str(), integer.radix())
         .ok()
         .map(|number| number as f64)
-}
-
-/// The known name most like `name`, if any is like it at all.
-pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    known
-        .map(|known| (strsim::normalized_damerau_levenshtein(name, known), known))
-        .filter(|(alike, _)| *alike >= ALIKE)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, known)| known)
 }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use lie_io::{load_msh, write_atomically, write_vtu};
-use lie_mesh::{Defect, Draft, Mesh, Survey, inner_surfaces};
+use lie_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use lie_solver::{Discretisation, Problem};
 
 use crate::output::Output;
@@ -79,7 +79,8 @@ fn look(
     output: &Output,
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
-    let inner = inner_surfaces(&draft);
+    let faces = Faces::of(&draft);
+    let inner = faces.inner_surfaces(&draft);
     inspection.groups = groups::list(&draft, &inner, None, scene);
     let roles = match scene {
         None => Ok(groups::guess(&draft, &inner)),
@@ -90,7 +91,7 @@ fn look(
         Err(defects) => return defects,
     };
     inspection.groups = groups::list(&draft, &inner, Some(&roles), scene);
-    let mesh = match Mesh::build(draft, &roles) {
+    let mesh = match Mesh::build_on(draft, faces, &roles) {
         Ok(mesh) => mesh,
         Err(defects) => return defects,
     };

@@ -10,7 +10,7 @@ use lie_network::{
 
 use super::scene::{Passages, passages};
 use super::sets::{Set, read_set};
-use crate::reader::{self, Accept, Section, Source};
+use crate::reader::{Accept, Section, Source};
 use crate::scene::check_conditions;
 
 /// What the command line says.
@@ -311,7 +311,7 @@ pub(super) fn one_of<'a>(
         return Some(word);
     }
     let list = known.join(", ");
-    let remedy = reader::nearest(word, known.iter().copied()).map_or_else(
+    let remedy = lie_mesh::nearest(word, known.iter().copied()).map_or_else(
         || format!("known: {list}"),
         |near| format!("did you mean \"{near}\"? (known: {list})"),
     );
@@ -366,7 +366,7 @@ fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<Given> {
         .filter(|set| sets.iter().all(|known| known != set))
     {
         let known = sets.iter().map(String::as_str);
-        let remedy = reader::nearest(set, known).map_or_else(
+        let remedy = lie_mesh::nearest(set, known).map_or_else(
             || format!("add a section [fracture_set.{set}]"),
             |near| format!("did you mean \"{near}\"?"),
         );

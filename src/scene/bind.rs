@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 use lie_core::{FacetQuadrature, Rock};
-use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
+use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole, nearest};
 use lie_solver::{Condition, FixedPoint, Fracture, Problem};
 
 use super::{Named, Scene};
-use crate::reader::nearest;
 
 /// Name under which a section serves all groups without one of their own.
 const DEFAULT: &str = "default";

@@ -11,7 +11,7 @@ use lie_solver::{Fracture, InitialStress, Profile, Support, SurfaceLoad};
 
 pub use bind::{Binding, bind, surface_roles};
 
-use crate::reader::{self, Accept, Section, Source};
+use crate::reader::{Accept, Section, Source};
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -290,7 +290,7 @@ pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
         Some("linear") | None => linear_closure(section, cutoff),
         Some(other) => {
             let known = ["linear", "logarithmic"];
-            let remedy = reader::nearest(other, known.into_iter())
+            let remedy = lie_mesh::nearest(other, known.into_iter())
                 .map_or("write \"linear\" or \"logarithmic\"".into(), |near| {
                     format!("did you mean \"{near}\"? (known: linear, logarithmic)")
                 });

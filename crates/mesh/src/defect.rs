@@ -47,3 +47,15 @@ pub fn sample(tags: &[u64]) -> String {
         more => format!("{} and {more} more", first.join(", ")),
     }
 }
+
+/// Names further from every known one than this (normalised similarity) get no suggestion.
+const ALIKE: f64 = 0.5;
+
+/// The known name most like `name`, if any is like it at all.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .map(|known| (strsim::normalized_damerau_levenshtein(name, known), known))
+        .filter(|(alike, _)| *alike >= ALIKE)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, known)| known)
+}

@@ -29,11 +29,11 @@ mod shape;
 pub mod structured;
 mod survey;
 
-pub use defect::{Defect, sample};
+pub use defect::{Defect, nearest, sample};
 pub use draft::{Draft, Elements, Group, TaggedElements};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
 pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};
-pub use roles::inner_surfaces;
+pub use roles::Faces;
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
 pub use survey::{

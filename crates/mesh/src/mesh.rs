@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::adjacency::Adjacency;
 use crate::defect::Defect;
 use crate::draft::{Draft, Elements, Group};
+use crate::roles::Faces;
 use crate::sectors::{self, Sectors};
 use crate::{blocks, check, orient};
 
@@ -94,13 +95,25 @@ impl Mesh {
     /// fractures that are not embedded, lie on the outer boundary, hold a facet twice or have only
     /// one side.
     pub fn build(draft: Draft, roles: &[SurfaceRole]) -> Result<Self, Vec<Defect>> {
+        let faces = Faces::of(&draft);
+        Self::build_on(draft, faces, roles)
+    }
+
+    /// Like [`Mesh::build`], on the faces of this very draft.
+    ///
+    /// # Errors
+    /// As [`Mesh::build`].
+    pub fn build_on(
+        draft: Draft,
+        Faces { adjacency }: Faces,
+        roles: &[SurfaceRole],
+    ) -> Result<Self, Vec<Defect>> {
         let nodes: Vec<DVec3> = draft.nodes.iter().copied().map(DVec3::from).collect();
         let mut defects = check::cells(&draft, &nodes);
         if !defects.is_empty() {
             return Err(defects);
         }
         let cells = &draft.cells.elements;
-        let adjacency = Adjacency::of(cells, nodes.len());
         defects.extend(check::faces(&draft, &adjacency));
         if !defects.is_empty() {
             // Where cells overlap, nothing can be said of the surfaces.

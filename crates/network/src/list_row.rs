@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use csv::StringRecord;
 use glam::DVec3;
-use lie_mesh::Defect;
+use lie_mesh::{Defect, nearest};
 
 use crate::orientation::Orientation;
 use crate::polygon::{Outline, Polygon};
@@ -27,12 +27,7 @@ pub(crate) fn place_of(record: &StringRecord, text: &str, file: &str) -> String 
 
 /// Points out the nearest of the known names, or lists them.
 pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
-    let alike = |known: &&&str| (strsim::normalized_damerau_levenshtein(name, known) * 1e6) as u64;
-    match known
-        .iter()
-        .max_by_key(alike)
-        .filter(|near| alike(near) >= 500_000)
-    {
+    match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("known: {}", known.join(", ")),
     }

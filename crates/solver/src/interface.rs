@@ -9,7 +9,7 @@
 use glam::{DMat3, DVec3};
 use lie_core::enrichment::coefficient;
 use lie_core::{FacetQuadrature, FacetRulePoint, facet_points};
-use lie_mesh::{Mesh, cell_volume};
+use lie_mesh::cell_volume;
 use rayon::prelude::*;
 
 use crate::pattern::Lists;
@@ -287,14 +287,10 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
     let mesh = &problem.mesh;
     let compliance = |cell: u32| {
         let cell = cell as usize;
-        let volume = cell_volume(mesh.cells.shapes[cell], &corners(mesh, cell));
+        let volume = cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
         volume / area / problem.rock(cell).constrained_modulus()
     };
     1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
-}
-
-fn corners(mesh: &Mesh, cell: usize) -> Vec<DVec3> {
-    mesh.corners(&mesh.cells, cell)
 }
 
 /// Jump and aperture at which the law carries the initial stress. A fracture without stiffness
