@@ -89,7 +89,7 @@ impl From<&StepRecord> for StepSummary {
         Self {
             load: record.load,
             newton_iterations: record.iterations.len(),
-            linear_iterations: 0,
+            linear_iterations: record.linear_iterations(),
             force_residual: measure(|last| last.force_residual),
             increment: measure(|last| last.increment),
             closure_error: measure(|last| last.closure_error),

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use lie_mesh::Mesh;
-use lie_solver::{Analysis, Discretisation, Pattern, Points, measured_rate};
+use lie_solver::{Analysis, Discretisation, NodeOrder, Pattern, Points, measured_rate};
 
 use super::findings::{Inspection, SectorCounts, SolverFinding, UnknownFindings};
 
@@ -21,7 +21,9 @@ pub fn predict(mesh: &Mesh, discretisation: Option<&Discretisation>, inspection:
     };
     inspection.unknowns = Some(unknowns(mesh, points, discretisation));
     let start = Instant::now();
-    let analysis = match Analysis::of(pattern, points) {
+    let analysis =
+        NodeOrder::of(pattern, points).and_then(|order| Analysis::of(pattern, points, &order, &[]));
+    let analysis = match analysis {
         Ok(analysis) => analysis,
         Err(failure) => {
             let warning = format!("the direct solver cannot analyse this mesh: {failure:?}");

@@ -280,7 +280,11 @@ fn load_steps_end_where_one_step_does() {
     for steps in [vec![1.0], vec![0.1, 0.5, 2.0, 1.0]] {
         let mut state = system.initial_state();
         for load in steps {
-            assert!(newton.step(&mut state, load, |_, _| {}).converged());
+            assert!(
+                newton
+                    .step(&system, &mut state, load, |_, _| {})
+                    .converged()
+            );
         }
         ends.push(solution(&system, &state));
     }

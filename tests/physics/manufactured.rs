@@ -87,7 +87,7 @@ fn error(shape: Shape, cubes: usize) -> f64 {
         .collect();
     let mut state = system.initial_state();
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
-    assert!(newton.step(&mut state, 1.0, |_, _| {}).converged());
+    assert!(newton.step(&system, &mut state, 1.0, |_, _| {}).converged());
     let fine = match shape.corner_count() {
         4 => Shape::Tet10,
         5 => Shape::Pyramid14,

@@ -122,7 +122,7 @@ pub fn try_solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, So
     let system = System::assemble(problem, discretisation);
     let mut newton = Newton::new(&system, settings).expect("analysis");
     let mut state = system.initial_state();
-    let record = newton.step(&mut state, 1.0, |_, _| {});
+    let record = newton.step(&system, &mut state, 1.0, |_, _| {});
     let solution = solution(&system, &state);
     (record, solution, state)
 }

@@ -8,13 +8,13 @@
 
 use glam::{DMat3, DVec3};
 use lie_core::enrichment::coefficient;
-use lie_core::{FacetQuadrature, FacetRulePoint, facet_points};
+use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, facet_points};
 use lie_mesh::cell_volume;
 use rayon::prelude::*;
 
 use crate::pattern::Lists;
 use crate::points::Points;
-use crate::problem::{Fracture, Problem};
+use crate::problem::Problem;
 use crate::supports::Supports;
 
 /// One point of one facet.
@@ -24,6 +24,8 @@ pub struct FacetPoint {
     pub facet: u32,
     /// Index of its fracture.
     pub fracture: u32,
+    /// Place (m).
+    pub position: DVec3,
     /// Area it stands for (m^2).
     pub area: f64,
     /// Unit normal, from minus to plus.
@@ -116,6 +118,15 @@ impl Interface {
             .collect();
         self.columns = Lists::collect(&columns);
         self.unknowns = unknowns;
+    }
+
+    /// Lets `laws`, one for each fracture, carry the initial stress.
+    pub(crate) fn carry_initial_stress(&mut self, problem: &Problem, laws: &[FractureLaw]) {
+        for point in &mut self.points {
+            let law = &laws[point.fracture as usize];
+            (point.initial_jump, point.initial_aperture) =
+                initial_jump(problem, law, point.position, point.normal);
+        }
     }
 
     fn terms_of(&self, point: usize) -> &[Term] {
@@ -242,11 +253,12 @@ fn draw_point(
     }
     let fracture = facets.fracture[facet];
     let normal = rule.area.normalize();
-    let law = &problem.fractures[fracture as usize];
+    let law = &problem.fractures[fracture as usize].law;
     let (initial_jump, initial_aperture) = initial_jump(problem, law, rule.position, normal);
     let point = FacetPoint {
         facet: facet as u32,
         fracture,
+        position: rule.position,
         area: rule.area.length(),
         normal,
         spring,
@@ -295,8 +307,7 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
 
 /// Jump and aperture at which the law carries the initial stress. A fracture without stiffness
 /// carries none, so it relaxes what the initial stress would need of it.
-fn initial_jump(problem: &Problem, fracture: &Fracture, at: DVec3, normal: DVec3) -> (DVec3, f64) {
-    let law = &fracture.law;
+fn initial_jump(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> (DVec3, f64) {
     let Some(stress) = &problem.initial_stress else {
         return (DVec3::ZERO, law.closure.aperture);
     };

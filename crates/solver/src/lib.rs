@@ -6,7 +6,6 @@
 //! Newton iteration changes only the blocks of nodes on fractures. No result depends on the number
 //! of threads: every sum has a fixed order.
 
-mod analysis;
 mod assembly;
 mod folded;
 mod interface;
@@ -22,9 +21,11 @@ mod solution;
 mod supports;
 mod system;
 
-pub use analysis::{Analysis, measured_rate};
 pub use interface::{FacetPoint, Interface};
-pub use linear::{DirectSolver, LinearFailure};
+pub use linear::{
+    Analysis, Cholesky, Condensed, LinearFailure, LinearMethod, LinearSolution, NodeOrder, Plan,
+    TangentSolver, Whole, measured_rate,
+};
 pub use loads::Loads;
 pub use matrix::BlockMatrix;
 pub use newton::{Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};

@@ -98,6 +98,8 @@ pub struct System<'a> {
     pub rock: BlockMatrix,
     /// Forces.
     pub loads: Loads,
+    /// Law of each fracture; see [`System::set_laws`].
+    laws: Vec<FractureLaw>,
 }
 
 impl<'a> System<'a> {
@@ -115,15 +117,34 @@ impl<'a> System<'a> {
             problem,
             rock,
             loads,
+            laws: problem
+                .fractures
+                .iter()
+                .map(|fracture| fracture.law)
+                .collect(),
             discretisation,
         }
+    }
+
+    /// Gives the fractures other laws, one each. Rock and loads stay, and with them whatever a solver
+    /// prepared.
+    pub fn set_laws(&mut self, laws: Vec<FractureLaw>) {
+        self.discretisation
+            .interface
+            .carry_initial_stress(self.problem, &laws);
+        self.laws = laws;
+    }
+
+    /// Whether a step may need more than one linear solve.
+    pub fn is_nonlinear(&self) -> bool {
+        self.laws.iter().any(|law| !law.closure.is_linear())
     }
 
     /// The state before any load: no displacement, apertures and shear as the initial stress
     /// leaves them.
     pub fn initial_state(&self) -> State {
         let facet_points = self.discretisation.interface.points.iter().map(|point| {
-            let law = &self.problem.fractures[point.fracture as usize].law;
+            let law = self.law(point);
             let opening = point.initial_jump.dot(point.normal);
             FacetPointState {
                 separation: Separation {
@@ -143,13 +164,22 @@ impl<'a> System<'a> {
 
     /// Law of a facet point.
     pub fn law(&self, point: &FacetPoint) -> &FractureLaw {
-        &self.problem.fractures[point.fracture as usize].law
+        &self.laws[point.fracture as usize]
     }
 
     /// Traction of the law of a facet point in its state (Pa).
     pub fn law_traction(&self, point: &FacetPoint, state: &FacetPointState) -> DVec3 {
         let across = self.law(point).closure.at(state.separation).traction;
         across * point.normal + state.shear
+    }
+
+    /// Tractions of the laws of all facet points in a state (Pa).
+    pub fn law_tractions(&self, state: &State) -> Vec<DVec3> {
+        let points = self.discretisation.interface.points.par_iter();
+        points
+            .zip(&state.facet_points)
+            .map(|(point, state)| self.law_traction(point, state))
+            .collect()
     }
 
     /// Responses of the laws to the jumps of `unknowns`.
@@ -185,14 +215,19 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Out-of-balance forces `loads - K y - fractures` (N) for given tractions of the fractures.
-    pub fn residual(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> Vec<DVec3> {
-        let rock = self.rock.times(&self.discretisation.pattern, unknowns);
+    /// Forces by which the rock resists the unknowns (N), `K y`.
+    pub fn rock_forces(&self, unknowns: &[DVec3]) -> Vec<DVec3> {
+        self.rock.times(&self.discretisation.pattern, unknowns)
+    }
+
+    /// Out-of-balance forces `loads - rock - fractures` (N) for given forces of the rock and
+    /// tractions of the fractures.
+    pub fn residual(&self, rock_forces: &[DVec3], tractions: &[DVec3], factor: f64) -> Vec<DVec3> {
         let mut residual = self.load_forces(factor);
         residual
             .par_iter_mut()
-            .zip(rock)
-            .for_each(|(force, rock)| *force -= rock);
+            .zip(rock_forces)
+            .for_each(|(force, rock)| *force -= *rock);
         self.discretisation
             .interface
             .add_forces(tractions, -1.0, &mut residual);
@@ -201,9 +236,9 @@ impl<'a> System<'a> {
 
     /// Largest of the forces that must balance (N), as Euclidean norms over all unknowns: the
     /// measure for "small" in a residual.
-    pub fn force_scale(&self, unknowns: &[DVec3], tractions: &[DVec3], factor: f64) -> f64 {
+    pub fn force_scale(&self, rock_forces: &[DVec3], tractions: &[DVec3], factor: f64) -> f64 {
         let loads = &self.loads;
-        let mut fractures = vec![DVec3::ZERO; unknowns.len()];
+        let mut fractures = vec![DVec3::ZERO; rock_forces.len()];
         self.discretisation
             .interface
             .add_forces(tractions, 1.0, &mut fractures);
@@ -211,7 +246,7 @@ impl<'a> System<'a> {
             factor.abs() * norm(&loads.applied),
             factor.abs() * norm(&loads.prescribed),
             norm(&loads.initial),
-            norm(&self.rock.times(&self.discretisation.pattern, unknowns)),
+            norm(rock_forces),
             norm(&fractures),
         ]
         .into_iter()

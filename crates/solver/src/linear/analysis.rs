@@ -1,4 +1,4 @@
-//! Ordering and symbolic factorisation of the matrix, and what its factor will cost.
+//! Symbolic factorisation of the matrix, and what its factor will cost.
 
 use std::time::Instant;
 
@@ -6,40 +6,51 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::perm::PermRef;
 use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::{Mat, Side};
-use feral_metis::{CscPattern, metis_order};
 use glam::DMat3;
 
-use crate::linear::{LinearFailure, parallelism};
+use super::{LinearFailure, NodeOrder, parallelism};
 use crate::pattern::Pattern;
 use crate::points::Points;
 
-/// Nested dissection and symbolic Cholesky factorisation of a pattern, without values.
+/// Symbolic Cholesky factorisation of a pattern, without values.
 pub struct Analysis {
-    pub(crate) symbolic: SymbolicCholesky<usize>,
-    pub(crate) column_offset: Vec<usize>,
-    pub(crate) row_index: Vec<usize>,
+    pub(super) symbolic: SymbolicCholesky<usize>,
+    pub(super) column_offset: Vec<usize>,
+    pub(super) row_index: Vec<usize>,
     /// Number of blocks left of the diagonal in each block row.
-    pub(crate) lower_blocks: Vec<usize>,
+    pub(super) lower_blocks: Vec<usize>,
+    /// Unknown 3-vectors in the order of their elimination.
+    pub(super) order: Vec<usize>,
     /// Number of blocks of the matrix.
     blocks: usize,
 }
 
 impl Analysis {
-    /// Analyses a pattern.
+    /// Analyses a pattern whose nodes are eliminated in `order`, save that the unknowns in `last`
+    /// (ascending) follow behind all others.
     ///
     /// # Errors
-    /// If ordering or analysis fails.
-    pub fn of(pattern: &Pattern, points: &Points) -> Result<Self, LinearFailure> {
+    /// If the analysis fails.
+    pub fn of(
+        pattern: &Pattern,
+        points: &Points,
+        order: &NodeOrder,
+        last: &[u32],
+    ) -> Result<Self, LinearFailure> {
         let lower_blocks: Vec<usize> = (0..points.len())
             .map(|row| pattern.address(row, row) - pattern.row_offset[row])
             .collect();
         let (column_offset, row_index) = upper_triangle(pattern, &lower_blocks);
-        let (forward, inverse) = scalar_ordering(pattern, points)?;
+        let is_last = |block: usize| last.binary_search(&(block as u32)).is_ok();
+        let order = order.unknowns(points, is_last);
+        let (forward, inverse) = scalar_permutation(&order);
         let size = 3 * points.len();
         let shape =
             SymbolicSparseColMatRef::new_checked(size, size, &column_offset, None, &row_index);
@@ -47,7 +58,10 @@ impl Analysis {
             shape,
             Side::Upper,
             SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size)),
-            CholeskySymbolicParams::default(),
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..Default::default()
+            },
         )
         .map_err(|error| LinearFailure::Analysis(format!("{error:?}")))?;
         Ok(Self {
@@ -56,13 +70,28 @@ impl Analysis {
             column_offset,
             row_index,
             lower_blocks,
+            order,
         })
     }
 
+    pub(super) fn supernodal(&self) -> &SymbolicSupernodalCholesky<usize> {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic,
+            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("supernodes were asked for"),
+        }
+    }
+
     /// The scalar pattern of the upper triangle.
-    pub(crate) fn shape(&self) -> SymbolicSparseColMatRef<'_, usize> {
+    pub(super) fn shape(&self) -> SymbolicSparseColMatRef<'_, usize> {
         let size = self.column_offset.len() - 1;
         SymbolicSparseColMatRef::new_checked(size, size, &self.column_offset, None, &self.row_index)
+    }
+
+    /// Frees what is needed to set values only.
+    pub(super) fn forget_pattern(&mut self) {
+        self.column_offset = Vec::new();
+        self.row_index = Vec::new();
+        self.lower_blocks = Vec::new();
     }
 
     /// Number of entries of the factor.
@@ -76,19 +105,14 @@ impl Analysis {
         let squares = |tallest: usize, columns: usize| -> f64 {
             (0..columns).map(|j| ((tallest - j) as f64).powi(2)).sum()
         };
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(factor) => {
-                let columns = factor.col_ptr().windows(2);
-                columns.map(|pair| squares(pair[1] - pair[0], 1)).sum()
-            }
-            SymbolicCholeskyRaw::Supernodal(factor) => (0..factor.n_supernodes())
-                .map(|index| {
-                    let columns = factor.supernode_end()[index] - factor.supernode_begin()[index];
-                    let below = factor.supernode(index).pattern().len();
-                    squares(below + columns, columns)
-                })
-                .sum(),
-        }
+        let factor = self.supernodal();
+        (0..factor.n_supernodes())
+            .map(|index| {
+                let columns = factor.supernode_end()[index] - factor.supernode_begin()[index];
+                let below = factor.supernode(index).pattern().len();
+                squares(below + columns, columns)
+            })
+            .sum()
     }
 
     /// Memory of a solve (bytes): the factor, its work space, the matrix of the rock and of the
@@ -153,43 +177,13 @@ fn upper_triangle(pattern: &Pattern, lower_blocks: &[usize]) -> (Vec<usize>, Vec
     (column_offset, row_index)
 }
 
-/// Nested dissection of the graph of nodes that carry unknowns; a node's unknowns stay together.
-/// Returns the scalar permutation (new to old) and its inverse.
-fn scalar_ordering(
-    pattern: &Pattern,
-    points: &Points,
-) -> Result<(Vec<usize>, Vec<usize>), LinearFailure> {
-    let fault = |what: &str| LinearFailure::Analysis(what.to_owned());
-    let used: Vec<usize> = (0..points.offset.len() - 1)
-        .filter(|&node| !points.of_node(node).is_empty())
-        .collect();
-    let mut number = vec![0_i32; points.offset.len() - 1];
-    for (index, &node) in used.iter().enumerate() {
-        number[node] = i32::try_from(index).map_err(|_| fault("too many nodes"))?;
-    }
-    let mut column_offset = vec![0_i32];
-    let mut row_index = Vec::new();
-    for &node in &used {
-        let others = pattern
-            .neighbours
-            .of(node)
-            .iter()
-            .filter(|&&other| other as usize != node);
-        row_index.extend(others.map(|&other| number[other as usize]));
-        let end = i32::try_from(row_index.len()).map_err(|_| fault("node graph too large"))?;
-        column_offset.push(end);
-    }
-    let graph = CscPattern::new(used.len(), &column_offset, &row_index)
-        .ok_or_else(|| fault("malformed node graph"))?;
-    let order = metis_order(&graph).map_err(|error| fault(&error.to_string()))?;
-    let forward: Vec<usize> = order
-        .iter()
-        .flat_map(|&index| points.of_node(used[index as usize]))
-        .flat_map(|block| [3 * block, 3 * block + 1, 3 * block + 2])
-        .collect();
+/// The scalar permutation (new to old) of an order of 3-vectors, and its inverse.
+fn scalar_permutation(order: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let scalars = |&block: &usize| [3 * block, 3 * block + 1, 3 * block + 2];
+    let forward: Vec<usize> = order.iter().flat_map(scalars).collect();
     let mut inverse = vec![0; forward.len()];
     for (new, &old) in forward.iter().enumerate() {
         inverse[old] = new;
     }
-    Ok((forward, inverse))
+    (forward, inverse)
 }

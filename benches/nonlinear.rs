@@ -1,0 +1,110 @@
+//! What a nonlinear run costs against one linear solve of the same system; see README.md.
+//!
+//!     cargo bench --bench nonlinear -- [CUBES [METHOD]]
+
+mod block;
+
+use std::time::Instant;
+
+use lie_core::FractureLaw;
+use lie_solver::{Discretisation, LinearMethod, Newton, NewtonSettings, System};
+
+/// Seconds that `work` takes, and what it gives.
+fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let result = work();
+    (start.elapsed().as_secs_f64(), result)
+}
+
+fn settings(method: Option<LinearMethod>) -> NewtonSettings {
+    NewtonSettings {
+        linear: method,
+        ..NewtonSettings::default()
+    }
+}
+
+/// Solver and load steps of equal size from the start; returns Newton and linear iterations.
+fn run(system: &System<'_>, method: Option<LinearMethod>, steps: usize) -> (usize, usize) {
+    let mut newton = Newton::new(system, settings(method)).expect("a plan");
+    let mut state = system.initial_state();
+    let mut counts = (0, 0);
+    for step in 1..=steps {
+        let load = step as f64 / steps as f64;
+        let record = newton.step(system, &mut state, load, |_, _| {});
+        assert!(record.converged(), "{record:?}");
+        counts.0 += record.iterations.len();
+        counts.1 += record.linear_iterations();
+    }
+    counts
+}
+
+/// One step for each of `count` stiffnesses between `K_n0 / 2` and `2 K_n0`, with one set-up.
+fn sweep(system: &mut System<'_>, method: Option<LinearMethod>, count: usize) -> (usize, usize) {
+    let laws: Vec<FractureLaw> = system.problem.fractures.iter().map(|f| f.law).collect();
+    let mut newton = Newton::new(system, settings(method)).expect("a plan");
+    let mut counts = (0, 0);
+    for number in 0..count {
+        let factor = 4.0_f64.powf(number as f64 / (count - 1) as f64 - 0.5);
+        let mut stiffened = laws.clone();
+        for law in &mut stiffened {
+            law.closure.normal_stiffness *= factor;
+        }
+        system.set_laws(stiffened);
+        let record = newton.step(system, &mut system.initial_state(), 1.0, |_, _| {});
+        assert!(record.converged(), "{record:?}");
+        counts.0 += record.iterations.len();
+        counts.1 += record.linear_iterations();
+    }
+    system.set_laws(laws);
+    counts
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
+    let cubes = arguments
+        .first()
+        .map_or(32, |size| size.parse().expect("a number of cubes"));
+    let method = arguments.get(1).map(|name| name.parse().expect("a method"));
+    let problem = block::problem(cubes, &block::TWO_PLANES);
+    let discretisation = Discretisation::of(&problem).expect("supported");
+    let fractured = discretisation.points.jump_count() as f64;
+    println!(
+        "{} unknowns, {} of them jumps, {:.1} % of the nodes on fractures",
+        discretisation.unknown_count(),
+        3 * discretisation.points.jump_count(),
+        100.0 * fractured / discretisation.points.node_count() as f64,
+    );
+    let mut system = System::assemble(&problem, discretisation);
+    let closing: Vec<FractureLaw> = problem.fractures.iter().map(|f| f.law).collect();
+    let mut linear = closing.clone();
+    for law in &mut linear {
+        law.closure.kind = lie_core::ClosureKind::Linear;
+    }
+    system.set_laws(linear);
+    let (once, counts) = timed(|| run(&system, method, 1));
+    println!("one linear solve: {once:.2} s {counts:?}");
+    system.set_laws(closing);
+    let tell = |what: &str, (seconds, counts): (f64, (usize, usize)), base: f64| {
+        println!(
+            "{what}: {seconds:.2} s, {} Newton, {} linear iterations, ratio {:.2}",
+            counts.0,
+            counts.1,
+            seconds / base
+        );
+        seconds
+    };
+    let one = tell(
+        "one step, nonlinear",
+        timed(|| run(&system, method, 1)),
+        once,
+    );
+    tell("100 steps", timed(|| run(&system, method, 100)), one);
+    tell(
+        "50 stiffnesses",
+        timed(|| sweep(&mut system, method, 50)),
+        one,
+    );
+}

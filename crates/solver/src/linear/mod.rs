@@ -1,0 +1,58 @@
+//! Linear solvers for the tangent: the rock, which never changes, and the fractures, which do.
+
+mod analysis;
+mod cholesky;
+mod condensed;
+mod jump_problem;
+mod ordering;
+mod plan;
+mod substitution;
+mod whole;
+
+use glam::{DMat3, DVec3};
+
+use crate::system::System;
+
+pub use analysis::{Analysis, measured_rate};
+pub use cholesky::Cholesky;
+pub use condensed::Condensed;
+pub use ordering::NodeOrder;
+pub use plan::{LinearMethod, Plan};
+pub use whole::Whole;
+
+pub(crate) use cholesky::parallelism;
+
+/// Why a linear system could not be solved.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LinearFailure {
+    /// The factor does not fit in memory.
+    OutOfMemory,
+    /// The matrix is not positive definite; the block row where it showed.
+    Indefinite(usize),
+    /// The ordering or the symbolic analysis failed.
+    Analysis(String),
+}
+
+/// Solution of a linear system.
+#[derive(Debug, Clone)]
+pub struct LinearSolution {
+    /// Unknown 3-vectors (m).
+    pub unknowns: Vec<DVec3>,
+    /// Iterations it took; 0 for a direct solver.
+    pub iterations: usize,
+}
+
+/// Solves with the tangent of a system, `rock + fractures`.
+pub trait TangentSolver: Send + Sync {
+    /// Takes over the tangents of the facet points (Pa/m).
+    ///
+    /// # Errors
+    /// If the tangent is not positive definite or memory runs out.
+    fn update(&mut self, system: &System<'_>, tangents: &[DMat3]) -> Result<(), LinearFailure>;
+
+    /// Solves for the forces `right` (N), to `tolerance` times their norm if it iterates.
+    ///
+    /// # Errors
+    /// If the iteration fails.
+    fn solve(&mut self, right: &[DVec3], tolerance: f64) -> Result<LinearSolution, LinearFailure>;
+}

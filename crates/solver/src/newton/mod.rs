@@ -1,0 +1,250 @@
+//! Newton's method that does not see the cutoff.
+//!
+//! The law stiffens so fast that plain Newton, linearising at the opening where its last step
+//! landed, overshoots. Here each facet point is linearised at the aperture that balances the law
+//! with the rock around it: after the linear solve gives opening `w` and traction `t`, the monotone
+//! scalar equation `sigma_n(w~) + k w~ = t + k w` gives `w~`, and the tangent is taken there. The
+//! iteration sees loads and stiffnesses only, whatever the cutoff.
+//!
+//! `k` is the stiffness of the rock as the facet point feels it, measured by the secant through the
+//! last two linear solves of the step, `-dt/dw`, between 0 and `E/h`; 0 for the first. Too large a
+//! `k` overshoots towards closure, where the tangent is enormous and the way back is long; too
+//! small a `k` comes down from the open side step by step. A fixed `E/h` fails for joints that are
+//! soft against their elements.
+
+mod extrapolation;
+mod record;
+mod walls;
+
+use std::time::Instant;
+
+use glam::DVec3;
+
+use crate::interface::Interface;
+use crate::linear::{LinearFailure, Plan, TangentSolver};
+use crate::system::{State, System, norm};
+use extrapolation::Former;
+use walls::Landing;
+
+pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
+
+/// Largest error of a linear solve against its right-hand side while the state still changes.
+const LOOSEST_SOLVE: f64 = 1e-2;
+
+/// The nonlinear solver of a system; it keeps what the linear solver prepared.
+///
+/// The same solver serves a system whose fracture laws are changed between two steps, because the
+/// rock, which is all that was prepared, stays.
+pub struct Newton {
+    settings: NewtonSettings,
+    linear: Box<dyn TangentSolver>,
+    /// The state that the last step started from.
+    former: Option<Former>,
+}
+
+/// What a step works on.
+struct Trial {
+    state: State,
+    landings: Vec<Landing>,
+    /// Forces by which the rock resists the unknowns (N).
+    rock_forces: Vec<DVec3>,
+    /// Largest force at the last iteration (N).
+    force_scale: f64,
+    /// Largest error allowed in the next linear solve, against its right-hand side.
+    looseness: f64,
+}
+
+impl Newton {
+    /// Chooses and prepares the linear solver.
+    ///
+    /// # Errors
+    /// If it cannot be prepared.
+    pub fn new(system: &System<'_>, settings: NewtonSettings) -> Result<Self, LinearFailure> {
+        let plan = Plan::of(system.problem, &system.discretisation, settings.linear)?;
+        Self::planned(system, settings, plan)
+    }
+
+    /// Prepares the linear solver of a plan.
+    ///
+    /// # Errors
+    /// If it cannot be prepared.
+    pub fn planned(
+        system: &System<'_>,
+        settings: NewtonSettings,
+        plan: Plan,
+    ) -> Result<Self, LinearFailure> {
+        Ok(Self {
+            linear: plan.prepare(system)?,
+            former: None,
+            settings,
+        })
+    }
+
+    /// Solves one load step from `state`, calling `observe` after each iteration. `state` is
+    /// replaced if the step converges and kept if not.
+    pub fn step(
+        &mut self,
+        system: &System<'_>,
+        state: &mut State,
+        load: f64,
+        mut observe: impl FnMut(usize, &Iteration),
+    ) -> StepRecord {
+        let start = Instant::now();
+        let mut trial = self.start(system, state, load);
+        let mut record = StepRecord::new(load);
+        while record.iterations.len() < self.settings.max_iterations {
+            match self.iterate(system, &mut trial, &mut record) {
+                Ok(iteration) => {
+                    record.iterations.push(iteration);
+                    observe(record.iterations.len(), &iteration);
+                    if self.is_converged(system, &iteration) {
+                        record.outcome = Outcome::Converged;
+                        self.former = Some(Former::of(system, state));
+                        *state = trial.state;
+                        break;
+                    }
+                }
+                Err(outcome) => {
+                    record.outcome = outcome;
+                    break;
+                }
+            }
+        }
+        record.solve_seconds = start.elapsed().as_secs_f64() - record.factorise_seconds;
+        record
+    }
+
+    /// The first guess for a step.
+    fn start(&self, system: &System<'_>, state: &State, load: f64) -> Trial {
+        let mut guess = state.clone();
+        if let Some(former) = &self.former {
+            former.continue_through(system, &mut guess, load);
+        }
+        walls::move_supports(system, &mut guess, load);
+        Trial {
+            landings: vec![Landing::default(); guess.facet_points.len()],
+            rock_forces: system.rock_forces(&guess.unknowns),
+            force_scale: 0.0,
+            looseness: if system.is_nonlinear() {
+                LOOSEST_SOLVE
+            } else {
+                self.settings.force
+            },
+            state: guess,
+        }
+    }
+
+    fn is_converged(&self, system: &System<'_>, iteration: &Iteration) -> bool {
+        let settings = &self.settings;
+        iteration.force_residual <= settings.force
+            && iteration.closure_error <= settings.closure
+            && (!system.is_nonlinear() || iteration.increment <= settings.increment)
+    }
+
+    fn iterate(
+        &mut self,
+        system: &System<'_>,
+        trial: &mut Trial,
+        record: &mut StepRecord,
+    ) -> Result<Iteration, Outcome> {
+        let tangents = walls::tangents(system, &trial.state);
+        let start = Instant::now();
+        let updated = self.linear.update(system, &tangents);
+        updated.map_err(Outcome::Linear)?;
+        record.factorise_seconds += start.elapsed().as_secs_f64();
+        let tractions = walls::linearised_tractions(system, &trial.state, &tangents);
+        let residual = system.residual(&trial.rock_forces, &tractions, trial.state.load);
+        let solution = self
+            .linear
+            .solve(&residual, self.tolerance(trial, &residual));
+        let solution = solution.map_err(Outcome::Linear)?;
+        let correction = &solution.unknowns;
+        for (unknown, change) in trial.state.unknowns.iter_mut().zip(correction) {
+            *unknown += *change;
+        }
+        if !trial
+            .state
+            .unknowns
+            .iter()
+            .all(|unknown| unknown.is_finite())
+        {
+            return Err(Outcome::NotFinite(None));
+        }
+        trial.rock_forces = system.rock_forces(&trial.state.unknowns);
+        let errors = walls::follow(
+            system,
+            self.settings.linearisation,
+            &mut trial.state,
+            &mut trial.landings,
+            &interface(system).jumps(correction, 0.0),
+        );
+        let mut iteration = assess(system, trial, correction, &errors, record)?;
+        iteration.linear_iterations = solution.iterations;
+        trial.looseness = iteration.increment.clamp(1e-8, LOOSEST_SOLVE);
+        Ok(iteration)
+    }
+
+    /// Error allowed in a linear solve, against its right-hand side: enough for what the
+    /// linearisation is worth, and for the test of the forces.
+    fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
+        let enough = 0.1 * self.settings.force * trial.force_scale;
+        let size = norm(residual);
+        if size > 0.0 {
+            trial.looseness.max(enough / size)
+        } else {
+            1.0
+        }
+    }
+}
+
+fn interface<'a>(system: &'a System<'_>) -> &'a Interface {
+    &system.discretisation.interface
+}
+
+/// Measures how far a trial is from a solution.
+fn assess(
+    system: &System<'_>,
+    trial: &mut Trial,
+    correction: &[DVec3],
+    errors: &[f64],
+    record: &mut StepRecord,
+) -> Result<Iteration, Outcome> {
+    let state = &trial.state;
+    let tractions = system.law_tractions(state);
+    if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
+        return Err(Outcome::NotFinite(Some(broken)));
+    }
+    let normal = interface(system).points.iter().zip(&tractions);
+    let largest_normal = normal
+        .map(|(point, traction)| traction.dot(point.normal).abs())
+        .fold(0.0, f64::max);
+    let residual = norm(&system.residual(&trial.rock_forces, &tractions, state.load));
+    trial.force_scale = system.force_scale(&trial.rock_forces, &tractions, state.load);
+    let change = system.displacements(correction, 0.0);
+    let displacements = system.displacements(&state.unknowns, state.load);
+    let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+    record.worst_facet_point = worst;
+    let separations = || state.facet_points.iter().map(|point| point.separation);
+    // A body that does not move may still hold joints closed by its initial stress.
+    let opening = separations()
+        .map(|separation| separation.opening.abs())
+        .fold(0.0, f64::max);
+    Ok(Iteration {
+        force_residual: ratio(residual, trial.force_scale),
+        increment: ratio(largest(&change), largest(&displacements).max(opening)),
+        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), largest_normal),
+        smallest_aperture: separations()
+            .map(|separation| separation.aperture)
+            .fold(f64::INFINITY, f64::min),
+        linear_iterations: 0,
+    })
+}
+
+fn largest(vectors: &[DVec3]) -> f64 {
+    vectors.iter().map(|v| v.length()).fold(0.0, f64::max)
+}
+
+/// `value / scale`, and 0 where there is nothing to compare with nothing.
+fn ratio(value: f64, scale: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / scale }
+}
