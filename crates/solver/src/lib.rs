@@ -7,6 +7,7 @@
 //! of threads: every sum has a fixed order.
 
 mod assembly;
+mod conjugate_gradients;
 mod folded;
 mod interface;
 mod linear;

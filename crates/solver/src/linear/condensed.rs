@@ -78,16 +78,15 @@ impl TangentSolver for Condensed {
         Ok(())
     }
 
-    fn solve(&mut self, right: &[DVec3], _: f64) -> Result<LinearSolution, LinearFailure> {
+    fn solve(&mut self, right: &[DVec3], tolerance: f64) -> Result<LinearSolution, LinearFailure> {
         let mut column = self.cholesky.ordered(right);
         self.cholesky.eliminate(self.rock_size, &mut column);
-        self.jumps
-            .solve(&mut column[self.rock_size..])
-            .map_err(|failure| self.named(failure))?;
+        let solved = self.jumps.solve(&mut column[self.rock_size..], tolerance);
+        let iterations = solved.map_err(|failure| self.named(failure))?;
         self.cholesky.substitute(self.rock_size, &mut column);
         Ok(LinearSolution {
             unknowns: self.cholesky.restored(&column),
-            iterations: 0,
+            iterations,
         })
     }
 }

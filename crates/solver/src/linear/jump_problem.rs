@@ -14,9 +14,17 @@ use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
 use faer::{Accum, ColMut, Mat, Par};
-use glam::DMat3;
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::{LinearFailure, parallelism};
+use crate::conjugate_gradients::{
+    ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
+};
+
+/// Cost of one iteration of conjugate gradients, which reads matrix and factor, in operations of a
+/// factorisation per entry of the matrix.
+const ITERATION_COST: f64 = 32.0;
 
 /// The condensed problem.
 pub(super) struct JumpProblem {
@@ -71,18 +79,98 @@ impl JumpProblem {
         self.change = pairs.map(|(new, old)| *new - *old).collect();
     }
 
-    /// Solves for `right` (N).
+    /// Solves for `right` (N), to `tolerance` times its norm if that needs no new factor. Returns the
+    /// iterations it took.
     ///
     /// # Errors
     /// [`LinearFailure::Indefinite`] with the number of the block.
-    pub(super) fn solve(&mut self, right: &mut [f64]) -> Result<(), LinearFailure> {
+    pub(super) fn solve(
+        &mut self,
+        right: &mut [f64],
+        tolerance: f64,
+    ) -> Result<usize, LinearFailure> {
+        let mut iterations = 0;
         if self.factored.as_ref() != Some(&self.change) {
+            if let Some(solved) = self.iterate(right, tolerance, &mut iterations) {
+                right.copy_from_slice(&solved);
+                return Ok(iterations);
+            }
             self.factorise()?;
         }
-        let mut column = ColMut::from_slice_mut(right).as_mat_mut();
+        self.apply_factor(right);
+        Ok(iterations)
+    }
+
+    /// The solution by conjugate gradients, if the present factor serves.
+    fn iterate(&self, right: &[f64], tolerance: f64, iterations: &mut usize) -> Option<Vec<f64>> {
+        let affordable = self.schur.nrows() as f64 / 3.0 / ITERATION_COST;
+        if self.expected_iterations(tolerance)? > affordable {
+            return None;
+        }
+        let right = blocks(right);
+        let mut solution = vec![DVec3::ZERO; right.len()];
+        let mut scratch = vec![0.0; 3 * right.len()];
+        let report = conjugate_gradients(
+            |vector, product| self.multiply(vector, product),
+            |residual, correction| {
+                scratch.copy_from_slice(&scalars(residual));
+                self.apply_factor(&mut scratch);
+                correction.copy_from_slice(&blocks(&scratch));
+            },
+            &right,
+            &mut solution,
+            ConjugateGradientSettings {
+                tolerance,
+                max_iterations: affordable as usize,
+            },
+        );
+        *iterations = report.iterations;
+        (report.outcome == ConjugateGradientOutcome::Converged).then(|| scalars(&solution))
+    }
+
+    /// Iterations that conjugate gradients need with the present factor, by the spread of
+    /// `(S + C) / (S + C_factored)` on the diagonal: `sqrt(kappa) / 2 ln(2 / tolerance)`.
+    fn expected_iterations(&self, tolerance: f64) -> Option<f64> {
+        let factored = self.factored.as_ref()?;
+        let (mut least, mut most) = (1.0_f64, 1.0_f64);
+        for (index, &(row, column)) in self.places.iter().enumerate() {
+            if row != column {
+                continue;
+            }
+            for c in 0..3 {
+                let place = 3 * row as usize + c;
+                let rock = self.schur[(place, place)];
+                let ratio =
+                    (rock + self.change[index].col(c)[c]) / (rock + factored[index].col(c)[c]);
+                (least, most) = (least.min(ratio), most.max(ratio));
+            }
+        }
+        let expected = (most / least).sqrt() / 2.0 * (2.0 / tolerance).ln();
+        (least > 0.0 && expected.is_finite()).then_some(expected)
+    }
+
+    /// `(S + C) v`; each row is summed in a fixed order.
+    fn multiply(&self, vector: &[DVec3], product: &mut [DVec3]) {
+        let flat = scalars(vector);
+        product.par_iter_mut().enumerate().for_each(|(row, sum)| {
+            let dot = |c: usize| dot(self.schur_column(3 * row + c), &flat);
+            *sum = DVec3::new(dot(0), dot(1), dot(2));
+        });
+        for (&(row, column), block) in self.places.iter().zip(&self.change) {
+            product[row as usize] += *block * vector[column as usize];
+        }
+    }
+
+    /// A column of the symmetric `S + C_0`, which is its row.
+    fn schur_column(&self, index: usize) -> &[f64] {
+        let column = self.schur.col(index).try_as_col_major();
+        column.map_or(&[], |column| column.as_slice())
+    }
+
+    fn apply_factor(&self, vector: &mut [f64]) {
+        let mut column = ColMut::from_slice_mut(vector).as_mat_mut();
         solve_lower_triangular_in_place(self.factor.as_ref(), column.as_mut(), Par::Seq);
         solve_upper_triangular_in_place(self.factor.transpose(), column, Par::Seq);
-        Ok(())
     }
 
     fn factorise(&mut self) -> Result<(), LinearFailure> {
@@ -110,4 +198,27 @@ impl JumpProblem {
         self.factored = Some(self.change.clone());
         Ok(())
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (a_parts, b_parts) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = std::iter::zip(a_parts.remainder(), b_parts.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
+    for (a, b) in a_parts.zip(b_parts) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+fn scalars(vectors: &[DVec3]) -> Vec<f64> {
+    vectors.iter().flat_map(|v| v.to_array()).collect()
+}
+
+fn blocks(scalars: &[f64]) -> Vec<DVec3> {
+    scalars.chunks_exact(3).map(DVec3::from_slice).collect()
 }
