@@ -8,11 +8,13 @@
 
 mod analysis;
 mod assembly;
+mod conjugate_gradients;
 mod folded;
 mod interface;
 mod linear;
 mod loads;
 mod matrix;
+pub mod multigrid;
 mod newton;
 mod pattern;
 mod points;
@@ -23,6 +25,10 @@ mod supports;
 mod system;
 
 pub use analysis::{Analysis, measured_rate};
+pub use conjugate_gradients::{
+    ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
+    conjugate_gradients,
+};
 pub use interface::{FacetPoint, Interface};
 pub use linear::{DirectSolver, LinearFailure};
 pub use loads::Loads;
