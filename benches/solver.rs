@@ -5,7 +5,9 @@ mod block;
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use lie_solver::{Discretisation, Newton, NewtonSettings, Plan, System};
+use lie_solver::{
+    Discretisation, LinearMethod, Newton, NewtonSettings, Plan, System, Unknowns, Workload,
+};
 
 use block::{THREE_PLANES, draft, mesh, problem};
 
@@ -30,7 +32,9 @@ fn stages(criterion: &mut Criterion) {
         });
         let system = System::assemble(&problem, discretisation);
         group.bench_function(BenchmarkId::new("order and analyse", cubes), |bencher| {
-            bencher.iter(|| Plan::of(&problem, &system.discretisation, None));
+            let unknowns = Unknowns::from(&system.discretisation);
+            let workload = Workload::of(&problem);
+            bencher.iter(|| Plan::of(unknowns, workload, Some(LinearMethod::Direct), usize::MAX));
         });
         group.bench_function(BenchmarkId::new("one load step", cubes), |bencher| {
             let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");

@@ -1,7 +1,9 @@
 //! What the program decided, and what went wrong, in words.
 
-use lie_solver::{LinearFailure, Outcome, Problem, StepRecord, Support, System};
+use lie_mesh::Defect;
+use lie_solver::{LinearFailure, Outcome, Plan, Prediction, Problem, StepRecord, Support, System};
 
+use crate::scene::SolverEntry;
 use crate::summary::FractureSummary;
 
 /// Surfaces that the scene does not name, inside the rock and outside.
@@ -66,6 +68,72 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
         }
     }
     lines
+}
+
+/// Which linear solver, and what the others would have cost.
+pub fn of_plan(plan: &Plan, asked: &SolverEntry) -> String {
+    let cost = |prediction: &Prediction| {
+        format!(
+            "{} {} and {}",
+            prediction.method,
+            duration(prediction.seconds),
+            gigabytes(prediction.memory_bytes)
+        )
+    };
+    let why = match asked.linear {
+        Some(_) => "as the scene asks",
+        None => "the cheapest",
+    };
+    let chosen = plan.prediction();
+    let others = plan.predictions.iter().filter(|p| p.method != plan.method);
+    let others: Vec<String> = others.map(cost).collect();
+    let line = format!("linear solver: {why}, predicted {}", cost(chosen));
+    match others.is_empty() {
+        true => line,
+        false => format!("{line} (against {})", others.join(", ")),
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        ..0.1 => "less than 0.1 s".into(),
+        ..100.0 => format!("{seconds:.1} s"),
+        _ => format!("{:.0} min", seconds / 60.0),
+    }
+}
+
+fn gigabytes(bytes: usize) -> String {
+    format!("{:.2} GB", bytes as f64 / 1e9)
+}
+
+/// A solver that does not fit in memory, and what would.
+pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
+    let chosen = plan.prediction();
+    let smaller = plan.predictions.iter().find(|p| p.memory_bytes <= limit);
+    let place = match (asked.linear, asked.memory_limit) {
+        (None, None) => "memory of this machine",
+        _ => "[solver]",
+    };
+    let remedy = smaller.map_or(
+        "mesh coarser (a larger h, or order = 1), or run it on a machine with more memory".into(),
+        |smaller| {
+            format!(
+                "write linear = \"{}\" under [solver] ({}), or leave the choice to the program",
+                smaller.method,
+                gigabytes(smaller.memory_bytes)
+            )
+        },
+    );
+    Defect::new(
+        place,
+        format!(
+            "the {} solver needs {} and may take {}",
+            chosen.method,
+            gigabytes(chosen.memory_bytes),
+            gigabytes(limit)
+        ),
+        remedy,
+    )
 }
 
 fn nothing_acts(problem: &Problem) -> bool {
@@ -157,6 +225,13 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
                 problem.mesh.node_tags[node], x.x, x.y, x.z
             )
         }
+        LinearFailure::NotFinite => {
+            "a number in the linear system is not finite; check the units of stiffness and load"
+                .into()
+        }
+        LinearFailure::Stalled(iterations) => format!(
+            "the linear solver gave up after {iterations} iterations; choose another with [solver]"
+        ),
         LinearFailure::Analysis(what) => format!("the linear solver failed: {what}"),
     }
 }

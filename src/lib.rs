@@ -2,6 +2,7 @@
 
 mod decisions;
 mod inspect;
+mod memory;
 mod network;
 mod output;
 mod prepare;
@@ -16,7 +17,8 @@ use std::time::{Duration, Instant};
 use lie_io::load_msh;
 use lie_mesh::{Draft, Faces, Mesh};
 use lie_solver::{
-    Discretisation, Newton, NewtonSettings, Problem, State, StepRecord, System, solution,
+    Discretisation, Newton, NewtonSettings, Plan, Problem, State, StepRecord, System, Workload,
+    solution,
 };
 
 pub use inspect::{InspectOptions, inspect};
@@ -24,7 +26,8 @@ pub use lie_network::{Domain, Grouping};
 pub use network::{NetworkOptions, make_network};
 pub use report::{Failure, Verbosity, print_failure};
 pub use scene::{
-    Binding, BoundaryEntry, FixedPointEntry, MeshSource, Named, Scene, bind, surface_roles,
+    Binding, BoundaryEntry, FixedPointEntry, MeshSource, Named, Scene, SolverEntry, bind,
+    surface_roles,
 };
 pub use summary::{FractureSummary, Spread, Summary};
 
@@ -66,9 +69,15 @@ pub fn run(scene_file: &Path, options: &Options) -> Result<(), Failure> {
     };
     report.entry("kluft", &format!("{}  {}", summary.kluft, scene.title));
     let problem = prepare(&scene, &output, &mut report, &mut summary)?;
-    let result = solve(&problem, &mut output, &mut report, &mut summary);
+    let result = solve(
+        &problem,
+        &scene.solver,
+        &mut output,
+        &mut report,
+        &mut summary,
+    );
     summary.seconds.total = start.elapsed().as_secs_f64();
-    summary.peak_memory_bytes = summary::peak_memory_bytes();
+    summary.peak_memory_bytes = memory::peak_bytes() as u64;
     if !matches!(result, Err(Failure::BadInput(_))) {
         let path = output.path("summary.json");
         summary.write(&path).map_err(|defect| vec![defect])?;
@@ -133,24 +142,20 @@ fn build_problem(
 /// From the problem to the written results of all load steps.
 fn solve(
     problem: &Problem,
+    solver: &SolverEntry,
     output: &mut Output,
     report: &mut Report,
     summary: &mut Summary,
 ) -> Result<(), Failure> {
     let system = assemble(problem, report, summary)?;
-    let (newton, took) = report.stage("ordering", |_| {
-        Newton::new(&system, NewtonSettings::default())
-    });
-    summary.seconds.factorise = took.as_secs_f64();
-    let mut newton = newton.map_err(|failure| {
-        Failure::NotConverged(decisions::linear_failure(problem, &system, &failure))
-    })?;
-    report.entry("ordered", &timed("rock", took));
+    let plan = plan(&system, solver, report, summary)?;
+    summary.decisions.push(decisions::of_plan(&plan, solver));
     summary.decisions.extend(decisions::of_problem(problem));
     for decision in &summary.decisions {
         report.entry("decided", decision);
     }
     output.remove_former().map_err(|defect| vec![defect])?;
+    let mut newton = set_up(&system, plan, report, summary)?;
     let mut state = system.initial_state();
     for (number, &load) in problem.steps.iter().enumerate() {
         report.step(number + 1, problem.steps.len(), load);
@@ -166,6 +171,59 @@ fn solve(
     }
     summary.warnings = decisions::warnings(&summary.fractures);
     Ok(())
+}
+
+/// Chooses the linear solver, and refuses what would not fit in memory.
+fn plan(
+    system: &System<'_>,
+    solver: &SolverEntry,
+    report: &mut Report,
+    summary: &mut Summary,
+) -> Result<Plan, Failure> {
+    let available = memory::available_bytes().unwrap_or(usize::MAX);
+    let limit = solver
+        .memory_limit
+        .map_or(available, |limit| limit as usize);
+    let (plan, took) = report.stage("choosing a solver", |_| {
+        let workload = Workload::of(system.problem);
+        Plan::of(
+            (&system.discretisation).into(),
+            workload,
+            solver.linear,
+            limit,
+        )
+    });
+    summary.seconds.factorise = took.as_secs_f64();
+    let plan = plan.map_err(|failure| {
+        Failure::NotConverged(decisions::linear_failure(system.problem, system, &failure))
+    })?;
+    let prediction = plan.prediction();
+    summary.predicted_memory_bytes = (memory::used_bytes() + prediction.memory_bytes) as u64;
+    if prediction.memory_bytes > limit {
+        return Err(vec![decisions::too_large(&plan, solver, limit)].into());
+    }
+    Ok(plan)
+}
+
+/// Prepares what the linear solver needs once a run.
+fn set_up(
+    system: &System<'_>,
+    plan: Plan,
+    report: &mut Report,
+    summary: &mut Summary,
+) -> Result<Newton, Failure> {
+    let name = plan.method.name();
+    let (newton, took) = report.stage("preparing the solver", |_| {
+        Newton::planned(system, NewtonSettings::default(), plan)
+    });
+    summary.seconds.factorise += took.as_secs_f64();
+    report.entry(
+        "prepared",
+        &timed(&format!("{name} solver, once for the run"), took),
+    );
+    newton.map_err(|failure| {
+        Failure::NotConverged(decisions::linear_failure(system.problem, system, &failure))
+    })
 }
 
 /// Enriches the problem and assembles what stays the same for the whole run.

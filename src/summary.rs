@@ -141,7 +141,10 @@ pub struct Summary {
     pub steps: Vec<StepSummary>,
     /// Where the time went.
     pub seconds: Seconds,
-    /// Largest resident memory of the process, gmsh left out.
+    /// Largest resident memory predicted before the solver was set up: what the process held then,
+    /// and what the solver needs (bytes).
+    pub predicted_memory_bytes: u64,
+    /// Largest resident memory of the process, gmsh left out (bytes).
     pub peak_memory_bytes: u64,
     /// Number of threads.
     pub threads: usize,
@@ -228,18 +231,4 @@ fn fracture_summary(
         below_cutoff_facets: below.count(),
         overlap_area: area_where(&|result| result.aperture < 0.0),
     }
-}
-
-/// Largest resident memory of this process so far, or 0 where the system does not tell.
-pub fn peak_memory_bytes() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|line| {
-        line.trim()
-            .trim_end_matches("kB")
-            .trim()
-            .parse::<u64>()
-            .ok()
-    });
-    kilobytes.unwrap_or(0) * 1024
 }

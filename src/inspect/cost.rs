@@ -1,14 +1,17 @@
 //! Unknowns, and what solving for them will take.
 
-use std::time::Instant;
-
 use lie_mesh::Mesh;
-use lie_solver::{Analysis, Discretisation, NodeOrder, Pattern, Points, measured_rate};
+use lie_solver::{Discretisation, Pattern, Plan, Points, Prediction, Unknowns, Workload};
 
 use super::findings::{Inspection, SectorCounts, SolverFinding, UnknownFindings};
 
-/// Counts unknowns and predicts memory and time of the direct solver.
-pub fn predict(mesh: &Mesh, discretisation: Option<&Discretisation>, inspection: &mut Inspection) {
+/// Counts unknowns and predicts memory and time of the solvers.
+pub fn predict(
+    mesh: &Mesh,
+    discretisation: Option<&Discretisation>,
+    workload: Workload,
+    inspection: &mut Inspection,
+) {
     let own = discretisation.is_none().then(|| {
         let points = Points::of(mesh);
         let pattern = Pattern::of(mesh, &points);
@@ -20,29 +23,39 @@ pub fn predict(mesh: &Mesh, discretisation: Option<&Discretisation>, inspection:
         (None, None) => return,
     };
     inspection.unknowns = Some(unknowns(mesh, points, discretisation));
-    let start = Instant::now();
-    let analysis =
-        NodeOrder::of(pattern, points).and_then(|order| Analysis::of(pattern, points, &order, &[]));
-    let analysis = match analysis {
-        Ok(analysis) => analysis,
+    let jumps: Vec<u32> = match discretisation {
+        Some(found) => found.interface.unknowns.clone(),
+        None => (0..points.len())
+            .filter(|&unknown| points.sector(unknown).0 > 0)
+            .map(|unknown| unknown as u32)
+            .collect(),
+    };
+    let outline = Unknowns {
+        pattern,
+        points,
+        jumps: &jumps,
+    };
+    match Plan::of(outline, workload, None, usize::MAX) {
+        Ok(plan) => inspection
+            .solvers
+            .extend(plan.predictions.iter().map(|p| finding(&plan, p))),
         Err(failure) => {
             let warning = format!("the direct solver cannot analyse this mesh: {failure:?}");
             inspection.warnings.push(warning);
-            return;
         }
-    };
-    let analysis_seconds = start.elapsed().as_secs_f64();
-    let (operations, rate) = (analysis.factor_operations(), measured_rate());
-    inspection.solvers.push(SolverFinding {
-        name: "direct",
+    }
+}
+
+fn finding(plan: &Plan, prediction: &Prediction) -> SolverFinding {
+    SolverFinding {
+        name: prediction.method.name(),
         is_prediction: true,
-        factor_entries: analysis.factor_entries(),
-        memory_bytes: analysis.memory_bytes(),
-        operations,
-        operations_per_second: rate,
-        factorisation_seconds: operations / rate,
-        analysis_seconds,
-    });
+        is_chosen: prediction.method == plan.method,
+        factor_entries: prediction.factor_entries,
+        memory_bytes: prediction.memory_bytes,
+        operations: prediction.operations,
+        seconds: prediction.seconds,
+    }
 }
 
 fn unknowns(

@@ -270,18 +270,16 @@ pub struct SolverFinding {
     pub name: &'static str,
     /// Always true: nothing has been solved.
     pub is_prediction: bool,
-    /// Entries of the factor.
+    /// Whether a run would choose it.
+    pub is_chosen: bool,
+    /// Entries of the Cholesky factor; 0 without one.
     pub factor_entries: usize,
-    /// Memory of the solver at its largest, mesh not included (bytes).
+    /// Memory of the solver at its largest, mesh and matrix not included (bytes).
     pub memory_bytes: usize,
-    /// Floating-point operations of one factorisation.
+    /// Floating-point operations of one factorisation; 0 without one.
     pub operations: f64,
-    /// Rate measured on a full matrix of this machine [1/s].
-    pub operations_per_second: f64,
-    /// Time of one factorisation (s); a nonlinear step takes one for each iteration.
-    pub factorisation_seconds: f64,
-    /// Time that ordering and symbolic factorisation took (s).
-    pub analysis_seconds: f64,
+    /// Time of all linear solves of the run on an ordinary machine (s).
+    pub seconds: f64,
 }
 
 /// Whether the walls of a fracture would pass through each other.

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use lie_io::{load_msh, write_atomically, write_vtu};
 use lie_mesh::{Defect, Draft, Faces, Mesh, Survey};
-use lie_solver::{Discretisation, Problem};
+use lie_solver::{Discretisation, Problem, Workload};
 
 use crate::output::Output;
 use crate::prepare::{self, folder_for, mesh_file};
@@ -72,6 +72,12 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
     load_msh(&file.path, &scratch)
 }
 
+/// What a mesh without a scene is predicted for.
+const ONE_STEP: Workload = Workload {
+    steps: 1,
+    is_nonlinear: true,
+};
+
 /// Fills the inspection as far as the input allows; returns what is wrong with it.
 fn look(
     draft: Draft,
@@ -101,7 +107,7 @@ fn look(
     let grid = grid::of(&mesh, &survey);
     defects.extend(write_vtu(&output.path("inspect.vtu"), &grid).err());
     let Some(scene) = scene else {
-        cost::predict(&mesh, None, inspection);
+        cost::predict(&mesh, None, ONE_STEP, inspection);
         return defects;
     };
     match bind(scene, mesh) {
@@ -119,7 +125,8 @@ fn weigh(problem: &Problem, survey: &Survey, inspection: &mut Inspection) -> Vec
         Ok(discretisation) => (Some(discretisation), Vec::new()),
         Err(defects) => (None, defects),
     };
-    cost::predict(&problem.mesh, discretisation.as_ref(), inspection);
+    let workload = Workload::of(problem);
+    cost::predict(&problem.mesh, discretisation.as_ref(), workload, inspection);
     defects
 }
 

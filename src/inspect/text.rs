@@ -340,24 +340,25 @@ fn unknowns(out: &mut String, inspection: &Inspection) {
 }
 
 fn cost(out: &mut String, solver: &SolverFinding) {
+    let choice = if solver.is_chosen { ", chosen" } else { "" };
     line(
         out,
         &format!(
-            "solver     {}, predicted: {:.2} GB, {:.2} s for a factorisation (one each iteration)",
+            "solver     {}{choice}, predicted: {:.2} GB, {:.2} s for the run on an ordinary machine",
             solver.name,
             solver.memory_bytes as f64 / 1e9,
-            solver.factorisation_seconds
+            solver.seconds
         ),
     );
-    line(
-        out,
-        &format!(
-            "  {:.3e} entries in the factor, {:.3e} operations at a measured {:.1} Gflop/s",
-            solver.factor_entries as f64,
-            solver.operations,
-            solver.operations_per_second / 1e9
-        ),
-    );
+    if solver.factor_entries > 0 {
+        line(
+            out,
+            &format!(
+                "  {:.3e} entries in the factor, {:.3e} operations",
+                solver.factor_entries as f64, solver.operations
+            ),
+        );
+    }
 }
 
 fn walls(out: &mut String, inspection: &Inspection) {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 use lie_mesh::Defect;
-use lie_solver::{Fracture, InitialStress, Profile, Support, SurfaceLoad};
+use lie_solver::{Fracture, InitialStress, LinearMethod, Profile, Support, SurfaceLoad};
 
 pub use bind::{Binding, bind, surface_roles};
 
@@ -58,6 +58,15 @@ pub struct FixedPointEntry {
     pub displacement: [Option<f64>; 3],
 }
 
+/// What is asked of the linear solver.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SolverEntry {
+    /// The solver; chosen by predicted cost if not given.
+    pub linear: Option<LinearMethod>,
+    /// Memory it may take (bytes); what the machine has free if not given.
+    pub memory_limit: Option<f64>,
+}
+
 /// A scene, all values in SI units.
 #[derive(Debug, Clone)]
 pub struct Scene {
@@ -79,6 +88,8 @@ pub struct Scene {
     pub initial_stress: Option<InitialStress>,
     /// Load factors.
     pub steps: Vec<f64>,
+    /// What is asked of the linear solver.
+    pub solver: SolverEntry,
 }
 
 impl Scene {
@@ -139,6 +150,7 @@ pub(crate) fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) {
     read_gravity(root);
     root.section("initial_stress").map(read_initial_stress);
     read_steps(root);
+    read_solver(root);
 }
 
 fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Option<Scene> {
@@ -168,6 +180,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         gravity: read_gravity(root),
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         steps: read_steps(root),
+        solver: read_solver(root),
         title,
         rocks,
         fractures,
@@ -445,4 +458,25 @@ fn read_steps(root: &Section<'_, '_>) -> Vec<f64> {
     }
     section.finish();
     steps.unwrap_or_else(|| vec![1.0])
+}
+
+fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
+    let Some(section) = root.section("solver") else {
+        return SolverEntry::default();
+    };
+    let name = section.text("linear");
+    let linear = name.and_then(|name| name.parse().ok());
+    if let (Some(name), None) = (name, linear) {
+        section.refuse(
+            "linear",
+            format!("unknown linear solver \"{name}\""),
+            "write \"direct\", \"condensed\" or \"iterative\", or leave it out: the program chooses",
+        );
+    }
+    let entry = SolverEntry {
+        linear,
+        memory_limit: section.number("memory_limit", Accept::Positive),
+    };
+    section.finish();
+    entry
 }

@@ -156,12 +156,18 @@ fn the_unknowns_are_those_of_the_run() {
     assert_eq!(report["blocks"].as_array().map(Vec::len), Some(8));
     let volumes = report["blocks"].as_array().expect("blocks").iter();
     assert!((volumes.map(|b| number(&b["volume"])).sum::<f64>() - 1.0).abs() < 1e-12);
-    let solver = &report["solvers"][0];
+    let solvers = report["solvers"].as_array().expect("solvers");
+    let names: Vec<_> = solvers.iter().map(|solver| &solver["name"]).collect();
     assert_eq!(
-        (&solver["name"], &solver["is_prediction"]),
-        (&json!("direct"), &json!(true))
+        names,
+        [&json!("iterative"), &json!("direct"), &json!("condensed")]
     );
-    assert!(number(&solver["memory_bytes"]) > 8.0 * number(&solver["factor_entries"]));
+    let chosen = solvers.iter().filter(|solver| solver["is_chosen"] == true);
+    assert_eq!(chosen.count(), 1);
+    for solver in solvers {
+        assert_eq!(solver["is_prediction"], true);
+        assert!(number(&solver["memory_bytes"]) > 8.0 * number(&solver["factor_entries"]));
+    }
     let fractures = report["fractures"].as_array().expect("fractures");
     assert_eq!(fractures.len(), 3);
     for fracture in fractures {

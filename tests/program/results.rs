@@ -84,7 +84,12 @@ fn check_alike(one: &Path, two: &Path) {
     assert_eq!(ones.len(), twos.len());
     let timeless = |folder: &Path| {
         let mut summary = summary(folder);
-        for key in ["seconds", "peak_memory_bytes", "threads"] {
+        for key in [
+            "seconds",
+            "peak_memory_bytes",
+            "predicted_memory_bytes",
+            "threads",
+        ] {
             let gone = summary.as_object_mut().expect("an object").remove(key);
             assert!(gone.is_some(), "{key}");
         }

@@ -179,6 +179,17 @@ impl Interface {
         rows.concat()
     }
 
+    /// Adds the forces of the fractures with [`Self::stiffness`] to `product`: `K_ij v_j`.
+    pub(crate) fn add_product(&self, stiffness: &[DMat3], vector: &[DVec3], product: &mut [DVec3]) {
+        for (index, &row) in self.unknowns.iter().enumerate() {
+            let range = self.columns.offset[index]..self.columns.offset[index + 1];
+            let columns = &self.columns.entries[range.clone()];
+            for (block, &column) in stiffness[range].iter().zip(columns) {
+                product[row as usize] += *block * vector[column as usize];
+            }
+        }
+    }
+
     fn stiffness_row(&self, row: usize, tangents: &[DMat3]) -> Vec<DMat3> {
         let columns = self.columns.of(row);
         let mut blocks = vec![DMat3::ZERO; columns.len()];

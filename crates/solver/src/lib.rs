@@ -13,6 +13,7 @@ mod interface;
 mod linear;
 mod loads;
 mod matrix;
+pub mod multigrid;
 mod newton;
 mod pattern;
 mod points;
@@ -22,10 +23,14 @@ mod solution;
 mod supports;
 mod system;
 
+pub use conjugate_gradients::{
+    ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
+    conjugate_gradients,
+};
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
-    Analysis, Cholesky, Condensed, LinearFailure, LinearMethod, LinearSolution, NodeOrder, Plan,
-    TangentSolver, Whole, measured_rate,
+    Analysis, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod, LinearSolution,
+    NodeOrder, Plan, Prediction, TangentSolver, Unknowns, Whole, Workload,
 };
 pub use loads::Loads;
 pub use matrix::BlockMatrix;

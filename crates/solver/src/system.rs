@@ -10,6 +10,7 @@ use crate::folded;
 use crate::interface::{FacetPoint, Interface};
 use crate::loads::Loads;
 use crate::matrix::BlockMatrix;
+use crate::multigrid::BlockRows;
 use crate::pattern::Pattern;
 use crate::points::Points;
 use crate::problem::Problem;
@@ -213,6 +214,16 @@ impl<'a> System<'a> {
             .into_par_iter()
             .map(|i| factor * (loads.applied[i] + loads.prescribed[i]) + loads.initial[i])
             .collect()
+    }
+
+    /// The stiffness of the rock, row by row.
+    pub fn rock_rows(&self) -> BlockRows<'_> {
+        let pattern = &self.discretisation.pattern;
+        BlockRows {
+            row_offset: &pattern.row_offset,
+            columns: &pattern.columns,
+            blocks: &self.rock.blocks,
+        }
     }
 
     /// Forces by which the rock resists the unknowns (N), `K y`.

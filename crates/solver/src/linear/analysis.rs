@@ -1,9 +1,6 @@
 //! Symbolic factorisation of the matrix, and what its factor will cost.
 
-use std::time::Instant;
-
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::Side;
 use faer::perm::PermRef;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -12,12 +9,9 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::{Mat, Side};
 use glam::DMat3;
 
-use super::{LinearFailure, NodeOrder, parallelism};
-use crate::pattern::Pattern;
-use crate::points::Points;
+use super::{LinearFailure, parallelism};
 
 /// Symbolic Cholesky factorisation of a pattern, without values.
 pub struct Analysis {
@@ -33,25 +27,25 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Analyses a pattern whose nodes are eliminated in `order`, save that the unknowns in `last`
-    /// (ascending) follow behind all others.
+    /// Analyses a symmetric pattern of blocks (start of each row, and columns ascending in each row)
+    /// that is eliminated in the given order.
     ///
     /// # Errors
     /// If the analysis fails.
     pub fn of(
-        pattern: &Pattern,
-        points: &Points,
-        order: &NodeOrder,
-        last: &[u32],
+        row_offset: &[usize],
+        columns: &[u32],
+        order: Vec<usize>,
     ) -> Result<Self, LinearFailure> {
-        let lower_blocks: Vec<usize> = (0..points.len())
-            .map(|row| pattern.address(row, row) - pattern.row_offset[row])
+        let lower_blocks: Vec<usize> = (0..order.len())
+            .map(|row| {
+                let columns = &columns[row_offset[row]..row_offset[row + 1]];
+                columns.partition_point(|&column| (column as usize) < row)
+            })
             .collect();
-        let (column_offset, row_index) = upper_triangle(pattern, &lower_blocks);
-        let is_last = |block: usize| last.binary_search(&(block as u32)).is_ok();
-        let order = order.unknowns(points, is_last);
+        let (column_offset, row_index) = upper_triangle(row_offset, columns, &lower_blocks);
         let (forward, inverse) = scalar_permutation(&order);
-        let size = 3 * points.len();
+        let size = 3 * order.len();
         let shape =
             SymbolicSparseColMatRef::new_checked(size, size, &column_offset, None, &row_index);
         let symbolic = factorize_symbolic_cholesky(
@@ -65,7 +59,7 @@ impl Analysis {
         )
         .map_err(|error| LinearFailure::Analysis(format!("{error:?}")))?;
         Ok(Self {
-            blocks: pattern.columns.len(),
+            blocks: columns.len(),
             symbolic,
             column_offset,
             row_index,
@@ -130,41 +124,17 @@ impl Analysis {
     }
 }
 
-/// Floating-point operations that this machine does in a second [1/s], measured on the Cholesky
-/// factorisation of a full matrix.
-pub fn measured_rate() -> f64 {
-    const SIZE: usize = 1000;
-    let matrix = Mat::<f64>::from_fn(SIZE, SIZE, |i, j| match i == j {
-        true => SIZE as f64,
-        false => 1.0 / (1 + i.abs_diff(j)) as f64,
-    });
-    let par = parallelism();
-    let request = cholesky_in_place_scratch::<f64>(SIZE, par, faer::Spec::default());
-    let mut memory = MemBuffer::new(request);
-    let fastest = (0..3).map(|_| {
-        let mut factor = matrix.clone();
-        let stack = MemStack::new(&mut memory);
-        let start = Instant::now();
-        let _ = cholesky_in_place(
-            factor.as_mut(),
-            Default::default(),
-            par,
-            stack,
-            faer::Spec::default(),
-        );
-        start.elapsed().as_secs_f64()
-    });
-    let seconds = fastest.fold(f64::INFINITY, f64::min);
-    (SIZE as f64).powi(3) / 3.0 / seconds
-}
-
 /// Column offsets and row indices of the upper triangle. Column `3 i + c` holds the blocks of block
 /// row `i` up to the diagonal, which by symmetry are those of block column `i`.
-fn upper_triangle(pattern: &Pattern, lower_blocks: &[usize]) -> (Vec<usize>, Vec<usize>) {
+fn upper_triangle(
+    row_offset: &[usize],
+    columns: &[u32],
+    lower_blocks: &[usize],
+) -> (Vec<usize>, Vec<usize>) {
     let mut column_offset = vec![0];
     let mut row_index = Vec::new();
     for (row, &lower) in lower_blocks.iter().enumerate() {
-        let columns = &pattern.columns[pattern.row(row)][..lower];
+        let columns = &columns[row_offset[row]..][..lower];
         for c in 0..3 {
             let left = columns
                 .iter()

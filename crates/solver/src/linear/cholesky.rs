@@ -8,8 +8,7 @@ use faer::{Mat, Par, Side};
 use glam::{DMat3, DVec3};
 
 use super::{Analysis, LinearFailure, substitution};
-use crate::matrix::BlockMatrix;
-use crate::pattern::Pattern;
+use crate::multigrid::BlockRows;
 
 /// `A = L L^T`. The analysis is done once; values may change.
 pub struct Cholesky {
@@ -21,15 +20,15 @@ pub struct Cholesky {
 
 impl Cholesky {
     /// Takes over the values of `matrix`; nothing is factorised yet.
-    pub fn new(analysis: Analysis, matrix: &BlockMatrix, pattern: &Pattern) -> Self {
+    pub fn new(analysis: Analysis, matrix: BlockRows<'_>) -> Self {
         let mut cholesky = Self {
             values: vec![0.0; analysis.row_index.len()],
             factor: Vec::new(),
             analysis,
         };
         for row in 0..cholesky.analysis.order.len() {
-            for (place, address) in pattern.row(row).enumerate() {
-                cholesky.set_block(row, place, matrix.blocks[address]);
+            for (place, (_, block)) in matrix.row(row).enumerate() {
+                cholesky.set_block(row, place, *block);
             }
         }
         cholesky

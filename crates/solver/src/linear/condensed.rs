@@ -30,7 +30,7 @@ impl Condensed {
     pub fn new(system: &System<'_>, analysis: Analysis) -> Result<Self, LinearFailure> {
         let interface = &system.discretisation.interface;
         let pattern = &system.discretisation.pattern;
-        let mut cholesky = Cholesky::new(analysis, &system.rock, pattern);
+        let mut cholesky = Cholesky::new(analysis, system.rock_rows());
         let springs: Vec<DMat3> = interface
             .points
             .iter()
@@ -78,7 +78,12 @@ impl TangentSolver for Condensed {
         Ok(())
     }
 
-    fn solve(&mut self, right: &[DVec3], tolerance: f64) -> Result<LinearSolution, LinearFailure> {
+    fn solve(
+        &mut self,
+        _: &System<'_>,
+        right: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
         let mut column = self.cholesky.ordered(right);
         self.cholesky.eliminate(self.rock_size, &mut column);
         let solved = self.jumps.solve(&mut column[self.rock_size..], tolerance);

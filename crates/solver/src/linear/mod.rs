@@ -3,6 +3,8 @@
 mod analysis;
 mod cholesky;
 mod condensed;
+mod iterative;
+mod jump_block;
 mod jump_problem;
 mod ordering;
 mod plan;
@@ -13,11 +15,12 @@ use glam::{DMat3, DVec3};
 
 use crate::system::System;
 
-pub use analysis::{Analysis, measured_rate};
+pub use analysis::Analysis;
 pub use cholesky::Cholesky;
 pub use condensed::Condensed;
+pub use iterative::Iterative;
 pub use ordering::NodeOrder;
-pub use plan::{LinearMethod, Plan};
+pub use plan::{LinearMethod, Plan, Prediction, Unknowns, Workload};
 pub use whole::Whole;
 
 pub(crate) use cholesky::parallelism;
@@ -31,6 +34,10 @@ pub enum LinearFailure {
     Indefinite(usize),
     /// The ordering or the symbolic analysis failed.
     Analysis(String),
+    /// A number is not finite.
+    NotFinite,
+    /// The iteration did not converge in this many steps.
+    Stalled(usize),
 }
 
 /// Solution of a linear system.
@@ -54,5 +61,10 @@ pub trait TangentSolver: Send + Sync {
     ///
     /// # Errors
     /// If the iteration fails.
-    fn solve(&mut self, right: &[DVec3], tolerance: f64) -> Result<LinearSolution, LinearFailure>;
+    fn solve(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure>;
 }

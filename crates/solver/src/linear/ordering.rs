@@ -16,28 +16,25 @@ impl NodeOrder {
     /// # Errors
     /// If the graph is too large for the ordering.
     pub fn of(pattern: &Pattern, points: &Points) -> Result<Self, LinearFailure> {
-        let fault = |what: &str| LinearFailure::Analysis(what.to_owned());
         let used: Vec<u32> = (0..points.offset.len() - 1)
             .filter(|&node| !points.of_node(node).is_empty())
             .map(|node| node as u32)
             .collect();
-        let mut number = vec![0_i32; points.offset.len() - 1];
+        let mut number = vec![0; points.offset.len() - 1];
         for (index, &node) in used.iter().enumerate() {
-            number[node as usize] = i32::try_from(index).map_err(|_| fault("too many nodes"))?;
+            number[node as usize] = index as u32;
         }
-        let mut column_offset = vec![0_i32];
-        let mut row_index = Vec::new();
-        for &node in &used {
-            let around = pattern.neighbours.of(node as usize).iter();
-            let others = around.filter(|&&other| other != node);
-            row_index.extend(others.map(|&other| number[other as usize]));
-            let end = i32::try_from(row_index.len()).map_err(|_| fault("node graph too large"))?;
-            column_offset.push(end);
-        }
-        let graph = CscPattern::new(used.len(), &column_offset, &row_index)
-            .ok_or_else(|| fault("malformed node graph"))?;
-        let order = metis_order(&graph).map_err(|error| fault(&error.to_string()))?;
-        Ok(Self(order.iter().map(|&i| used[i as usize]).collect()))
+        let neighbours = |index: usize| {
+            let around = pattern.neighbours.of(used[index] as usize).iter();
+            around.map(|&other| number[other as usize])
+        };
+        let order = nested_dissection(used.len(), neighbours)?;
+        Ok(Self(order.iter().map(|&i| used[i]).collect()))
+    }
+
+    /// Order of the unknown 3-vectors: a node's unknowns stay together.
+    pub fn all(&self, points: &Points) -> Vec<usize> {
+        self.unknowns(points, |_| false)
     }
 
     /// Order of the unknown 3-vectors: a node's unknowns stay together, except those that `is_last`
@@ -51,4 +48,28 @@ impl NodeOrder {
         order.extend(last);
         order
     }
+}
+
+/// Order of elimination for a symmetric graph, which may hold a vertex among its own neighbours.
+///
+/// # Errors
+/// If the graph is too large for the ordering.
+pub(super) fn nested_dissection<I: Iterator<Item = u32>>(
+    count: usize,
+    neighbours: impl Fn(usize) -> I,
+) -> Result<Vec<usize>, LinearFailure> {
+    let fault = |what: &str| LinearFailure::Analysis(what.to_owned());
+    let too_large = || fault("the graph is too large for the ordering");
+    i32::try_from(count).map_err(|_| too_large())?;
+    let mut column_offset = vec![0_i32];
+    let mut row_index = Vec::new();
+    for vertex in 0..count {
+        let others = neighbours(vertex).filter(|&other| other as usize != vertex);
+        row_index.extend(others.map(|other| other as i32));
+        column_offset.push(i32::try_from(row_index.len()).map_err(|_| too_large())?);
+    }
+    let graph = CscPattern::new(count, &column_offset, &row_index)
+        .ok_or_else(|| fault("malformed graph"))?;
+    let order = metis_order(&graph).map_err(|error| fault(&error.to_string()))?;
+    Ok(order.iter().map(|&vertex| vertex as usize).collect())
 }

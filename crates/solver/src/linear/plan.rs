@@ -1,10 +1,25 @@
-//! Which linear solver a problem gets.
+//! Which linear solver a problem gets: the one with the least predicted time among those that fit.
+//!
+//! Times are predicted from operations and bytes moved, at fixed rates of an ordinary machine, so the
+//! choice is the same everywhere; only their ratios matter.
 
+use std::fmt;
 use std::str::FromStr;
 
-use super::{Analysis, Condensed, LinearFailure, NodeOrder, TangentSolver, Whole};
+use super::{Analysis, Condensed, Iterative, LinearFailure, NodeOrder, TangentSolver, Whole};
+use crate::pattern::Pattern;
+use crate::points::Points;
 use crate::problem::Problem;
 use crate::system::{Discretisation, System};
+
+/// Operations of a factorisation in a second (1/s).
+const OPERATIONS: f64 = 6e10;
+/// Bytes read in a second (1/s).
+const BYTES: f64 = 2e10;
+/// Cholesky factors of solid bodies take about this times the square of the unknowns (operations).
+const SOLID: f64 = 18.0;
+/// A direct solver is not even analysed if it is bound to lose by this factor.
+const HOPELESS: f64 = 10.0;
 
 /// The linear solvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,58 +28,162 @@ pub enum LinearMethod {
     Direct,
     /// Cholesky factorisation of the rock, once; what changes is solved for the jumps alone.
     Condensed,
+    /// Conjugate gradients, preconditioned by a multigrid of the rock, set up once.
+    Iterative,
+}
+
+impl LinearMethod {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Direct, Self::Condensed, Self::Iterative];
+
+    /// Its name in scenes and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Condensed => "condensed",
+            Self::Iterative => "iterative",
+        }
+    }
+}
+
+impl fmt::Display for LinearMethod {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
 }
 
 impl FromStr for LinearMethod {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        match name {
-            "direct" => Ok(Self::Direct),
-            "condensed" => Ok(Self::Condensed),
-            other => Err(format!("there is no solver `{other}`")),
+        let found = Self::ALL.into_iter().find(|method| method.name() == name);
+        found.ok_or_else(|| format!("there is no solver `{name}`"))
+    }
+}
+
+/// What there is to solve for.
+#[derive(Debug, Clone, Copy)]
+pub struct Unknowns<'a> {
+    /// Who couples with whom.
+    pub pattern: &'a Pattern,
+    /// Numbering.
+    pub points: &'a Points,
+    /// Unknowns that the fractures act on, ascending.
+    pub jumps: &'a [u32],
+}
+
+impl<'a> From<&'a Discretisation> for Unknowns<'a> {
+    fn from(discretisation: &'a Discretisation) -> Self {
+        Self {
+            pattern: &discretisation.pattern,
+            points: &discretisation.points,
+            jumps: &discretisation.interface.unknowns,
         }
     }
+}
+
+/// What will be asked of the solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Workload {
+    /// Load steps.
+    pub steps: usize,
+    /// Whether a step takes more than one linear solve.
+    pub is_nonlinear: bool,
+}
+
+impl Workload {
+    /// What a problem asks for.
+    pub fn of(problem: &Problem) -> Self {
+        let mut laws = problem.fractures.iter().map(|fracture| fracture.law);
+        Self {
+            steps: problem.steps.len(),
+            is_nonlinear: laws.any(|law| !law.closure.is_linear()),
+        }
+    }
+
+    /// Linear solves of the whole run: Newton takes about four iterations in its first step and two
+    /// in a step that continues a path.
+    fn solves(self) -> f64 {
+        if self.is_nonlinear {
+            2.0 + 2.0 * self.steps as f64
+        } else {
+            self.steps as f64
+        }
+    }
+}
+
+/// Predicted cost of a solver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// The solver.
+    pub method: LinearMethod,
+    /// Time of all linear solves of the run on an ordinary machine (s).
+    pub seconds: f64,
+    /// Memory that the solver needs beside mesh and matrix (bytes).
+    pub memory_bytes: usize,
+    /// Entries of its Cholesky factor; 0 if it has none.
+    pub factor_entries: usize,
+    /// Operations of its factorisation; 0 if it has none.
+    pub operations: f64,
 }
 
 /// The chosen solver and what is known of it before any value is computed.
 pub struct Plan {
     /// What was chosen.
     pub method: LinearMethod,
-    analysis: Analysis,
+    /// What all solvers that were considered would cost.
+    pub predictions: Vec<Prediction>,
+    analysis: Option<Analysis>,
 }
 
 impl Plan {
-    /// Chooses the solver unless `forced` does.
+    /// Chooses the solver unless `forced` does. If none fits in `memory_bytes`, the one that needs
+    /// least is chosen; see [`Plan::prediction`].
     ///
     /// # Errors
     /// If the ordering or the analysis fails.
     pub fn of(
-        _problem: &Problem,
-        discretisation: &Discretisation,
+        unknowns: Unknowns<'_>,
+        workload: Workload,
         forced: Option<LinearMethod>,
+        memory_bytes: usize,
     ) -> Result<Self, LinearFailure> {
-        let Discretisation {
-            points,
-            pattern,
-            interface,
-            ..
-        } = discretisation;
-        let order = NodeOrder::of(pattern, points)?;
-        let method = forced.unwrap_or(LinearMethod::Condensed);
-        let last: &[u32] = match method {
-            LinearMethod::Direct => &[],
-            LinearMethod::Condensed => &interface.unknowns,
+        let iterative = iterative(unknowns, workload);
+        let is_wanted = |method| forced.is_none_or(|forced| forced == method);
+        let least = SOLID * (3.0 * unknowns.points.len() as f64).powi(2) / OPERATIONS;
+        let direct = match forced {
+            Some(method) => method != LinearMethod::Iterative,
+            None => least < HOPELESS * iterative.seconds,
         };
+        let mut predictions = vec![iterative];
+        let mut analyses = Vec::new();
+        if direct {
+            let order = NodeOrder::of(unknowns.pattern, unknowns.points)?;
+            for method in [LinearMethod::Direct, LinearMethod::Condensed] {
+                if is_wanted(method) {
+                    let analysis = analysis(unknowns, &order, method)?;
+                    predictions.push(predict(unknowns, workload, method, &analysis));
+                    analyses.push((method, analysis));
+                }
+            }
+        }
+        let candidates = || predictions.iter().filter(|p| is_wanted(p.method));
+        let fitting = candidates().filter(|p| p.memory_bytes <= memory_bytes);
+        let fastest = fitting.min_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        let smallest = candidates().min_by_key(|p| p.memory_bytes);
+        let method = fastest.or(smallest).map_or(iterative.method, |p| p.method);
+        let analysis = analyses.into_iter().find(|(of, _)| *of == method);
         Ok(Self {
-            analysis: Analysis::of(pattern, points, &order, last)?,
             method,
+            predictions,
+            analysis: analysis.map(|(_, analysis)| analysis),
         })
     }
 
-    /// Number of entries of the Cholesky factor.
-    pub fn factor_entries(&self) -> usize {
-        self.analysis.factor_entries()
+    /// What the chosen solver will cost.
+    pub fn prediction(&self) -> &Prediction {
+        let chosen = self.predictions.iter().find(|p| p.method == self.method);
+        chosen.unwrap_or(&self.predictions[0])
     }
 
     /// Prepares the solver.
@@ -72,9 +191,84 @@ impl Plan {
     /// # Errors
     /// If it cannot be prepared.
     pub fn prepare(self, system: &System<'_>) -> Result<Box<dyn TangentSolver>, LinearFailure> {
-        Ok(match self.method {
-            LinearMethod::Direct => Box::new(Whole::new(system, self.analysis)),
-            LinearMethod::Condensed => Box::new(Condensed::new(system, self.analysis)?),
+        Ok(match (self.method, self.analysis) {
+            (LinearMethod::Direct, Some(analysis)) => Box::new(Whole::new(system, analysis)),
+            (LinearMethod::Condensed, Some(analysis)) => {
+                Box::new(Condensed::new(system, analysis)?)
+            }
+            _ => Box::new(Iterative::new(system)?),
         })
+    }
+}
+
+fn analysis(
+    unknowns: Unknowns<'_>,
+    order: &NodeOrder,
+    method: LinearMethod,
+) -> Result<Analysis, LinearFailure> {
+    let last: &[u32] = match method {
+        LinearMethod::Condensed => unknowns.jumps,
+        _ => &[],
+    };
+    let is_last = |block: usize| last.binary_search(&(block as u32)).is_ok();
+    let order = order.unknowns(unknowns.points, is_last);
+    Analysis::of(
+        &unknowns.pattern.row_offset,
+        &unknowns.pattern.columns,
+        order,
+    )
+}
+
+fn predict(
+    unknowns: Unknowns<'_>,
+    workload: Workload,
+    method: LinearMethod,
+    analysis: &Analysis,
+) -> Prediction {
+    let solves = workload.solves();
+    let factorise = analysis.factor_operations() / OPERATIONS;
+    let substitute = 16.0 * analysis.factor_entries() as f64 / BYTES;
+    let jumps = 3.0 * unknowns.jumps.len() as f64;
+    let dense = jumps.powi(3) / 3.0 / OPERATIONS;
+    let (seconds, extra) = match method {
+        LinearMethod::Condensed => {
+            let iterations = 8.0 * 16.0 * jumps.powi(2) / BYTES;
+            let each = substitute + iterations.min(dense);
+            (
+                factorise + 3.0 * dense + solves * each,
+                24.0 * jumps.powi(2),
+            )
+        }
+        _ => {
+            let factorisations = if workload.is_nonlinear { solves } else { 1.0 };
+            (factorisations * factorise + solves * substitute, 0.0)
+        }
+    };
+    Prediction {
+        method,
+        seconds,
+        memory_bytes: analysis.memory_bytes() + extra as usize,
+        factor_entries: analysis.factor_entries(),
+        operations: analysis.factor_operations(),
+    }
+}
+
+/// Time and memory of the multigrid, both by the number of blocks of the matrix: measured.
+fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
+    const SETUP_BYTES: f64 = 4000.0;
+    const ITERATION_BYTES: f64 = 400.0;
+    const MEMORY_BYTES: f64 = 110.0;
+    let blocks = unknowns.pattern.columns.len() as f64;
+    let iterations = if workload.is_nonlinear {
+        30.0 + 20.0 * workload.steps as f64
+    } else {
+        35.0 * workload.steps as f64
+    };
+    Prediction {
+        method: LinearMethod::Iterative,
+        seconds: blocks * (SETUP_BYTES + iterations * ITERATION_BYTES) / BYTES,
+        memory_bytes: (blocks * MEMORY_BYTES) as usize,
+        factor_entries: 0,
+        operations: 0.0,
     }
 }

@@ -18,7 +18,7 @@ impl Whole {
     /// Prepares the solver; `analysis` may have any order.
     pub fn new(system: &System<'_>, analysis: Analysis) -> Self {
         Self {
-            cholesky: Cholesky::new(analysis, &system.rock, &system.discretisation.pattern),
+            cholesky: Cholesky::new(analysis, system.rock_rows()),
             places: system.interface_places(),
             stiffness: None,
         }
@@ -42,7 +42,12 @@ impl TangentSolver for Whole {
         Ok(())
     }
 
-    fn solve(&mut self, right: &[DVec3], _: f64) -> Result<LinearSolution, LinearFailure> {
+    fn solve(
+        &mut self,
+        _: &System<'_>,
+        right: &[DVec3],
+        _: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
         Ok(LinearSolution {
             unknowns: self.cholesky.solve(right),
             iterations: 0,

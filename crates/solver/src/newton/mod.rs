@@ -21,7 +21,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::interface::Interface;
-use crate::linear::{LinearFailure, Plan, TangentSolver};
+use crate::linear::{LinearFailure, Plan, TangentSolver, Unknowns, Workload};
 use crate::system::{State, System, norm};
 use extrapolation::Former;
 use walls::Landing;
@@ -48,7 +48,7 @@ struct Trial {
     landings: Vec<Landing>,
     /// Forces by which the rock resists the unknowns (N).
     rock_forces: Vec<DVec3>,
-    /// Largest force at the last iteration (N).
+    /// Largest of the forces that must balance (N).
     force_scale: f64,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
@@ -60,7 +60,9 @@ impl Newton {
     /// # Errors
     /// If it cannot be prepared.
     pub fn new(system: &System<'_>, settings: NewtonSettings) -> Result<Self, LinearFailure> {
-        let plan = Plan::of(system.problem, &system.discretisation, settings.linear)?;
+        let unknowns = Unknowns::from(&system.discretisation);
+        let workload = Workload::of(system.problem);
+        let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX)?;
         Self::planned(system, settings, plan)
     }
 
@@ -121,10 +123,12 @@ impl Newton {
             former.continue_through(system, &mut guess, load);
         }
         walls::move_supports(system, &mut guess, load);
+        let rock_forces = system.rock_forces(&guess.unknowns);
+        let tractions = system.law_tractions(&guess);
         Trial {
             landings: vec![Landing::default(); guess.facet_points.len()],
-            rock_forces: system.rock_forces(&guess.unknowns),
-            force_scale: 0.0,
+            force_scale: system.force_scale(&rock_forces, &tractions, load),
+            rock_forces,
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
             } else {
@@ -156,7 +160,7 @@ impl Newton {
         let residual = system.residual(&trial.rock_forces, &tractions, trial.state.load);
         let solution = self
             .linear
-            .solve(&residual, self.tolerance(trial, &residual));
+            .solve(system, &residual, self.tolerance(trial, &residual));
         let solution = solution.map_err(Outcome::Linear)?;
         let correction = &solution.unknowns;
         for (unknown, change) in trial.state.unknowns.iter_mut().zip(correction) {
@@ -187,10 +191,11 @@ impl Newton {
     /// Error allowed in a linear solve, against its right-hand side: enough for what the
     /// linearisation is worth, and for the test of the forces.
     fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
-        let enough = 0.1 * self.settings.force * trial.force_scale;
         let size = norm(residual);
+        let wanted = trial.looseness * size.min(trial.force_scale);
+        let enough = 0.1 * self.settings.force * trial.force_scale;
         if size > 0.0 {
-            trial.looseness.max(enough / size)
+            wanted.max(enough) / size
         } else {
             1.0
         }

@@ -1,0 +1,178 @@
+//! The iterative solver: conjugate gradients on all unknowns.
+//!
+//! The preconditioner is a symmetric block Gauss-Seidel step over two blocks: the intact rock, by
+//! one cycle of a multigrid that is set up once a run, and the jumps, by a factorisation of their own
+//! small block, anew for each tangent. Only the jumps see the stiffness of the fractures.
+
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::jump_block::JumpBlock;
+use super::{LinearFailure, LinearSolution, TangentSolver};
+use crate::conjugate_gradients::{
+    ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
+};
+use crate::multigrid::{BlockRows, Multigrid, MultigridFailure, Workspace, rigid_modes};
+use crate::system::System;
+
+/// Iterations after which a linear solve has failed.
+const MAX_ITERATIONS: usize = 2000;
+
+/// Residual, as a share of the right-hand side, at which an iteration that gains nothing more is
+/// taken for one that rounding ended.
+const ROUNDED: f64 = 1e-3;
+
+/// Iterative solver of a system.
+pub struct Iterative {
+    multigrid: Multigrid,
+    workspace: Workspace,
+    /// Unknowns of the intact rock, ascending: all that no facet point moves with.
+    rock: Vec<u32>,
+    jumps: JumpBlock,
+    /// Stiffness of the fractures, one block for each of the interface's columns; none before the first.
+    stiffness: Option<Vec<DMat3>>,
+}
+
+impl Iterative {
+    /// Sets up the multigrid of the rock.
+    ///
+    /// # Errors
+    /// If the rock is not positive definite.
+    pub fn new(system: &System<'_>) -> Result<Self, LinearFailure> {
+        let jumps = &system.discretisation.interface.unknowns;
+        let count = system.discretisation.points.len() as u32;
+        let rock: Vec<u32> = (0..count)
+            .filter(|unknown| jumps.binary_search(unknown).is_err())
+            .collect();
+        let rows = system.rock_rows();
+        let multigrid = Multigrid::of_sub_block(rows, &rock, &modes(system, &rock));
+        let multigrid = multigrid.map_err(|failure| explain(&failure, &rock))?;
+        Ok(Self {
+            workspace: multigrid.workspace(),
+            jumps: JumpBlock::of(system, &rock)?,
+            stiffness: None,
+            multigrid,
+            rock,
+        })
+    }
+}
+
+/// Rigid motions of the rock at each of `rock`'s unknowns.
+fn modes(system: &System<'_>, rock: &[u32]) -> Vec<[DVec3; 6]> {
+    let nodes = &system.problem.mesh.nodes;
+    let points = &system.discretisation.points;
+    let (low, high) = nodes.iter().fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), node| (low.min(*node), high.max(*node)),
+    );
+    let centre = 0.5 * (low + high);
+    rock.par_iter()
+        .map(|&unknown| {
+            let unknown = unknown as usize;
+            // A jump that is held everywhere has no part in a motion of the rock.
+            let free = match (
+                system.discretisation.supports.hold(unknown),
+                points.sector(unknown),
+            ) {
+                (_, (1.., _)) => DMat3::ZERO,
+                (Some(hold), _) => hold.free,
+                (None, _) => DMat3::IDENTITY,
+            };
+            rigid_modes(nodes[points.node[unknown] as usize], centre, free)
+        })
+        .collect()
+}
+
+fn explain(failure: &MultigridFailure, rock: &[u32]) -> LinearFailure {
+    match failure {
+        MultigridFailure::NotPositive(row) => LinearFailure::Indefinite(rock[*row] as usize),
+        MultigridFailure::NotFinite => LinearFailure::NotFinite,
+    }
+}
+
+impl TangentSolver for Iterative {
+    fn update(&mut self, system: &System<'_>, tangents: &[DMat3]) -> Result<(), LinearFailure> {
+        let stiffness = system.discretisation.interface.stiffness(tangents);
+        if self.stiffness.as_ref() != Some(&stiffness) {
+            self.stiffness = None;
+            self.jumps.factorise(system, &stiffness)?;
+            self.stiffness = Some(stiffness);
+        }
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
+        let rows = system.rock_rows();
+        let interface = &system.discretisation.interface;
+        let stiffness = self.stiffness.as_deref().unwrap_or_default();
+        let mut unknowns = vec![DVec3::ZERO; right.len()];
+        let mut parts = Parts {
+            rock: vec![DVec3::ZERO; self.rock.len()],
+            correction: vec![DVec3::ZERO; self.rock.len()],
+        };
+        let report = conjugate_gradients(
+            |vector, product| {
+                rows.multiply(vector, product);
+                interface.add_product(stiffness, vector, product);
+            },
+            |residual, correction| {
+                let workspace = &mut self.workspace;
+                precondition(
+                    (&self.multigrid, workspace),
+                    (&self.rock, &self.jumps, rows),
+                    &mut parts,
+                    (residual, correction),
+                );
+            },
+            right,
+            &mut unknowns,
+            ConjugateGradientSettings {
+                tolerance,
+                max_iterations: MAX_ITERATIONS,
+            },
+        );
+        let last = report.residuals.last().copied().unwrap_or(f64::NAN);
+        match report.outcome {
+            ConjugateGradientOutcome::NotFinite => Err(LinearFailure::NotFinite),
+            // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
+            _ if last <= tolerance.max(ROUNDED) => Ok(LinearSolution {
+                unknowns,
+                iterations: report.iterations,
+            }),
+            _ => Err(LinearFailure::Stalled(report.iterations)),
+        }
+    }
+}
+
+/// Vectors over the unknowns of the rock.
+struct Parts {
+    rock: Vec<DVec3>,
+    correction: Vec<DVec3>,
+}
+
+/// One symmetric step: jumps, rock, jumps.
+fn precondition(
+    (multigrid, workspace): (&Multigrid, &mut Workspace),
+    (rock, jumps, rows): (&[u32], &JumpBlock, BlockRows<'_>),
+    parts: &mut Parts,
+    (residual, correction): (&[DVec3], &mut [DVec3]),
+) {
+    let first = jumps.solve(&jumps.gather(residual));
+    let gathered = parts.rock.par_iter_mut().zip(rock);
+    gathered.for_each(|(force, &unknown)| *force = residual[unknown as usize]);
+    jumps.subtract_from_rock(rows, &first, &mut parts.rock);
+    multigrid.apply(&parts.rock, &mut parts.correction, workspace);
+    correction.fill(DVec3::ZERO);
+    for (&unknown, change) in rock.iter().zip(&parts.correction) {
+        correction[unknown as usize] = *change;
+    }
+    let back = jumps.solve(&jumps.forces_of(rows, correction));
+    for ((&unknown, first), back) in jumps.unknowns().iter().zip(first).zip(back) {
+        correction[unknown as usize] = first - back;
+    }
+}

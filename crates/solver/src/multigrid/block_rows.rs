@@ -1,0 +1,122 @@
+//! A view of a symmetric matrix as rows of 3x3 blocks, and sub-blocks of it.
+
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::sparse::{row_shares, sum_up};
+
+/// Rows that one task treats; fixed, so that no result depends on the number of threads.
+const ROWS_PER_TASK: usize = 1024;
+/// Marks a row of the larger matrix that is not kept.
+pub(super) const DROPPED: u32 = u32::MAX;
+
+/// A symmetric sparse matrix of 3x3 blocks, row by row, both triangles stored.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockRows<'a> {
+    /// Start of each block row; one entry more than there are rows.
+    pub row_offset: &'a [usize],
+    /// Column of each block, ascending in each row.
+    pub columns: &'a [u32],
+    /// The blocks; entry `(r, c)` of a block is `block.col(c)[r]`.
+    pub blocks: &'a [DMat3],
+}
+
+/// A matrix like [`BlockRows`] that owns its storage.
+#[derive(Debug, Clone, Default)]
+pub struct OwnedBlockRows {
+    /// Start of each block row; one entry more than there are rows.
+    pub row_offset: Vec<usize>,
+    /// Column of each block, ascending in each row.
+    pub columns: Vec<u32>,
+    /// The blocks.
+    pub blocks: Vec<DMat3>,
+}
+
+impl<'a> BlockRows<'a> {
+    /// Number of block rows.
+    pub fn rows(&self) -> usize {
+        self.row_offset.len() - 1
+    }
+
+    /// Columns and blocks of a row.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (u32, &'a DMat3)> + use<'a> {
+        let range = self.row_offset[row]..self.row_offset[row + 1];
+        let columns = self.columns[range.clone()].iter().copied();
+        columns.zip(&self.blocks[range])
+    }
+
+    /// `product = A vector`, both of one entry a block row, without allocating.
+    pub fn multiply(&self, vector: &[DVec3], product: &mut [DVec3]) {
+        let tasks = product.par_chunks_mut(ROWS_PER_TASK).enumerate();
+        tasks.for_each(|(task, chunk)| {
+            for (place, sum) in chunk.iter_mut().enumerate() {
+                let row = self.row(task * ROWS_PER_TASK + place);
+                *sum = row.fold(DVec3::ZERO, |sum, (column, block)| {
+                    sum + *block * vector[column as usize]
+                });
+            }
+        });
+    }
+
+    /// The rows and columns `kept` (ascending) as a matrix of their own, numbered in that order.
+    pub fn sub_block(&self, kept: &[u32]) -> OwnedBlockRows {
+        let number = numbers(self.rows(), kept);
+        let mut row_offset = self.kept_counts(kept, &number);
+        sum_up(&mut row_offset);
+        let mut columns = vec![0; row_offset[kept.len()]];
+        let mut blocks = vec![DMat3::ZERO; row_offset[kept.len()]];
+        let shares = row_shares(&row_offset, ROWS_PER_TASK, &mut columns, &mut blocks);
+        shares.into_par_iter().for_each(|share| {
+            let target = share.columns.iter_mut().zip(share.blocks);
+            let source = kept[share.rows]
+                .iter()
+                .flat_map(|&row| self.kept_row(row, &number));
+            for ((column, block), (from, value)) in target.zip(source) {
+                (*column, *block) = (from, *value);
+            }
+        });
+        OwnedBlockRows {
+            row_offset,
+            columns,
+            blocks,
+        }
+    }
+
+    /// Blocks of a row whose columns are kept, under their new numbers.
+    pub(super) fn kept_row(
+        &self,
+        row: u32,
+        number: &'a [u32],
+    ) -> impl Iterator<Item = (u32, &'a DMat3)> + use<'a> {
+        self.row(row as usize)
+            .map(|(column, block)| (number[column as usize], block))
+            .filter(|(column, _)| *column != DROPPED)
+    }
+
+    /// Zero, and then the number of kept blocks in each kept row.
+    fn kept_counts(&self, kept: &[u32], number: &[u32]) -> Vec<usize> {
+        let count = |&row: &u32| self.kept_row(row, number).count();
+        let counts = kept.par_iter().map(count);
+        rayon::iter::once(0).chain(counts).collect()
+    }
+}
+
+impl OwnedBlockRows {
+    /// A view.
+    pub fn view(&self) -> BlockRows<'_> {
+        BlockRows {
+            row_offset: &self.row_offset,
+            columns: &self.columns,
+            blocks: &self.blocks,
+        }
+    }
+}
+
+/// New number of each row, [`DROPPED`] for those not kept.
+pub(super) fn numbers(rows: usize, kept: &[u32]) -> Vec<u32> {
+    let mut number = vec![DROPPED; rows];
+    for (new, &old) in kept.iter().enumerate() {
+        number[old as usize] = new as u32;
+    }
+    number
+}

@@ -1,0 +1,120 @@
+//! The V-cycle.
+
+use rayon::prelude::*;
+
+use super::coarsest::Dense;
+use super::smoother::{Smoother, Work, residual};
+use super::sparse::{Sparse, Transpose, rows_per_task};
+
+/// Smoothings of a coarsest level that is too large to invert, as after disconnected bodies.
+const LAST_SMOOTHINGS: usize = 2;
+
+/// A level and the way to the next.
+#[derive(Debug, Clone)]
+pub(super) struct Level<const N: usize> {
+    pub(super) matrix: Sparse<N, N>,
+    pub(super) smoother: Smoother,
+    pub(super) below: Below<N>,
+}
+
+/// What is below a level.
+#[derive(Debug, Clone)]
+pub(super) enum Below<const N: usize> {
+    /// Another level.
+    Level(Transfer<N>),
+    /// None: this level is inverted.
+    Inverse(Dense),
+    /// None: nothing couples any more, or hardly; this level is smoothed.
+    Nothing,
+}
+
+/// The prolongator, and its transpose.
+#[derive(Debug, Clone)]
+pub(super) struct Transfer<const N: usize> {
+    pub(super) prolongator: Sparse<N, 6>,
+    pub(super) transpose: Transpose,
+}
+
+impl<const N: usize> Transfer<N> {
+    /// `r_c = P^T r`.
+    fn restrict(&self, residual: &[[f32; N]], coarse: &mut [[f32; 6]]) {
+        let rows = rows_per_task::<6>();
+        let tasks = coarse.par_chunks_mut(rows).enumerate();
+        tasks.for_each(|(task, chunk)| {
+            for (place, sum) in chunk.iter_mut().enumerate() {
+                *sum = self.restricted(task * rows + place, residual);
+            }
+        });
+    }
+
+    fn restricted(&self, aggregate: usize, residual: &[[f32; N]]) -> [f32; 6] {
+        let mut sum = [0.0; 6];
+        for &(row, position) in self.transpose.column(aggregate) {
+            let block = &self.prolongator.blocks[position as usize];
+            for (line, &entry) in block.iter().zip(&residual[row as usize]) {
+                for (sum, &weight) in sum.iter_mut().zip(line) {
+                    *sum += weight * entry;
+                }
+            }
+        }
+        sum
+    }
+
+    /// `z += P z_c`.
+    fn prolong(&self, coarse: &[[f32; 6]], solution: &mut [[f32; N]]) {
+        let rows = rows_per_task::<N>();
+        let tasks = solution.par_chunks_mut(rows).enumerate();
+        tasks.for_each(|(task, chunk)| {
+            for (place, sum) in chunk.iter_mut().enumerate() {
+                for (column, block) in self.prolongator.row(task * rows + place) {
+                    for (sum, line) in sum.iter_mut().zip(block) {
+                        let both = line.iter().zip(&coarse[column]);
+                        *sum += both.map(|(weight, entry)| weight * entry).sum::<f32>();
+                    }
+                }
+            }
+        });
+    }
+
+    fn bytes(&self) -> usize {
+        self.prolongator.bytes() + self.transpose.bytes()
+    }
+}
+
+impl<const N: usize> Level<N> {
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        let below = match &self.below {
+            Below::Level(transfer) => transfer.bytes(),
+            Below::Inverse(dense) => dense.bytes(),
+            Below::Nothing => 0,
+        };
+        self.matrix.bytes() + below
+    }
+
+    /// One symmetric V-cycle from zero: `work.solution` from `work.right`.
+    pub(super) fn cycle(
+        &self,
+        work: &mut Work<N>,
+        coarser: &[Level<6>],
+        coarser_work: &mut [Work<6>],
+    ) {
+        match (&self.below, coarser, coarser_work) {
+            (Below::Inverse(dense), _, _) => dense.solve(&work.right, &mut work.solution),
+            (Below::Level(transfer), [next, coarser @ ..], [next_work, coarser_work @ ..]) => {
+                self.smoother.start(&self.matrix, work);
+                residual(&self.matrix, work);
+                transfer.restrict(&work.step, &mut next_work.right);
+                next.cycle(next_work, coarser, coarser_work);
+                transfer.prolong(&next_work.solution, &mut work.solution);
+                self.smoother.resume(&self.matrix, work);
+            }
+            _ => {
+                self.smoother.start(&self.matrix, work);
+                for _ in 1..LAST_SMOOTHINGS {
+                    self.smoother.resume(&self.matrix, work);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Cholesky factors of small dense blocks.
+
+/// Inverse of the Cholesky factor of a block, `L^-1` with `L L^T = A`, lower triangular, as rows.
+///
+/// A pivot not above `least` times the largest diagonal entry counts as zero: its row and column
+/// are left out of the factor, and the inverse has zeros there. The flags tell which were kept.
+pub(super) fn inverse_factor<const N: usize>(
+    block: &[[f64; N]; N],
+    least: f64,
+) -> ([[f64; N]; N], [bool; N]) {
+    let largest = (0..N).map(|i| block[i][i]).fold(0.0, f64::max);
+    let mut factor = [[0.0; N]; N];
+    let mut kept = [false; N];
+    for j in 0..N {
+        let pivot = block[j][j] - (0..j).map(|k| factor[j][k] * factor[j][k]).sum::<f64>();
+        kept[j] = pivot > least * largest && pivot.is_finite();
+        if !kept[j] {
+            continue;
+        }
+        factor[j][j] = pivot.sqrt();
+        for i in j + 1..N {
+            let sum: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+            factor[i][j] = (block[i][j] - sum) / factor[j][j];
+        }
+    }
+    (inverse(&factor, &kept), kept)
+}
+
+fn inverse<const N: usize>(factor: &[[f64; N]; N], kept: &[bool; N]) -> [[f64; N]; N] {
+    let mut inverse = [[0.0; N]; N];
+    for j in (0..N).filter(|&j| kept[j]) {
+        inverse[j][j] = 1.0 / factor[j][j];
+        for i in (j + 1..N).filter(|&i| kept[i]) {
+            let sum: f64 = (j..i).map(|k| factor[i][k] * inverse[k][j]).sum();
+            inverse[i][j] = -sum / factor[i][i];
+        }
+    }
+    inverse
+}
+
+/// `C = A B` of small blocks as rows.
+pub(super) fn product<const M: usize, const K: usize, const L: usize>(
+    a: &[[f64; K]; M],
+    b: &[[f64; L]; K],
+) -> [[f64; L]; M] {
+    let mut c = [[0.0; L]; M];
+    for (c, a) in c.iter_mut().zip(a) {
+        for (a, b) in a.iter().zip(b) {
+            for (c, b) in c.iter_mut().zip(b) {
+                *c += a * b;
+            }
+        }
+    }
+    c
+}
+
+/// Transpose of a small block.
+pub(super) fn transpose<T: Copy + Default, const M: usize, const L: usize>(
+    block: &[[T; L]; M],
+) -> [[T; M]; L] {
+    let mut result = [[T::default(); M]; L];
+    for (row, line) in block.iter().enumerate() {
+        for (column, entry) in line.iter().enumerate() {
+            result[column][row] = *entry;
+        }
+    }
+    result
+}
+
+/// A block in double precision.
+pub(super) fn widen<const M: usize, const L: usize>(block: &[[f32; L]; M]) -> [[f64; L]; M] {
+    block.map(|line| line.map(f64::from))
+}
+
+/// A block in single precision.
+pub(super) fn narrow<const M: usize, const L: usize>(block: &[[f64; L]; M]) -> [[f32; L]; M] {
+    block.map(|line| line.map(|entry| entry as f32))
+}
