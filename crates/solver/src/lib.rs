@@ -8,6 +8,7 @@
 
 mod analysis;
 mod assembly;
+mod cell_forces;
 mod folded;
 mod interface;
 mod linear;
