@@ -16,7 +16,7 @@ use lie_mesh::Shape;
 use rayon::prelude::*;
 
 use crate::matrix::BlockMatrix;
-use crate::pattern::Pattern;
+use crate::pattern::{self, Pattern};
 use crate::points::Points;
 use crate::problem::Problem;
 use crate::supports::Supports;
@@ -25,6 +25,8 @@ use crate::supports::Supports;
 const NODES_PER_TASK: usize = 256;
 /// Blocks of cells that are kept at a time (16 MB), unless that makes more than [`MOST_WAVES`].
 const BLOCKS_PER_WAVE: usize = 1 << 18;
+/// Nodes of a linear tetrahedron; no other cell has as many.
+const TETRAHEDRON: usize = 4;
 /// Every wave looks at all nodes.
 const MOST_WAVES: usize = 32;
 
@@ -71,35 +73,22 @@ pub(crate) fn rock_stiffness(frame: Frame<'_>) -> BlockMatrix {
         .into_par_iter()
         .map(|_| DMat3::ZERO)
         .collect();
-    let mut shares = split_by_nodes(frame, &mut blocks);
+    let first_block: Vec<usize> = frame
+        .points
+        .offset
+        .iter()
+        .map(|&row| frame.pattern.row_offset[row as usize])
+        .collect();
+    let mut shares = pattern::split(&mut blocks, &first_block, NODES_PER_TASK);
     let mut rock = Rock::of(frame);
     for cells in rock.waves() {
         rock.compute(cells);
         shares.par_iter_mut().for_each_init(
-            || vec![0; frame.problem.mesh.nodes.len()],
-            |place, (nodes, rows)| rock.add_to_share(nodes.clone(), rows, place),
+            || Scratch::of(frame),
+            |scratch, (nodes, rows)| rock.add_to_share(nodes.clone(), rows, scratch),
         );
     }
     BlockMatrix { blocks }
-}
-
-/// Cuts the blocks of the matrix into the shares of consecutive nodes.
-fn split_by_nodes<'a>(
-    frame: Frame<'_>,
-    blocks: &'a mut [DMat3],
-) -> Vec<(Range<usize>, &'a mut [DMat3])> {
-    let node_count = frame.problem.mesh.nodes.len();
-    let mut rest = blocks;
-    let mut shares = Vec::new();
-    for start in (0..node_count).step_by(NODES_PER_TASK) {
-        let end = (start + NODES_PER_TASK).min(node_count);
-        let rows = frame.points.offset[start] as usize..frame.points.offset[end] as usize;
-        let length = frame.pattern.row_offset[rows.end] - frame.pattern.row_offset[rows.start];
-        let (share, tail) = rest.split_at_mut(length);
-        shares.push((start..end, share));
-        rest = tail;
-    }
-    shares
 }
 
 /// Source of the rows of cells, for the cells of one wave.
@@ -173,32 +162,55 @@ impl<'a> Rock<'a> {
         });
     }
 
-    /// Row `local` of the stiffness of a cell; `tetrahedron` is room for it.
-    fn row<'r>(
-        &'r self,
-        cell: usize,
-        local: usize,
-        tetrahedron: &'r mut [DMat3; 4],
-    ) -> &'r [DMat3] {
-        let Frame { problem, .. } = self.frame;
-        let nodes = problem.mesh.cells.nodes_of(cell);
-        if problem.mesh.cells.shapes[cell] != Shape::Tet4 {
-            let start = self.stride * (cell - self.cells.start) + local * nodes.len();
-            return &self.matrices[start..start + nodes.len()];
+    /// Row of a cell's stiffness; `tetrahedron` is room for it.
+    fn row<'r>(&'r self, visit: &Visit, tetrahedron: &'r mut [DMat3; 4]) -> &'r [DMat3] {
+        let count = visit.count as usize;
+        if count != TETRAHEDRON {
+            let matrix = self.stride * (visit.cell as usize - self.cells.start);
+            return &self.matrices[matrix + visit.local as usize * count..][..count];
         }
-        let positions = [0, 1, 2, 3].map(|b| problem.mesh.nodes[nodes[b] as usize]);
-        let lame = self.lame[problem.rock_of_cell[cell] as usize];
-        kernel::tetrahedron_row(&positions, lame, local, tetrahedron);
+        let mesh = &self.frame.problem.mesh;
+        let positions = visit.nodes.map(|node| mesh.nodes[node as usize]);
+        let lame = self.lame[visit.rock as usize];
+        kernel::tetrahedron_row(&positions, lame, visit.local as usize, tetrahedron);
         tetrahedron
     }
 
-    /// Adds what the cells of the wave contribute to the rows of consecutive nodes. `place` is room
-    /// for a number a node.
-    fn add_to_share(&self, nodes: Range<usize>, rows: &mut [DMat3], place: &mut [u32]) {
+    fn visit(&self, slot: u32) -> Visit {
+        let Frame {
+            problem, pattern, ..
+        } = self.frame;
+        let cells = &problem.mesh.cells;
+        let (cell, range) = pattern.cell_of_slot.locate(slot, cells);
+        let mut nodes = [0; TETRAHEDRON];
+        if range.len() == TETRAHEDRON {
+            nodes.copy_from_slice(&cells.nodes[range.clone()]);
+        }
+        Visit {
+            cell: cell as u32,
+            local: slot - range.start as u32,
+            count: range.len() as u32,
+            nodes,
+            rock: match self.lame.len() {
+                1 => 0,
+                _ => problem.rock_of_cell[cell],
+            },
+        }
+    }
+
+    /// Adds what the cells of the wave contribute to the rows of consecutive nodes.
+    fn add_to_share(&self, nodes: Range<usize>, rows: &mut [DMat3], scratch: &mut Scratch) {
         let Frame {
             points, pattern, ..
         } = self.frame;
-        let mut rest = rows;
+        let Scratch { place, visits } = scratch;
+        // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for them.
+        visits.clear();
+        for node in nodes.clone() {
+            let slots = self.frame.slots(node, &self.slots).iter();
+            visits.extend(slots.map(|&slot| self.visit(slot)));
+        }
+        let (mut rest, mut visits) = (rows, visits.as_slice());
         for node in nodes {
             let neighbours = pattern.neighbours.of(node);
             let mut length = 0;
@@ -206,63 +218,97 @@ impl<'a> Rock<'a> {
                 place[other as usize] = length;
                 length += points.of_node(other as usize).len() as u32;
             }
-            let own = points.of_node(node);
-            let (rows, tail) = rest.split_at_mut(own.len() * length as usize);
+            let (rows, tail) = rest.split_at_mut(points.of_node(node).len() * length as usize);
             rest = tail;
-            if neighbours
-                .iter()
-                .all(|&other| self.is_plain[other as usize])
-            {
-                self.add_plain(node, rows, place);
+            let slots = self.frame.slots(node, &self.slots);
+            let (own, others) = visits.split_at(slots.len());
+            visits = others;
+            let is_plain = |&other: &u32| self.is_plain[other as usize];
+            if neighbours.iter().all(is_plain) {
+                self.add_plain(slots, own, rows, place);
             } else {
-                self.add_general(own, node, rows, place);
+                self.add_general(node, slots, own, rows, place);
             }
         }
     }
 
     /// The row of a node whose neighbours, like itself, have one sector and no hold.
-    fn add_plain(&self, node: usize, row: &mut [DMat3], place: &[u32]) {
-        let cells = &self.frame.problem.mesh.cells;
+    fn add_plain(&self, slots: &[u32], visits: &[Visit], row: &mut [DMat3], place: &[u32]) {
         let mut tetrahedron = [DMat3::ZERO; 4];
-        for &slot in self.frame.slots(node, &self.slots) {
-            let cell = self.frame.pattern.cell_of_slot[slot as usize] as usize;
-            let range = cells.range(cell);
-            let blocks = self.row(cell, slot as usize - range.start, &mut tetrahedron);
-            for (block, &other) in blocks.iter().zip(&cells.nodes[range]) {
+        for (&slot, visit) in slots.iter().zip(visits) {
+            let blocks = self.row(visit, &mut tetrahedron);
+            let first = (slot - visit.local) as usize;
+            let nodes = match visit.count as usize {
+                TETRAHEDRON => &visit.nodes,
+                count => &self.frame.problem.mesh.cells.nodes[first..first + count],
+            };
+            for (block, &other) in blocks.iter().zip(nodes) {
                 row[place[other as usize] as usize] += *block;
             }
         }
     }
 
     /// The rows of any node, row after row of equal length.
-    fn add_general(&self, own: Range<usize>, node: usize, rows: &mut [DMat3], place: &[u32]) {
+    fn add_general(
+        &self,
+        node: usize,
+        slots: &[u32],
+        visits: &[Visit],
+        rows: &mut [DMat3],
+        place: &[u32],
+    ) {
         let Frame {
             points, supports, ..
         } = self.frame;
         let cells = &self.frame.problem.mesh.cells;
         let mut tetrahedron = [DMat3::ZERO; 4];
-        for &slot in self.frame.slots(node, &self.slots) {
-            let cell = self.frame.pattern.cell_of_slot[slot as usize] as usize;
-            let range = cells.range(cell);
-            let local = slot as usize - range.start;
-            let blocks = self.row(cell, local, &mut tetrahedron);
+        for (&slot, visit) in slots.iter().zip(visits) {
+            let blocks = self.row(visit, &mut tetrahedron);
             let point = points.of_cell_node[slot as usize] as usize;
             let target = Target {
                 points,
                 point,
-                own: own.clone(),
+                own: points.of_node(node),
             };
-            for (block, other_slot) in blocks.iter().zip(range.clone()) {
+            for (block, other_slot) in blocks.iter().zip((slot - visit.local) as usize..) {
                 let other = points.of_cell_node[other_slot] as usize;
                 let start = place[cells.nodes[other_slot] as usize] as usize;
                 let block = supports.project_block(point, other, *block);
                 target.scatter(other, block, start, rows);
             }
             if let Some(hold) = supports.hold(point) {
-                let scale = trace(blocks[local]) / 3.0;
+                let scale = trace(blocks[visit.local as usize]) / 3.0;
                 let block = scale * (DMat3::IDENTITY - hold.free);
                 target.scatter(point, block, place[node] as usize, rows);
             }
+        }
+    }
+}
+
+/// One occurrence of a node in a cell.
+struct Visit {
+    cell: u32,
+    /// Number of the node within the cell.
+    local: u32,
+    /// Number of the cell's nodes.
+    count: u32,
+    /// Nodes of a linear tetrahedron.
+    nodes: [u32; TETRAHEDRON],
+    rock: u32,
+}
+
+/// Room that a thread uses again and again.
+struct Scratch {
+    /// For the neighbours of a node, where their blocks start in its rows.
+    place: Vec<u32>,
+    visits: Vec<Visit>,
+}
+
+impl Scratch {
+    fn of(frame: Frame<'_>) -> Self {
+        Self {
+            place: vec![0; frame.problem.mesh.nodes.len()],
+            visits: Vec::new(),
         }
     }
 }

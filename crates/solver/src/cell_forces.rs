@@ -1,7 +1,8 @@
 //! Forces that cells exert on their nodes: weight, initial stress, prescribed displacements.
 //!
-//! Each cell is integrated once, in waves that bound the memory; then every point adds up what the
-//! cells around it have for it, in ascending order, so no sum depends on the number of threads.
+//! Each cell is integrated once, in waves that bound the memory. Every thread owns a range of points
+//! and adds what the cells of the wave have for them, in ascending order, so no sum depends on the
+//! number of threads.
 
 use glam::{DMat3, DVec3};
 use lie_core::kernel::{self, MAX_NODES};
@@ -11,10 +12,8 @@ use crate::assembly::Frame;
 
 /// Cells of one task.
 const CELLS_PER_TASK: usize = 256;
-/// Cells whose forces are kept at a time, unless that makes more than [`MOST_WAVES`].
-const CELLS_PER_WAVE: usize = 1 << 17;
-/// Every wave looks at all points.
-const MOST_WAVES: usize = 16;
+/// Cells whose forces are kept at a time.
+const CELLS_PER_WAVE: usize = 1 << 16;
 
 /// Weight of the rock (N) on all points: `f_a = int N_a rho g dV`.
 pub(crate) fn gravity(frame: Frame<'_>) -> Vec<DVec3> {
@@ -45,21 +44,26 @@ pub(crate) fn initial_stress(frame: Frame<'_>) -> Vec<DVec3> {
 fn gather(frame: Frame<'_>, of_cell: impl Fn(usize, &[DVec3], &mut [DVec3]) + Sync) -> Vec<DVec3> {
     let offsets = &frame.problem.mesh.cells.offsets;
     let cell_count = frame.problem.mesh.cells.len();
-    let wave = CELLS_PER_WAVE.max(cell_count.div_ceil(MOST_WAVES));
+    let share = frame
+        .points
+        .len()
+        .div_ceil(rayon::current_num_threads())
+        .max(1);
     let mut sums = vec![DVec3::ZERO; frame.points.len()];
-    for start in (0..cell_count).step_by(wave) {
-        let cells = start..(start + wave).min(cell_count);
+    for start in (0..cell_count).step_by(CELLS_PER_WAVE) {
+        let cells = start..(start + CELLS_PER_WAVE).min(cell_count);
         let slots = offsets[cells.start] as usize..offsets[cells.end] as usize;
         let of_slot = of_cells(frame, cells, &of_cell);
-        sums.par_iter_mut().enumerate().for_each(|(point, sum)| {
-            let node = frame.points.node[point] as usize;
-            for &slot in frame.slots(node, &slots) {
-                let slot = slot as usize;
-                if frame.points.of_cell_node[slot] as usize == point {
-                    *sum += of_slot[slot - slots.start];
+        let points = &frame.points.of_cell_node[slots];
+        sums.par_chunks_mut(share)
+            .enumerate()
+            .for_each(|(task, sums)| {
+                for (force, &point) in of_slot.iter().zip(points) {
+                    if let Some(sum) = sums.get_mut((point as usize).wrapping_sub(task * share)) {
+                        *sum += *force;
+                    }
                 }
-            }
-        });
+            });
     }
     sums
 }
