@@ -34,25 +34,63 @@ fn gradients(point: &RulePoint, nodes: &[DVec3]) -> Gradients {
     }
 }
 
-/// Adds row `a` of the stiffness of a cell with the given `nodes` (m) to `blocks[b]` (N/m):
+/// Stiffness of a cell with the given `nodes` (m), `blocks[a n + b] = K_ab` (N/m) for `n` nodes:
 /// `K_ab = int lambda g_a (x) g_b + mu g_b (x) g_a + mu (g_a . g_b) I dV`, `g = grad N`.
-pub fn add_stiffness_row(
-    shape: Shape,
-    nodes: &[DVec3],
-    rock: &Rock,
-    a: usize,
-    blocks: &mut [DMat3],
-) {
-    let (lambda, mu) = rock.lame();
+///
+/// All three terms follow from `M_ab = int g_a (x) g_b dV`, and `K_ba = K_ab^T`.
+pub fn stiffness(shape: Shape, nodes: &[DVec3], rock: &Rock, blocks: &mut [DMat3]) {
+    let count = nodes.len();
+    blocks.fill(DMat3::ZERO);
     for point in &rule(shape).points {
         let Gradients { of_node: g, volume } = gradients(point, nodes);
-        for b in 0..nodes.len() {
-            blocks[b] += volume
-                * (lambda * outer(g[a], g[b])
-                    + mu * outer(g[b], g[a])
-                    + mu * g[a].dot(g[b]) * DMat3::IDENTITY);
+        for a in 0..count {
+            let scaled = volume * g[a];
+            for (b, block) in blocks[a * count..][..count].iter_mut().enumerate().skip(a) {
+                *block += outer(scaled, g[b]);
+            }
         }
     }
+    let lame = rock.lame();
+    for a in 0..count {
+        for b in a..count {
+            let block = of_gradients(blocks[a * count + b], lame);
+            blocks[a * count + b] = block;
+            blocks[b * count + a] = block.transpose();
+        }
+    }
+}
+
+/// `lambda M + mu M^T + mu tr(M) I`.
+fn of_gradients(m: DMat3, (lambda, mu): (f64, f64)) -> DMat3 {
+    let trace = m.x_axis.x + m.y_axis.y + m.z_axis.z;
+    lambda * m + mu * m.transpose() + DMat3::from_diagonal(DVec3::splat(mu * trace))
+}
+
+/// Row `a` of [`stiffness`] of a linear tetrahedron, `row[b] = K_ab` (N/m), from Lamé's constants
+/// (Pa).
+///
+/// With edges `e` from node `a`, the gradients at the other nodes are `e x e / 6V`; a row adds up to
+/// zero, because translations cost nothing.
+pub fn tetrahedron_row(
+    nodes: &[DVec3; 4],
+    (lambda, mu): (f64, f64),
+    a: usize,
+    row: &mut [DMat3; 4],
+) {
+    // The order a, a^1, a^2, a^3 is an even permutation: the volume keeps its sign.
+    let [e1, e2, e3] = [1, 2, 3].map(|k| nodes[a ^ k] - nodes[a]);
+    let faces = [e2.cross(e3), e3.cross(e1), e1.cross(e2)];
+    let own = -1.0 / (6.0 * e1.dot(faces[0])) * (faces[0] + faces[1] + faces[2]);
+    let (by_lambda, by_mu) = (lambda * own, mu * own);
+    let mut sum = DMat3::ZERO;
+    for (k, face) in faces.into_iter().enumerate() {
+        let block = outer(by_lambda, face)
+            + outer(face, by_mu)
+            + DMat3::from_diagonal(DVec3::splat(by_mu.dot(face)));
+        sum += block;
+        row[a ^ (k + 1)] = block;
+    }
+    row[a] = -sum;
 }
 
 /// Adds the nodal forces of a stress field, `f_a = int sigma(x) . grad N_a dV` (N).
@@ -144,13 +182,28 @@ mod tests {
     };
 
     fn forces(displacement: &[DVec3]) -> Vec<DVec3> {
-        (0..4)
-            .map(|a| {
-                let mut row = [DMat3::ZERO; 4];
-                add_stiffness_row(Shape::Tet4, &NODES, &ROCK, a, &mut row);
-                row.iter().zip(displacement).map(|(k, u)| *k * *u).sum()
-            })
+        let mut blocks = [DMat3::ZERO; 16];
+        stiffness(Shape::Tet4, &NODES, &ROCK, &mut blocks);
+        blocks
+            .chunks(4)
+            .map(|row| row.iter().zip(displacement).map(|(k, u)| *k * *u).sum())
             .collect()
+    }
+
+    #[test]
+    fn rows_of_a_tetrahedron_are_those_of_its_stiffness() {
+        let mut blocks = [DMat3::ZERO; 16];
+        stiffness(Shape::Tet4, &NODES, &ROCK, &mut blocks);
+        for (a, expected) in blocks.chunks(4).enumerate() {
+            let mut row = [DMat3::ZERO; 4];
+            tetrahedron_row(&NODES, ROCK.lame(), a, &mut row);
+            for (block, expected) in row.iter().zip(expected) {
+                let difference = *block - *expected;
+                let largest = difference.to_cols_array().map(f64::abs);
+                let largest = largest.into_iter().fold(0.0, f64::max);
+                assert!(largest < 1e-14 * ROCK.young_modulus, "{block} {expected}");
+            }
+        }
     }
 
     #[test]

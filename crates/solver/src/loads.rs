@@ -4,7 +4,8 @@ use glam::DVec3;
 use lie_core::load_areas;
 use rayon::prelude::*;
 
-use crate::assembly::{self, Frame};
+use crate::assembly::Frame;
+use crate::cell_forces;
 use crate::interface::Interface;
 use crate::problem::SurfaceLoad;
 
@@ -21,7 +22,7 @@ pub struct Loads {
 
 impl Loads {
     pub(crate) fn of(frame: Frame<'_>, interface: &Interface) -> Self {
-        let mut on_points = assembly::gravity_forces(frame);
+        let mut on_points = cell_forces::gravity(frame);
         add_surface_loads(frame, &mut on_points);
         let mut applied = on_unknowns(frame, &on_points);
         // The fluid pushes the walls apart: it resists closing like a traction of -p n.
@@ -35,8 +36,8 @@ impl Loads {
         };
         Self {
             applied,
-            prescribed: negative(assembly::prescribed_forces(frame)),
-            initial: negative(assembly::initial_stress_forces(frame)),
+            prescribed: negative(cell_forces::prescribed(frame)),
+            initial: negative(cell_forces::initial_stress(frame)),
         }
     }
 }

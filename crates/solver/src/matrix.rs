@@ -13,20 +13,33 @@ pub struct BlockMatrix {
 }
 
 impl BlockMatrix {
-    /// `K y`. Each row is summed by one thread in the order of its columns, so the result does not
-    /// depend on the number of threads.
+    /// `K y`.
     pub fn times(&self, pattern: &Pattern, vector: &[DVec3]) -> Vec<DVec3> {
-        (0..vector.len())
-            .into_par_iter()
-            .map(|row| {
-                let range = pattern.row(row);
-                let columns = &pattern.columns[range.clone()];
-                self.blocks[range]
-                    .iter()
-                    .zip(columns)
-                    .map(|(block, &column)| *block * vector[column as usize])
-                    .sum()
-            })
-            .collect()
+        let mut product = vec![DVec3::ZERO; vector.len()];
+        self.times_into(pattern, vector, &mut product);
+        product
+    }
+
+    /// Writes `K y` to `product`. Each row is summed by one thread in the order of its columns, so
+    /// the result does not depend on the number of threads.
+    ///
+    /// # Panics
+    /// If `vector` or `product` has not one entry for each block row.
+    pub fn times_into(&self, pattern: &Pattern, vector: &[DVec3], product: &mut [DVec3]) {
+        let rows = pattern.row_offset.len() - 1;
+        assert_eq!(
+            [vector.len(), product.len()],
+            [rows; 2],
+            "entries of a vector"
+        );
+        product.par_iter_mut().enumerate().for_each(|(row, sum)| {
+            let range = pattern.row(row);
+            let columns = &pattern.columns[range.clone()];
+            *sum = self.blocks[range]
+                .iter()
+                .zip(columns)
+                .map(|(block, &column)| *block * vector[column as usize])
+                .sum();
+        });
     }
 }

@@ -1,7 +1,8 @@
 //! What a converged state means: displacement, stress, jump, aperture, traction.
 
 use glam::{DMat3, DVec3};
-use lie_core::{SymmetricStress, kernel};
+use lie_core::SymmetricStress;
+use lie_core::kernel::{self, MAX_NODES};
 use rayon::prelude::*;
 
 use crate::interface::FacetPoint;
@@ -61,6 +62,7 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
     let interface = &system.discretisation.interface;
     let jumps = interface.jumps(&state.unknowns, state.load);
     let facet_points = (0..jumps.len())
+        .into_par_iter()
         .map(|i| {
             facet_result(
                 system,
@@ -79,20 +81,20 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
 
 fn cell_stress(system: &System<'_>, displacements: &[DVec3], cell: usize) -> SymmetricStress {
     let mesh = &system.problem.mesh;
+    let mut nodes = [DVec3::ZERO; MAX_NODES];
+    let mut moved = [DVec3::ZERO; MAX_NODES];
     let range = mesh.cells.range(cell);
-    let nodes: Vec<DVec3> = mesh.cells.nodes[range.clone()]
-        .iter()
-        .map(|&node| mesh.nodes[node as usize])
-        .collect();
-    let moved: Vec<DVec3> = system.discretisation.points.of_cell_node[range]
-        .iter()
-        .map(|&point| displacements[point as usize])
-        .collect();
+    let count = range.len();
+    for (local, slot) in range.enumerate() {
+        nodes[local] = mesh.nodes[mesh.cells.nodes[slot] as usize];
+        moved[local] = displacements[system.discretisation.points.of_cell_node[slot] as usize];
+    }
+    let (nodes, moved) = (&nodes[..count], &moved[..count]);
     let shape = mesh.cells.shapes[cell];
     let initial = system.problem.initial_stress.map_or(DMat3::ZERO, |stress| {
-        stress.at(kernel::centre(shape, &nodes))
+        stress.at(kernel::centre(shape, nodes))
     });
-    let gradient = kernel::mean_gradient(shape, &nodes, &moved);
+    let gradient = kernel::mean_gradient(shape, nodes, moved);
     let s = system.problem.rock(cell).stress(gradient) + initial;
     [
         s.x_axis.x, s.y_axis.y, s.z_axis.z, s.x_axis.y, s.y_axis.z, s.x_axis.z,
