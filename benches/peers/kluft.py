@@ -1,7 +1,9 @@
 """Kluft: its scene, its command, its results."""
 
+import io
 import json
 import shutil
+import subprocess
 
 import numpy as np
 
@@ -81,6 +83,14 @@ def facets(folder):
     count = np.diff(offsets)
     centres = np.add.reduceat(points[nodes], offsets[:-1]) / count[:, None]
     return centres, np.add.reduceat(data["aperture"][nodes].ravel(), offsets[:-1]) / count
+
+
+def gauss_facets(root, folder):
+    """The same as `facets`, but with the fracture integrated at Gauss points instead of at its nodes."""
+    example = ["cargo", "run", "--quiet", "--release", "--locked", "--example", "gauss_facets", "--"]
+    done = subprocess.run([*example, folder / "scene.toml"], cwd=root, check=True, stdout=subprocess.PIPE)
+    rows = np.loadtxt(io.BytesIO(done.stdout), ndmin=2)
+    return rows[:, :3], rows[:, 3]
 
 
 def iterations(folder):

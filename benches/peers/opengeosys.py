@@ -2,7 +2,6 @@
 
 import re
 import shutil
-from pathlib import Path
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -231,8 +230,8 @@ def facets(folder):
     return centres, data["fracture_aperture_avg"][on].ravel()
 
 
-def iterations(log):
-    """Newton iterations and the sum of the iterations of the linear solver, from the text that `ogs` prints."""
+def iterations(folder):
+    """Newton iterations, and the sum of the iterations of the linear solver, from what `ogs` printed."""
+    log = (folder / "log").read_text(errors="replace")
     newton = len(re.findall(r"Iteration #\d+ started", log))
-    linear = sum(int(count) for count in re.findall(r"iteration: (\d+)/", log))
-    return newton, linear
+    return newton, sum(int(count) for count in re.findall(r"iteration: (\d+)/", log))
