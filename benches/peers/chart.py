@@ -40,12 +40,14 @@ def draw(summary, path):
     with plt.rc_context(settings):
         figure, panels = plt.subplots(2, 2, figsize=(12.5, 9), layout="constrained", sharex="row")
         figure.get_layout_engine().set(w_pad=0.12, h_pad=0.15)
-        draw_row(panels[0], "Whole runs: read, one load step, write", run_lines(summary))
+        draw_row(panels[0], "Whole runs", run_lines(summary))
         draw_guides(panels[0], summary, summary.run_operations)
-        draw_row(panels[1], "One linear system: set-up and solution", linear_lines(summary))
+        draw_row(panels[1], "One linear system", linear_lines(summary))
         draw_guides(panels[1], summary, summary.linear_operations)
         for row in panels:
-            row[1].legend(*row[0].get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False)
+            row[1].legend(
+                *row[0].get_legend_handles_labels(), loc="center left", bbox_to_anchor=(1.02, 0.5), frameon=False
+            )
         write(figure, Path(path))
         plt.close(figure)
 
@@ -70,7 +72,9 @@ def linear_lines(summary):
     """Label, style and points (unknowns, s, bytes) of every solver."""
     for solver, (name, colour, marker) in SOLVERS.items():
         rows = [row for row in summary.linear if row["solver"] == solver]
-        points = [(row["unknowns"], row["setup_seconds"] + row["solve_seconds"], row["peak_memory_bytes"]) for row in rows]
+        points = [
+            (row["unknowns"], row["setup_seconds"] + row["solve_seconds"], row["peak_memory_bytes"]) for row in rows
+        ]
         yield name, {"color": colour, "marker": marker}, points
 
 
@@ -81,8 +85,8 @@ def draw_row(panels, title, lines):
             unknowns, seconds, size = np.array(sorted(points)).T
             for panel, values in zip(panels, (seconds, size / 1e9)):
                 panel.plot(unknowns, values, label=label, markersize=6, linewidth=1.6, zorder=3, **style)
-    for panel, what in zip(panels, ("time (s)", "peak memory (GB)")):
-        panel.set(xscale="log", yscale="log", xlabel="unknowns", ylabel=what, title=f"{title}")
+    for panel, what, unit in zip(panels, ("time", "peak memory"), ("s", "GB")):
+        panel.set(xscale="log", yscale="log", xlabel="unknowns", ylabel=f"{what} ({unit})", title=f"{title}: {what}")
         panel.grid(True, which="major", color="#d0d0d0", linewidth=0.7)
         for axis in (panel.xaxis, panel.yaxis):
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -109,9 +113,9 @@ def draw_guides(panels, summary, operations):
     if operations:
         known = np.array(sorted(operations))
         seconds = np.array([operations[at] for at in known]) / rate
-        label = f"bound: one factorisation\nat {rate / 1e9:.0f} Gflop/s"
+        label = f"one factorisation\nat {rate / 1e9:.0f} Gflop/s"
         time.plot(*extended(known, seconds, low, high), label=label, color=GREY, linewidth=1.2, linestyle=(0, (5, 3)))
-    label = f"bound: {PRODUCTS} products of the\nmatrix at {bandwidth / 1e9:.0f} GB/s;\nright: the matrix alone"
+    label = f"{PRODUCTS} products of the matrix\nat {bandwidth / 1e9:.0f} GB/s;\nmemory: the matrix alone"
     style = {"color": GREY, "linewidth": 1.4, "linestyle": (0, (1, 1.5))}
     time.plot(unknowns, PRODUCTS * traffic / bandwidth, label=label, **style)
     memory.plot(unknowns, unknowns * ENTRIES * ENTRY_BYTES / 1e9, **style)

@@ -86,9 +86,11 @@ def facets(folder):
 
 
 def gauss_facets(root, folder):
-    """The same as `facets`, but with the fracture integrated at Gauss points instead of at its nodes."""
+    """The same as `facets`, but with the fracture integrated at Gauss points; None if that fails."""
     example = ["cargo", "run", "--quiet", "--release", "--locked", "--example", "gauss_facets", "--"]
-    done = subprocess.run([*example, folder / "scene.toml"], cwd=root, check=True, stdout=subprocess.PIPE)
+    done = subprocess.run([*example, folder / "scene.toml"], cwd=root, check=False, stdout=subprocess.PIPE)
+    if done.returncode:
+        return None
     rows = np.loadtxt(io.BytesIO(done.stdout), ndmin=2)
     return rows[:, :3], rows[:, 3]
 

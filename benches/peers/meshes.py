@@ -76,7 +76,20 @@ def disc(size, folder):
     """The cube with a disc inside, cells of `size` (m); gmsh makes it in `folder`."""
     geometry = Path(__file__).with_name("disc.geo")
     made = Path(folder) / "gmsh.msh"
-    command = ["gmsh", "-3", "-format", "msh22", "-nt", "1", "-setnumber", "h", repr(size), str(geometry), "-o", str(made)]
+    command = [
+        "gmsh",
+        "-3",
+        "-format",
+        "msh22",
+        "-nt",
+        "1",
+        "-setnumber",
+        "h",
+        repr(size),
+        str(geometry),
+        "-o",
+        str(made),
+    ]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     points, triangles, tetrahedra = read_msh22(made)
     made.unlink()

@@ -54,7 +54,7 @@ CUT_HELD = (("bottom", 2), ("front", 1), ("back", 1), ("edge", 0))
 CUT_JUMPS = (("fracture_front", (1,)), ("fracture_back", (1,)))
 CUT_CELLS = {20: 14, 55: 20, 146: 28, 414: 40}
 DISC_HELD = (("bottom", 2), ("front", 1), ("back", 1), ("left", 0), ("right", 0))
-DISC_SIZES = {20: 0.0532, 55: 0.0361, 146: 0.0260, 414: 0.0182}
+DISC_SIZES = {20: 0.0532, 55: 0.0364, 146: 0.0260, 414: 0.0182}
 
 PROBLEMS = (
     Problem("cut, hex", CUT_HELD, CUT_JUMPS, ("edge",), CUT_CELLS),

@@ -37,24 +37,24 @@ COLUMNS = {
 TEXT = """# Kluft and other programs
 
 Written by `sh benches/peers/run`; what is run, and how, is in [benches/README.md](../benches/README.md). Measured on
-{processor}, {cores} cores, {memory:.0f} GB: memory bandwidth {bandwidth:.1f} GB/s (two vectors read and one
-written), {flop_rate:.0f} Gflop/s (product of full matrices of order 4096), both with two threads. Every program had two
+{processor}, {cores} cores, {memory:.0f} GB: memory bandwidth {bandwidth:.1f} GB/s (two vectors read and one written),
+{flop_rate:.0f} Gflop/s (product of full matrices of order 4096), both with two threads. Every program had two
 threads, or two processes.
 
 ![Time and memory against unknowns](peers.svg)
 
 ## Whole runs
 
-Reading the mesh, one load step, and writing the results; the same nodes and elements for both programs. Medians of the
-runs. Memory is the peak of the process. Unknowns count displacements at all nodes and jumps at all nodes of the
+Reading the mesh, one load step, and writing the results; the same nodes and elements for both programs. Medians of
+the runs. Memory is the peak of the process. Unknowns count displacements at all nodes and jumps at all nodes of the
 fracture, held ones included.
 
 {runs}
 
 The problems are the same if the apertures agree. The difference is the largest one of the mean aperture of a facet,
-relative. OpenGeoSys integrates fractures at Gauss points and Kluft at nodes ([why](facet-quadrature.md)), which gives the
-same where the stress is uniform (`cut`) and another discretisation of the same problem where it is not (`disc`); with
-Gauss points in Kluft too the difference is in the last column.
+relative. OpenGeoSys integrates fractures at Gauss points and Kluft at nodes ([why](facet-quadrature.md)), which gives
+the same where the stress is uniform (`cut`) and another discretisation of the same problem where it is not (`disc`);
+with Gauss points in Kluft too the difference is in the last column.
 
 {agreement}
 
@@ -63,15 +63,15 @@ diagonal preconditioner, to 1e-10; Newton's method until the residual is 1e-8 of
 
 ## Linear systems
 
-A unit cube of six tetrahedra in every small cube, Young's modulus 1, Poisson's ratio 0.3, clamped at z = 0, under a random
-load: one matrix, one right-hand side. Set-up is everything that depends on the matrix alone: aggregation, or ordering and
-factorisation. Iterations until the residual is 1e-8 of the load. Memory is the peak of all processes with the
-matrix and all that surrounds it (about 0.1 GB a process is Python's).
+A unit cube of six tetrahedra in every small cube, Young's modulus 1, Poisson's ratio 0.3, clamped at z = 0, under a
+random load: one matrix, one right-hand side. Set-up is everything that depends on the matrix alone: aggregation, or
+ordering and factorisation. Iterations until the residual is 1e-8 of the load. Memory is the peak of all processes
+with the matrix and all that surrounds it (about 0.1 GB a process is Python's).
 
 {linear}
 
-PETSc 3.18 with GAMG (conjugate gradients, rigid motions as near null space, two processes), MUMPS by PETSc (two processes),
-CHOLMOD of SuiteSparse 5.12 with OpenBLAS, PARDISO of the MKL 2026.2.
+PETSc 3.18 with GAMG (conjugate gradients, rigid motions as near null space, two processes), MUMPS by PETSc (two
+processes), CHOLMOD of SuiteSparse 5.12 with OpenBLAS, PARDISO of the MKL 2026.2.
 """
 
 
@@ -79,7 +79,10 @@ class Summary:
     """What tables and the chart show: lists of rows, smallest problems first."""
 
     def __init__(self, records, builds):
-        of_kind = lambda kind: [record for record in records if record["kind"] == kind]  # noqa: E731
+
+        def of_kind(kind):
+            return [record for record in records if record["kind"] == kind]
+
         current = [record for record in of_kind("run") if builds[record["program"]] == record["build"]]
         self.machine = of_kind("machine")[-1]
         self.agreement = {(record["problem"], record["size"]): record for record in of_kind("agreement")}
@@ -91,7 +94,7 @@ class Summary:
         self.linear_operations = {row["unknowns"]: row["factor_flops"] for row in self.linear if "factor_flops" in row}
 
     def operations(self, records):
-        """Operations of one factorisation by unknowns, of the cut box of tetrahedra, whose factor is the smaller one."""
+        """Operations of one factorisation of the cut box of tetrahedra, by unknowns."""
         unknowns = {(row["problem"], row["size"]): row["unknowns"] for row in self.runs}
         kept = [record for record in records if record["problem"] == "cut, tet"]
         return {unknowns[record["problem"], record["size"]]: record["operations"] for record in kept}
@@ -108,7 +111,8 @@ class Summary:
                 row[name] = median(record[name] for record in group)
             agreed = self.agreement.get((problem, size))
             if program == "kluft" and agreed:
-                row |= {"difference": agreed["kluft_difference"], "gauss_difference": agreed["kluft_gauss_difference"]}
+                row["difference"] = agreed["kluft_difference"]
+                row["gauss_difference"] = agreed.get("kluft_gauss_difference", "")
             rows.append(row)
         return rows
 
@@ -129,6 +133,11 @@ def markdown(heads, rows):
 def count(number):
     """A large number with its thousands apart."""
     return f"{number:,}".replace(",", " ")
+
+
+def scientific(number, digits=0):
+    """A number with a power of ten, or a dash."""
+    return "-" if number is None else f"{number:.{digits}e}"
 
 
 def megabytes(row):
@@ -167,10 +176,10 @@ def agreement_table(summary):
     rows = []
     for pair in summary.pairs():
         ours = pair["kluft"]
-        agreed = summary.agreement[ours["problem"], ours["size"]]
+        agreed = summary.agreement.get((ours["problem"], ours["size"]), {})
         names = ("opengeosys_min", "kluft_min", "opengeosys_mean", "kluft_mean")
-        differences = (f"{agreed[name]:.0e}" for name in ("kluft_difference", "kluft_gauss_difference"))
-        apertures = (f"{agreed[name]:.7e}" for name in names)
+        differences = (scientific(agreed.get(name)) for name in ("kluft_difference", "kluft_gauss_difference"))
+        apertures = (scientific(agreed.get(name), 7) for name in names)
         rows.append([ours["problem"], count(ours["unknowns"]), *apertures, *differences])
     return markdown(heads, rows)
 
@@ -195,15 +204,21 @@ def processor():
 
 def csv_text(summary):
     """Whole runs and linear systems as one table; cells that say nothing are empty."""
-    linear = [{"problem": "linear system", "program": row["solver"], "linear": row["iterations"]} | row for row in summary.linear]
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS.values())
-    for row in summary.runs + linear:
-        cells = {"runs": 1} | row
-        cells["program"] = NAMES[cells["program"]]
-        writer.writerow([f"{cells[key]:.6g}" if isinstance(cells.get(key), float) else cells.get(key, "") for key in COLUMNS])
+    writer.writerows(csv_row(row) for row in summary.runs)
+    for row in summary.linear:
+        own = {"problem": "linear system", "program": row["solver"], "linear": row["iterations"], "runs": 1}
+        writer.writerow(csv_row(row | own))
     return out.getvalue()
+
+
+def csv_row(row):
+    """The cells of a row."""
+    cells = row | {"program": NAMES[row["program"]]}
+    values = (cells.get(key, "") for key in COLUMNS)
+    return [f"{value:.6g}" if isinstance(value, float) else value for value in values]
 
 
 def replace(path, text):
