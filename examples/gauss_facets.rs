@@ -6,6 +6,7 @@
 
 use std::env;
 use std::error::Error;
+use std::io::{self, Write};
 use std::path::Path;
 
 use glam::DVec3;
@@ -20,8 +21,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let discretisation = Discretisation::of(&problem).map_err(|defects| format!("{defects:?}"))?;
     let system = System::assemble(&problem, discretisation);
     let solution = solve(&problem, &system)?;
+    let mut out = io::stdout().lock();
     for (centre, aperture) in facets(&system, &solution) {
-        println!("{:e} {:e} {:e} {aperture:e}", centre.x, centre.y, centre.z);
+        let DVec3 { x, y, z } = centre;
+        writeln!(out, "{x:e} {y:e} {z:e} {aperture:e}")?;
     }
     Ok(())
 }

@@ -291,4 +291,5 @@ def main():
     say("wrote docs/peers.md, docs/peers.csv and docs/peers.svg")
 
 
-main()
+if __name__ == "__main__":
+    main()
