@@ -88,8 +88,7 @@ class Summary:
         self.agreement = {(record["problem"], record["size"]): record for record in of_kind("agreement")}
         self.runs = self.medians(current)
         own = [record for record in of_kind("linear") if record.get("build", builds["kluft"]) == builds["kluft"]]
-        last = {(record["unknowns"], list(NAMES).index(record["solver"])): record for record in own}
-        self.linear = [last[key] for key in sorted(last)]
+        self.linear = self.middle_ones(own)
         self.run_operations = self.operations(of_kind("operations"))
         self.linear_operations = {row["unknowns"]: row["factor_flops"] for row in self.linear if "factor_flops" in row}
 
@@ -116,12 +115,24 @@ class Summary:
             rows.append(row)
         return rows
 
+    def middle_ones(self, records):
+        """For every system and solver the run of the median time."""
+        groups = {}
+        for record in sorted(records, key=linear_seconds):
+            groups.setdefault((record["unknowns"], list(NAMES).index(record["solver"])), []).append(record)
+        return [{**group[len(group) // 2], "runs": len(group)} for _, group in sorted(groups.items())]
+
     def pairs(self):
         """Rows of both programs for every problem and size that both solved."""
         found = {}
         for row in self.runs:
             found.setdefault((row["problem"], row["size"]), {})[row["program"]] = row
         return [pair for pair in found.values() if len(pair) == 2]
+
+
+def linear_seconds(row):
+    """Set-up and solution of a linear system (s)."""
+    return row["setup_seconds"] + row["solve_seconds"]
 
 
 def markdown(heads, rows):
@@ -186,13 +197,22 @@ def agreement_table(summary):
 
 def linear_table(summary):
     """Time and memory of linear systems."""
-    heads = ["solver", "unknowns", "set-up (s)", "solve (s)", "together (s)", "iterations", "memory (MB)"]
+    heads = ["solver", "unknowns", "set-up (s)", "solve (s)", "together (s)", "iterations", "memory (MB)", "runs"]
     rows = []
     for row in summary.linear:
-        seconds = row["setup_seconds"], row["solve_seconds"], row["setup_seconds"] + row["solve_seconds"]
+        seconds = row["setup_seconds"], row["solve_seconds"], linear_seconds(row)
         times = (f"{value:.2f}" for value in seconds)
         iterations = str(row["iterations"] or "direct")
-        rows.append([NAMES[row["solver"]], count(row["unknowns"]), *times, iterations, f"{megabytes(row):.0f}"])
+        rows.append(
+            [
+                NAMES[row["solver"]],
+                count(row["unknowns"]),
+                *times,
+                iterations,
+                f"{megabytes(row):.0f}",
+                str(row["runs"]),
+            ]
+        )
     return markdown(heads, rows)
 
 
@@ -209,7 +229,7 @@ def csv_text(summary):
     writer.writerow(COLUMNS.values())
     writer.writerows(csv_row(row) for row in summary.runs)
     for row in summary.linear:
-        own = {"problem": "linear system", "program": row["solver"], "linear": row["iterations"], "runs": 1}
+        own = {"problem": "linear system", "program": row["solver"], "linear": row["iterations"]}
         writer.writerow(csv_row(row | own))
     return out.getvalue()
 
