@@ -34,6 +34,9 @@ THREADS = 2
 ROUNDS = {20: 3, 55: 3, 146: 2, 414: 1}
 """How often every whole run is measured, by thousands of unknowns."""
 
+LARGEST_OPENED = 55
+"""Thousands of unknowns up to which the opened joint is compared too."""
+
 CUBES = {"small": (21, 31), "all": (21, 31, 50, 69)}
 """Cubes an edge of the linear systems: 30, 95, 390 and 1014 thousand unknowns."""
 
@@ -120,6 +123,11 @@ def matched(centres, values, wanted):
     return values[place]
 
 
+def difference(ours, theirs):
+    """The largest relative difference."""
+    return np.abs(ours / theirs - 1.0).max()
+
+
 class WholeRun:
     """One problem of one size, as a folder with the input of all programs."""
 
@@ -166,25 +174,35 @@ class WholeRun:
         return WORK / "facets" / f"{self.folder.name}-{program}.npz"
 
     def compare(self, builds, results):
-        """Keeps how far the apertures of the programs differ, also with Gauss points in both."""
+        """Keeps how far the apertures of the programs differ."""
         key = {"kind": "agreement", **self.key, **builds}
         if results.find(**key):
             return
-        self.write()
         centres, theirs = np.load(self.facets_file("opengeosys")).values()
-        facets = {
-            "kluft": np.load(self.facets_file("kluft")).values(),
-            "kluft_gauss": kluft.gauss_facets(ROOT, self.folder / "kluft"),
-        }
-        values = {"opengeosys_min": theirs.min(), "opengeosys_mean": theirs.mean()}
-        for name, own in facets.items():
-            if own is None:
-                say("the example `gauss_facets` failed")
-                continue
-            apertures = matched(*own, centres)
+        ours = matched(*np.load(self.facets_file("kluft")).values(), centres)
+        values = {"difference": difference(ours, theirs)}
+        for name, apertures in (("opengeosys", theirs), ("kluft", ours)):
             values |= {name + "_min": apertures.min(), name + "_mean": apertures.mean()}
-            values[name + "_difference"] = np.abs(apertures / theirs - 1.0).max()
+        if self.size <= LARGEST_OPENED:
+            values["opened_difference"] = self.compare_opened()
         results.add(**key, **values)
+
+    def compare_opened(self):
+        """The largest difference of apertures with the load reversed and Gauss points in both; None if a run fails.
+
+        The law of an open joint is linear, so both programs then integrate it exactly.
+        """
+        self.write()
+        say(f"{self.problem.name}, {self.size} thousand unknowns: opened, for the comparison of apertures")
+        if run(opengeosys.command(ROOT, self.folder / "opengeosys", "opened")) is None:
+            return None
+        centres, theirs = opengeosys.facets(self.folder / "opengeosys")
+        try:
+            ours = kluft.opened_facets(ROOT, self.folder / "kluft")
+        except subprocess.CalledProcessError:
+            say("    the example `gauss_facets` failed")
+            return None
+        return difference(matched(*ours, centres), theirs)
 
     def count_operations(self, build, results):
         """Keeps how many operations one factorisation of this problem takes, from its symbolic factor."""
@@ -193,7 +211,7 @@ class WholeRun:
             return
         self.write()
         folder = self.folder / "kluft"
-        inspect = [ROOT / "target/release/kluft", "inspect", folder / "scene.toml"]
+        inspect = [ROOT / "target/release/kluft", "inspect", folder / "closed.toml"]
         text = run([*inspect, "--json", "--out", folder / "out"])
         for solver in json.loads(text)["solvers"] if text else []:
             if "operations" in solver:

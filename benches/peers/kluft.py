@@ -46,10 +46,11 @@ displacement = {{ {axis} = 0.0 }}
 def write(problem, mesh, folder):
     """Writes the scene and its mesh. Nothing is chosen that the program can choose itself."""
     meshes.write_msh(mesh, folder / "mesh.msh", problem.surfaces())
-    (folder / "scene.toml").write_text(scene(problem, mesh))
+    (folder / "closed.toml").write_text(scene(problem, mesh, problems.LOAD))
+    (folder / "opened.toml").write_text(scene(problem, mesh, -problems.LOAD))
 
 
-def scene(problem, mesh):
+def scene(problem, mesh, pressure):
     """The text of the scene."""
     text = SCENE.format(
         title=problem.name,
@@ -58,7 +59,7 @@ def scene(problem, mesh):
         aperture=problems.APERTURE,
         stiffness=problems.STIFFNESS,
         cutoff=problems.CUTOFF,
-        load=-problems.LOAD,
+        load=-pressure,
     )
     for name, component in problem.held:
         axis = "xyz"[component]
@@ -73,7 +74,7 @@ def scene(problem, mesh):
 def command(root, folder):
     """What to run: the release binary, writing its results into `folder`/out."""
     shutil.rmtree(folder / "out", ignore_errors=True)
-    return [root / "target/release/kluft", "run", folder / "scene.toml", "--out", folder / "out", "-v"]
+    return [root / "target/release/kluft", "run", folder / "closed.toml", "--out", folder / "out", "-v"]
 
 
 def facets(folder):
@@ -85,13 +86,11 @@ def facets(folder):
     return centres, np.add.reduceat(data["aperture"][nodes].ravel(), offsets[:-1]) / count
 
 
-def gauss_facets(root, folder):
-    """The same as `facets`, but with the fracture integrated at Gauss points; None if that fails."""
+def opened_facets(root, folder):
+    """The same as `facets` for the opened joint, integrated at Gauss points."""
     example = ["cargo", "run", "--quiet", "--release", "--locked", "--example", "gauss_facets", "--"]
-    done = subprocess.run([*example, folder / "scene.toml"], cwd=root, check=False, stdout=subprocess.PIPE)
-    if done.returncode:
-        return None
-    rows = np.loadtxt(io.BytesIO(done.stdout), ndmin=2)
+    output = subprocess.run([*example, folder / "opened.toml"], cwd=root, check=True, stdout=subprocess.PIPE).stdout
+    rows = np.loadtxt(io.BytesIO(output), ndmin=2)
     return rows[:, :3], rows[:, 3]
 
 

@@ -160,17 +160,18 @@ def write(problem, mesh, folder):
     names = sorted({name for name, _ in problem.held + problem.jumps} | {"top"})
     for name in names:
         write_patch(mesh, mesh.patches[name], folder / f"{name}.vtu")
-    (folder / "project.prj").write_text(project(problem, names))
+    (folder / "closed.prj").write_text(project(problem, names, problems.LOAD))
+    (folder / "opened.prj").write_text(project(problem, names, -problems.LOAD))
 
 
-def project(problem, names):
+def project(problem, names, pressure):
     """The text of the project; `names` are those of the patches that conditions act on."""
     values = {
         "E": problems.YOUNG_MODULUS,
         "nu": problems.POISSON_RATIO,
         "K": problems.STIFFNESS,
         "aperture0": problems.APERTURE,
-        "load": -problems.LOAD,
+        "load": -pressure,
         "zero": 0.0,
     }
     displacement = [CONDITION.format(name, "Dirichlet", component, "zero") for name, component in problem.held]
@@ -215,11 +216,11 @@ def incidence(elements, count):
     return csr_array((np.ones(elements.size, dtype=np.int8), elements.ravel(), starts), shape=(len(elements), count))
 
 
-def command(root, folder):
+def command(root, folder, case="closed"):
     """What to run: the package's `ogs`, writing its results into `folder`/out."""
     shutil.rmtree(folder / "out", ignore_errors=True)
     (folder / "out").mkdir()
-    return [root / "target/peers/venv/bin/ogs", "-o", folder / "out", folder / "project.prj"]
+    return [root / "target/peers/venv/bin/ogs", "-o", folder / "out", folder / f"{case}.prj"]
 
 
 def facets(folder):
