@@ -1,18 +1,28 @@
 //! The stages of a run on a structured block cut by three closing planes; see README.md.
 
+#![allow(
+    clippy::print_stdout,
+    reason = "the bandwidth is printed beside the kernels"
+)]
+
 mod block;
 
 use std::hint::black_box;
+use std::time::Instant;
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
 use lie_solver::{
-    Discretisation, LinearMethod, Newton, NewtonSettings, Plan, System, Unknowns, Workload,
+    Discretisation, LinearMethod, Newton, NewtonSettings, Pattern, Plan, System, Unknowns, Workload,
 };
+use rayon::prelude::*;
 
 use block::{THREE_PLANES, draft, mesh, problem};
 
 /// Cubes along an edge: 9, 34 and 111 thousand unknowns.
 const SIZES: [usize; 3] = [12, 20, 32];
+/// Cubes along an edge for the kernels: half a million tetrahedra.
+const KERNEL_CUBES: usize = 44;
 
 fn stages(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("stages");
@@ -44,5 +54,65 @@ fn stages(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, stages);
+/// Doubles in each array of the triad, 128 MB: far more than any cache holds.
+const TRIAD: usize = 1 << 24;
+
+/// Bytes a second that all threads together read and write, in GB/s: the best of some passes of
+/// `a = b + 3 c`. Reading `a` into the cache before it is overwritten is not counted.
+fn bandwidth() -> f64 {
+    let (b, c) = (vec![1.0; TRIAD], vec![2.0; TRIAD]);
+    let mut a = vec![0.0; TRIAD];
+    let pass = |_| {
+        let start = Instant::now();
+        let sources = b.par_iter().zip(&c);
+        a.par_iter_mut()
+            .zip(sources)
+            .with_min_len(1 << 16)
+            .for_each(|(a, (b, c))| *a = b + 3.0 * c);
+        black_box(&mut a);
+        (3 * 8 * TRIAD) as f64 / start.elapsed().as_secs_f64()
+    };
+    1e-9 * (0..8).map(pass).fold(0.0, f64::max)
+}
+
+/// What moves most of the bytes, with the time that the bytes alone take.
+fn kernels(criterion: &mut Criterion) {
+    let problem = problem(KERNEL_CUBES, &THREE_PLANES);
+    let discretisation = Discretisation::of(&problem).expect("supported");
+    let system = System::assemble(&problem, discretisation.clone());
+    let pattern = &system.discretisation.pattern;
+    let vector = vec![DVec3::ONE; system.discretisation.points.len()];
+    let mut product = vector.clone();
+    let values = size_of_val(&*system.rock.blocks) + size_of_val(&*pattern.columns);
+    let mesh = size_of_val(&*problem.mesh.cells.nodes) + size_of_val(&*problem.mesh.nodes);
+    let rate = bandwidth();
+    let alone = |bytes: usize| 1e-6 * bytes as f64 / rate;
+    println!(
+        "kernels: {} cells, {} blocks, {rate:.1} GB/s on {} threads; the bytes alone take {:.1} ms \
+         (assemble) and {:.1} ms (product)",
+        problem.mesh.cells.len(),
+        pattern.columns.len(),
+        rayon::current_num_threads(),
+        alone(values + mesh),
+        alone(values + 2 * size_of_val(&*vector)),
+    );
+    let mut group = criterion.benchmark_group("kernels");
+    group.sample_size(10);
+    group.bench_function("pattern", |bencher| {
+        bencher.iter(|| Pattern::of(&problem.mesh, &system.discretisation.points));
+    });
+    group.bench_function("assemble", |bencher| {
+        bencher.iter_batched(
+            || discretisation.clone(),
+            |discretisation| System::assemble(&problem, discretisation),
+            BatchSize::PerIteration,
+        );
+    });
+    group.bench_function("product", |bencher| {
+        bencher.iter(|| system.rock.times_into(pattern, &vector, &mut product));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, kernels, stages);
 criterion_main!(benches);

@@ -51,7 +51,7 @@ fn solve(problem: &Problem, system: &System<'_>) -> Result<Solution, Box<dyn Err
         Newton::new(system, NewtonSettings::default()).map_err(|failure| format!("{failure:?}"))?;
     let mut state = system.initial_state();
     for &load in &problem.steps {
-        let record = newton.step(&mut state, load, |_, _| ());
+        let record = newton.step(system, &mut state, load, |_, _| ());
         if !record.converged() {
             return Err("no convergence".into());
         }
