@@ -181,12 +181,19 @@ impl Interface {
 
     /// Adds the forces of the fractures with [`Self::stiffness`] to `product`: `K_ij v_j`.
     pub(crate) fn add_product(&self, stiffness: &[DMat3], vector: &[DVec3], product: &mut [DVec3]) {
-        for (index, &row) in self.unknowns.iter().enumerate() {
-            let range = self.columns.offset[index]..self.columns.offset[index + 1];
-            let columns = &self.columns.entries[range.clone()];
-            for (block, &column) in stiffness[range].iter().zip(columns) {
-                product[row as usize] += *block * vector[column as usize];
-            }
+        let sums: Vec<DVec3> = (0..self.unknowns.len())
+            .into_par_iter()
+            .map(|index| {
+                let range = self.columns.offset[index]..self.columns.offset[index + 1];
+                let columns = self.columns.entries[range.clone()].iter();
+                let blocks = stiffness[range].iter().zip(columns);
+                blocks
+                    .map(|(block, &column)| *block * vector[column as usize])
+                    .sum()
+            })
+            .collect();
+        for (&row, sum) in self.unknowns.iter().zip(sums) {
+            product[row as usize] += sum;
         }
     }
 

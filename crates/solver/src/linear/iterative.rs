@@ -1,8 +1,8 @@
 //! The iterative solver: conjugate gradients on all unknowns.
 //!
 //! The preconditioner is a symmetric block Gauss-Seidel step over two blocks: the intact rock, by
-//! one cycle of a multigrid that is set up once a run, and the jumps, by a factorisation of their own
-//! small block, anew for each tangent. Only the jumps see the stiffness of the fractures.
+//! one cycle of a multigrid that is set up once a run, and the jumps, by a polynomial of their own
+//! small block. Only the jumps see the stiffness of the fractures.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ impl Iterative {
         let multigrid = multigrid.map_err(|failure| explain(&failure, &rock))?;
         Ok(Self {
             workspace: multigrid.workspace(),
-            jumps: JumpBlock::of(system, &rock)?,
+            jumps: JumpBlock::of(system, &rock),
             stiffness: None,
             multigrid,
             rock,
@@ -95,7 +95,7 @@ impl TangentSolver for Iterative {
         let stiffness = system.discretisation.interface.stiffness(tangents);
         if self.stiffness.as_ref() != Some(&stiffness) {
             self.stiffness = None;
-            self.jumps.factorise(system, &stiffness)?;
+            self.jumps.update(&stiffness)?;
             self.stiffness = Some(stiffness);
         }
         Ok(())
@@ -162,7 +162,8 @@ fn precondition(
     parts: &mut Parts,
     (residual, correction): (&[DVec3], &mut [DVec3]),
 ) {
-    let first = jumps.solve(&jumps.gather(residual));
+    let forces = jumps.gather(residual);
+    let first = jumps.solve(&forces);
     let gathered = parts.rock.par_iter_mut().zip(rock);
     gathered.for_each(|(force, &unknown)| *force = residual[unknown as usize]);
     jumps.subtract_from_rock(rows, &first, &mut parts.rock);
@@ -171,8 +172,8 @@ fn precondition(
     for (&unknown, change) in rock.iter().zip(&parts.correction) {
         correction[unknown as usize] = *change;
     }
-    let back = jumps.solve(&jumps.forces_of(rows, correction));
-    for ((&unknown, first), back) in jumps.unknowns().iter().zip(first).zip(back) {
-        correction[unknown as usize] = first - back;
+    let second = jumps.solve(&jumps.remaining(rows, &forces, &first, correction));
+    for ((&unknown, first), second) in jumps.unknowns().iter().zip(first).zip(second) {
+        correction[unknown as usize] = first + second;
     }
 }

@@ -1,22 +1,48 @@
-//! The block of the tangent that belongs to the jumps: small, sparse, factorised for each tangent.
+//! The block of the tangent that belongs to the jumps: small, sparse, new for each tangent.
+//!
+//! The nodes on the fractures are one layer thick, so the rock itself holds their jumps almost node
+//! by node: scaled by its diagonal blocks (one a node), the block has a small condition number
+//! whatever the stiffness of the fractures, and a Chebyshev polynomial solves with it well enough
+//! for a preconditioner.
 
+use std::ops::Range;
+
+use faer::linalg::solvers::SolveCore;
+use faer::{Conj, Mat, Side};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::ordering::nested_dissection;
-use super::{Analysis, Cholesky, LinearFailure};
+use super::LinearFailure;
 use crate::multigrid::{BlockRows, OwnedBlockRows};
 use crate::system::System;
+
+/// Products with the block in one application.
+const DEGREE: usize = 4;
+/// Ratio of largest to smallest eigenvalue that the polynomial is made for.
+const CONDITION: f64 = 12.0;
+/// Steps of the power iteration for the largest eigenvalue, and what it may have missed.
+const POWER_STEPS: usize = 12;
+const POWER_MARGIN: f64 = 1.15;
 
 /// The jumps' own block of the tangent, and what couples it to the rock.
 pub(super) struct JumpBlock {
     /// Unknowns that facet points move with, ascending.
     unknowns: Vec<u32>,
     /// Their block of the stiffness of the rock.
-    rock: OwnedBlockRows,
-    cholesky: Option<Cholesky>,
-    /// Where the blocks of the fractures belong in it: block row, number of the block in it.
-    places: Vec<(usize, usize)>,
+    rock: Vec<DMat3>,
+    /// Their block of the tangent.
+    tangent: OwnedBlockRows,
+    /// Where the blocks of the fractures belong in it.
+    places: Vec<usize>,
+    /// The unknowns of each node.
+    nodes: Vec<Range<usize>>,
+    /// Node of each unknown, as an index into `nodes`.
+    node_of: Vec<u32>,
+    /// Rows of the inverse of the diagonal block of each node, one behind the other.
+    inverses: Vec<DMat3>,
+    /// Start of each unknown's row among them.
+    inverse_offset: Vec<usize>,
+    largest_eigenvalue: f64,
     coupling: Vec<CoupledRow>,
 }
 
@@ -29,68 +55,151 @@ struct CoupledRow {
 }
 
 impl JumpBlock {
-    /// Collects and orders the block; `rock` are the other unknowns, ascending.
-    ///
-    /// # Errors
-    /// If the ordering or the analysis fails.
-    pub(super) fn of(system: &System<'_>, rock: &[u32]) -> Result<Self, LinearFailure> {
+    /// Collects the block; `rock` are the other unknowns, ascending.
+    pub(super) fn of(system: &System<'_>, rock: &[u32]) -> Self {
         let unknowns = system.discretisation.interface.unknowns.clone();
         let rows = system.rock_rows();
         let own = rows.sub_block(&unknowns);
-        let coupling = coupling(rows, rock, &unknowns);
-        let cholesky = if unknowns.is_empty() {
-            None
-        } else {
-            let order = nested_dissection(unknowns.len(), |row| {
-                own.view()
-                    .row(row)
-                    .map(|(column, _)| column)
-                    .collect::<Vec<_>>()
-                    .into_iter()
-            })?;
-            let analysis = Analysis::of(&own.row_offset, &own.columns, order)?;
-            Some(Cholesky::new(analysis, own.view()))
-        };
-        Ok(Self {
+        let node = |index: usize| system.discretisation.points.node[unknowns[index] as usize];
+        let mut nodes: Vec<Range<usize>> = Vec::new();
+        let mut node_of = Vec::with_capacity(unknowns.len());
+        for index in 0..unknowns.len() {
+            match nodes.last_mut() {
+                Some(last) if node(index) == node(index - 1) => last.end += 1,
+                _ => nodes.push(index..index + 1),
+            }
+            node_of.push(nodes.len() as u32 - 1);
+        }
+        let lengths = node_of.iter().map(|&node| nodes[node as usize].len());
+        let inverse_offset = lengths.scan(0, |next, length| {
+            *next += length;
+            Some(*next - length)
+        });
+        Self {
+            inverse_offset: inverse_offset.collect(),
+            nodes,
+            node_of,
             places: places(system, &own),
-            rock: own,
+            coupling: coupling(rows, rock, &unknowns),
+            rock: own.blocks.clone(),
+            tangent: own,
+            inverses: Vec::new(),
+            largest_eigenvalue: 1.0,
             unknowns,
-            cholesky,
-            coupling,
-        })
+        }
     }
 
     pub(super) fn unknowns(&self) -> &[u32] {
         &self.unknowns
     }
 
-    /// Factorises the block with the stiffness of the fractures.
+    /// Takes over the stiffness of the fractures.
     ///
     /// # Errors
-    /// If it is not positive definite or memory runs out.
-    pub(super) fn factorise(
-        &mut self,
-        system: &System<'_>,
-        stiffness: &[DMat3],
-    ) -> Result<(), LinearFailure> {
-        let Some(cholesky) = &mut self.cholesky else {
-            return Ok(());
-        };
-        for (&(row, place), block) in self.places.iter().zip(stiffness) {
-            let rock = self.rock.blocks[self.rock.row_offset[row] + place];
-            cholesky.set_block(row, place, rock + *block);
+    /// If the block of a node is not positive definite.
+    pub(super) fn update(&mut self, stiffness: &[DMat3]) -> Result<(), LinearFailure> {
+        self.tangent.blocks.copy_from_slice(&self.rock);
+        for (&place, block) in self.places.iter().zip(stiffness) {
+            self.tangent.blocks[place] += *block;
         }
-        let unknowns = &system.discretisation.interface.unknowns;
-        cholesky.factorise().map_err(|failure| match failure {
-            LinearFailure::Indefinite(jump) => LinearFailure::Indefinite(unknowns[jump] as usize),
-            other => other,
-        })
+        let inverses = self.nodes.par_iter().map(|own| self.inverse(own.clone()));
+        self.inverses = inverses.collect::<Result<Vec<_>, _>>()?.concat();
+        self.largest_eigenvalue = POWER_MARGIN * self.power_iteration();
+        Ok(())
     }
 
-    /// Solves for forces on the jumps (N).
+    /// Inverse of the diagonal block of a node.
+    fn inverse(&self, own: Range<usize>) -> Result<Vec<DMat3>, LinearFailure> {
+        let count = own.len();
+        let mut block = Mat::<f64>::zeros(3 * count, 3 * count);
+        for row in own.clone() {
+            for (column, value) in self.tangent.view().row(row) {
+                let column = column as usize;
+                if !own.contains(&column) {
+                    continue;
+                }
+                for (r, c) in (0..3).flat_map(|r| (0..3).map(move |c| (r, c))) {
+                    block[(3 * (row - own.start) + r, 3 * (column - own.start) + c)] =
+                        value.col(c)[r];
+                }
+            }
+        }
+        let factor = block
+            .llt(Side::Lower)
+            .map_err(|_| LinearFailure::Indefinite(self.unknowns[own.start] as usize))?;
+        let mut inverse = Mat::<f64>::identity(3 * count, 3 * count);
+        factor.solve_in_place_with_conj(Conj::No, inverse.as_mut());
+        let entry = |row: usize, column: usize| {
+            let column_of = |c: usize| {
+                DVec3::from_array([0, 1, 2].map(|r| inverse[(3 * row + r, 3 * column + c)]))
+            };
+            DMat3::from_cols(column_of(0), column_of(1), column_of(2))
+        };
+        Ok((0..count * count)
+            .map(|k| entry(k / count, k % count))
+            .collect())
+    }
+
+    /// Largest eigenvalue of `D^-1 A` by its Rayleigh quotient, from a fixed start vector.
+    fn power_iteration(&self) -> f64 {
+        let number = |i: usize| ((i * 7919 + 13) % 101) as f64 / 50.0 - 1.0;
+        let mut vector: Vec<DVec3> = (0..self.unknowns.len())
+            .map(|i| DVec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2)))
+            .collect();
+        let mut image = vector.clone();
+        let mut largest = 1.0_f64;
+        for _ in 0..POWER_STEPS {
+            self.tangent.view().multiply(&vector, &mut image);
+            let scaled: Vec<DVec3> = (0..image.len()).map(|i| self.scaled(&image, i)).collect();
+            let energy = dot(&vector, &image);
+            let length = dot(&image, &scaled);
+            if energy <= 0.0 || length <= 0.0 {
+                break;
+            }
+            largest = length / energy;
+            let unit = length.sqrt().recip();
+            vector = scaled.into_iter().map(|v| unit * v).collect();
+        }
+        largest.max(1.0)
+    }
+
+    /// Row `index` of `D^-1 r`.
+    fn scaled(&self, vector: &[DVec3], index: usize) -> DVec3 {
+        let own = &vector[self.nodes[self.node_of[index] as usize].clone()];
+        let row = &self.inverses[self.inverse_offset[index]..][..own.len()];
+        row.iter()
+            .zip(own)
+            .map(|(block, entry)| *block * *entry)
+            .sum()
+    }
+
+    /// An approximate solution for forces on the jumps (N): Chebyshev polynomial of the first kind
+    /// (Saad 2003, algorithm 12.1) in `D^-1 A`.
     pub(super) fn solve(&self, right: &[DVec3]) -> Vec<DVec3> {
-        let cholesky = self.cholesky.as_ref();
-        cholesky.map_or(Vec::new(), |cholesky| cholesky.solve(right))
+        let (high, low) = (self.largest_eigenvalue, self.largest_eigenvalue / CONDITION);
+        let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
+        let sigma = middle / half;
+        let mut rho = 1.0 / sigma;
+        let indices = || (0..right.len()).into_par_iter();
+        let mut step: Vec<DVec3> = indices().map(|i| self.scaled(right, i) / middle).collect();
+        let mut solution = step.clone();
+        let mut residual = vec![DVec3::ZERO; right.len()];
+        let tangent = self.tangent.view();
+        for _ in 1..DEGREE {
+            let remaining = |i: usize| right[i] - tangent.row_product(i, &solution);
+            residual
+                .par_iter_mut()
+                .enumerate()
+                .for_each(|(i, entry)| *entry = remaining(i));
+            let next = 1.0 / (2.0 * sigma - rho);
+            let pairs = step.par_iter_mut().zip(&mut solution).enumerate();
+            pairs.for_each(|(i, (step, entry))| {
+                *step = rho * next * *step + 2.0 * next / half * self.scaled(&residual, i);
+                *entry += *step;
+            });
+            rho = next;
+        }
+        solution
     }
 
     /// The jumps' entries of a vector over all unknowns.
@@ -99,14 +208,23 @@ impl JumpBlock {
         entries.map(|&unknown| vector[unknown as usize]).collect()
     }
 
-    /// Forces that `vector` over all unknowns causes on the jumps (N), by the rock alone.
-    pub(super) fn forces_of(&self, rows: BlockRows<'_>, vector: &[DVec3]) -> Vec<DVec3> {
-        let force = |&unknown: &u32| {
-            let row = rows.row(unknown as usize);
-            row.map(|(column, block)| *block * vector[column as usize])
-                .sum()
-        };
-        self.unknowns.par_iter().map(force).collect()
+    /// Forces on the jumps (N) that remain of `forces` once jumps `own`, and the rock as in
+    /// `vector` over all unknowns, resist them.
+    pub(super) fn remaining(
+        &self,
+        rows: BlockRows<'_>,
+        forces: &[DVec3],
+        own: &[DVec3],
+        vector: &[DVec3],
+    ) -> Vec<DVec3> {
+        let tangent = self.tangent.view();
+        let pairs = self.unknowns.par_iter().zip(forces).enumerate();
+        pairs
+            .map(|(index, (&unknown, force))| {
+                let rock = rows.row_product(unknown as usize, vector);
+                *force - tangent.row_product(index, own) - rock
+            })
+            .collect()
     }
 
     /// Subtracts the forces that `jumps` cause from those on the unknowns of the rock (N).
@@ -132,6 +250,11 @@ impl JumpBlock {
     }
 }
 
+/// Scalar product, summed in a fixed order.
+fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+}
+
 fn coupling(rows: BlockRows<'_>, rock: &[u32], jumps: &[u32]) -> Vec<CoupledRow> {
     let mut number = vec![u32::MAX; rows.rows()];
     for (index, &jump) in jumps.iter().enumerate() {
@@ -151,17 +274,19 @@ fn coupling(rows: BlockRows<'_>, rock: &[u32], jumps: &[u32]) -> Vec<CoupledRow>
     rock.par_iter().enumerate().filter_map(coupled).collect()
 }
 
-fn places(system: &System<'_>, own: &OwnedBlockRows) -> Vec<(usize, usize)> {
+/// Addresses of the interface's blocks in the jumps' own matrix.
+fn places(system: &System<'_>, own: &OwnedBlockRows) -> Vec<usize> {
     let interface = &system.discretisation.interface;
     let unknowns = &interface.unknowns;
     let number = |unknown: u32| unknowns.partition_point(|&other| other < unknown) as u32;
     (0..unknowns.len())
         .flat_map(|row| {
-            let columns = &own.columns[own.row_offset[row]..own.row_offset[row + 1]];
+            let start = own.row_offset[row];
+            let columns = &own.columns[start..own.row_offset[row + 1]];
             let blocks = interface.columns.of(row).iter();
             blocks.map(move |&column| {
                 let column = number(column);
-                (row, columns.partition_point(|&other| other < column))
+                start + columns.partition_point(|&other| other < column)
             })
         })
         .collect()

@@ -45,15 +45,19 @@ impl<'a> BlockRows<'a> {
         columns.zip(&self.blocks[range])
     }
 
+    /// Entry `row` of `A vector`.
+    pub fn row_product(&self, row: usize, vector: &[DVec3]) -> DVec3 {
+        self.row(row).fold(DVec3::ZERO, |sum, (column, block)| {
+            sum + *block * vector[column as usize]
+        })
+    }
+
     /// `product = A vector`, both of one entry a block row, without allocating.
     pub fn multiply(&self, vector: &[DVec3], product: &mut [DVec3]) {
         let tasks = product.par_chunks_mut(ROWS_PER_TASK).enumerate();
         tasks.for_each(|(task, chunk)| {
             for (place, sum) in chunk.iter_mut().enumerate() {
-                let row = self.row(task * ROWS_PER_TASK + place);
-                *sum = row.fold(DVec3::ZERO, |sum, (column, block)| {
-                    sum + *block * vector[column as usize]
-                });
+                *sum = self.row_product(task * ROWS_PER_TASK + place, vector);
             }
         });
     }
