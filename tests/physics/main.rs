@@ -10,6 +10,7 @@ mod dice;
 mod families;
 mod geometries;
 mod junctions;
+mod linear_solvers;
 mod loops;
 mod manufactured;
 mod networks;

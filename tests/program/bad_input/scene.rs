@@ -48,6 +48,27 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "unknown linear solver",
+        scene: &[(
+            "[fracture.joint]",
+            "[solver]\nlinear = \"lu\"\n[fracture.joint]",
+        )],
+        says: &[
+            "unknown linear solver \"lu\"",
+            "write \"direct\", \"condensed\" or \"iterative\"",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "too little memory",
+        scene: &[(
+            "[fracture.joint]",
+            "[solver]\nmemory_limit = 10\n[fracture.joint]",
+        )],
+        says: &["[solver]: the iterative solver needs", "mesh coarser"],
+        ..SOUND
+    },
+    Case {
         name: "misspelt section",
         scene: &[("[fracture.joint]", "[fractur.joint]")],
         says: &[

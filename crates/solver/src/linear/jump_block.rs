@@ -150,7 +150,7 @@ impl JumpBlock {
         let mut largest = 1.0_f64;
         for _ in 0..POWER_STEPS {
             self.tangent.view().multiply(&vector, &mut image);
-            let scaled: Vec<DVec3> = (0..image.len()).map(|i| self.scaled(&image, i)).collect();
+            let scaled = self.scaled(&image);
             let energy = dot(&vector, &image);
             let length = dot(&image, &scaled);
             if energy <= 0.0 || length <= 0.0 {
@@ -163,8 +163,16 @@ impl JumpBlock {
         largest.max(1.0)
     }
 
+    /// `D^-1 r`.
+    pub(super) fn scaled(&self, vector: &[DVec3]) -> Vec<DVec3> {
+        let indices = (0..vector.len()).into_par_iter();
+        indices
+            .map(|index| self.scaled_entry(vector, index))
+            .collect()
+    }
+
     /// Row `index` of `D^-1 r`.
-    fn scaled(&self, vector: &[DVec3], index: usize) -> DVec3 {
+    fn scaled_entry(&self, vector: &[DVec3], index: usize) -> DVec3 {
         let own = &vector[self.nodes[self.node_of[index] as usize].clone()];
         let row = &self.inverses[self.inverse_offset[index]..][..own.len()];
         row.iter()
@@ -181,7 +189,9 @@ impl JumpBlock {
         let sigma = middle / half;
         let mut rho = 1.0 / sigma;
         let indices = || (0..right.len()).into_par_iter();
-        let mut step: Vec<DVec3> = indices().map(|i| self.scaled(right, i) / middle).collect();
+        let mut step: Vec<DVec3> = indices()
+            .map(|i| self.scaled_entry(right, i) / middle)
+            .collect();
         let mut solution = step.clone();
         let mut residual = vec![DVec3::ZERO; right.len()];
         let tangent = self.tangent.view();
@@ -194,7 +204,7 @@ impl JumpBlock {
             let next = 1.0 / (2.0 * sigma - rho);
             let pairs = step.par_iter_mut().zip(&mut solution).enumerate();
             pairs.for_each(|(i, (step, entry))| {
-                *step = rho * next * *step + 2.0 * next / half * self.scaled(&residual, i);
+                *step = rho * next * *step + 2.0 * next / half * self.scaled_entry(&residual, i);
                 *entry += *step;
             });
             rho = next;

@@ -29,7 +29,7 @@ use walls::Landing;
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
-const LOOSEST_SOLVE: f64 = 1e-2;
+const LOOSEST_SOLVE: f64 = 1e-3;
 
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
 ///

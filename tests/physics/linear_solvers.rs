@@ -1,0 +1,153 @@
+//! The linear solvers against each other: the same state whichever solves.
+
+use glam::DVec3;
+use lie_mesh::structured::Patch;
+use lie_solver::{
+    Discretisation, LinearMethod, Newton, NewtonSettings, Problem, Solution, Support, System,
+    solution,
+};
+
+use crate::networks;
+use crate::scenes::{self, EXACT, joint};
+
+fn settings(method: LinearMethod) -> NewtonSettings {
+    NewtonSettings {
+        linear: Some(method),
+        ..NewtonSettings::default()
+    }
+}
+
+/// Solves load steps of equal size; returns the solution and the Newton iterations of all steps.
+fn solve(problem: &Problem, method: LinearMethod, steps: usize) -> (Solution, usize) {
+    let discretisation = Discretisation::of(problem).expect("supported");
+    let system = System::assemble(problem, discretisation);
+    let mut newton = Newton::new(&system, settings(method)).expect("prepared");
+    let mut state = system.initial_state();
+    let mut iterations = 0;
+    for step in 1..=steps {
+        let load = step as f64 / steps as f64;
+        let record = newton.step(&system, &mut state, load, |_, _| {});
+        assert!(record.converged(), "{method}: {record:?}");
+        iterations += record.iterations.len();
+    }
+    (solution(&system, &state), iterations)
+}
+
+/// Largest difference of displacements, apertures and tractions, each against its largest value.
+fn difference(a: &Solution, b: &Solution) -> f64 {
+    let pairs = || a.facet_points.iter().zip(&b.facet_points);
+    let moved = a.displacements.iter().zip(&b.displacements);
+    let ratio = |pairs: &mut dyn Iterator<Item = (f64, f64)>| {
+        let (error, scale) = pairs.fold((0.0_f64, 0.0_f64), |(error, scale), (e, s)| {
+            (error.max(e), scale.max(s))
+        });
+        error / scale
+    };
+    let displacement = ratio(&mut moved.map(|(a, b)| ((*a - *b).length(), a.length())));
+    let aperture = ratio(&mut pairs().map(|(a, b)| ((a.aperture - b.aperture).abs(), a.aperture)));
+    let traction =
+        ratio(&mut pairs().map(|(a, b)| ((a.traction - b.traction).length(), a.traction.length())));
+    displacement.max(aperture).max(traction)
+}
+
+/// A level joint and an upright one that ends on it, pressed until the level one closes to a tenth.
+fn t_block(cubes: usize) -> Problem {
+    let level = |x: [f64; 3]| x[2] == 0.5;
+    let upright = |x: [f64; 3]| x[0] == 0.5 && x[2] <= 0.5;
+    let patches = [
+        Patch {
+            name: "level",
+            contains: &level,
+        },
+        Patch {
+            name: "upright",
+            contains: &upright,
+        },
+    ];
+    let draft = scenes::box_draft([cubes; 3], [1.0; 3], &patches);
+    let mut problem = scenes::problem(scenes::build(draft), joint(EXACT));
+    for face in ["left", "front", "bottom"] {
+        scenes::support(&mut problem, face, Support::Symmetry);
+    }
+    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -28.4e6));
+    problem
+}
+
+#[test]
+fn all_solvers_reach_the_same_state() {
+    let network = networks::meshed(&networks::polygons(3), 0.25).expect("a network");
+    for (name, problem) in [
+        ("t", t_block(6)),
+        ("network", networks::random_problem(network, 3)),
+    ] {
+        let (direct, _) = solve(&problem, LinearMethod::Direct, 1);
+        let (condensed, _) = solve(&problem, LinearMethod::Condensed, 1);
+        let (iterative, _) = solve(&problem, LinearMethod::Iterative, 1);
+        let (exact, inexact) = (
+            difference(&direct, &condensed),
+            difference(&direct, &iterative),
+        );
+        assert!(exact < 1e-9, "{name}: {exact:e}");
+        assert!(inexact < 1e-6, "{name}: {inexact:e}");
+    }
+}
+
+#[test]
+fn many_steps_end_where_one_does_and_cost_little() {
+    let problem = t_block(6);
+    for method in LinearMethod::ALL {
+        let (one, _) = solve(&problem, method, 1);
+        let (many, iterations) = solve(&problem, method, 40);
+        let error = difference(&one, &many);
+        assert!(error < 1e-6, "{method}: {error:e}");
+        assert!(iterations <= 120, "{method}: {iterations} iterations");
+    }
+}
+
+#[test]
+fn one_set_up_serves_other_laws() {
+    let problem = t_block(4);
+    for method in LinearMethod::ALL {
+        let discretisation = Discretisation::of(&problem).expect("supported");
+        let mut system = System::assemble(&problem, discretisation);
+        let mut newton = Newton::new(&system, settings(method)).expect("prepared");
+        for factor in [1e-2, 1.0, 1e3] {
+            let mut stiffer = problem.clone();
+            for fracture in &mut stiffer.fractures {
+                fracture.law.closure.normal_stiffness *= factor;
+                fracture.law.shear_stiffness *= factor;
+                fracture.law.closure.aperture *= 2.0;
+            }
+            system.set_laws(stiffer.fractures.iter().map(|f| f.law).collect());
+            let mut state = system.initial_state();
+            let record = newton.step(&system, &mut state, 1.0, |_, _| {});
+            assert!(record.converged(), "{method}, {factor}: {record:?}");
+            let (alone, _) = solve(&stiffer, method, 1);
+            let error = difference(&alone, &solution(&system, &state));
+            assert!(error < 1e-6, "{method}, {factor}: {error:e}");
+        }
+    }
+}
+
+/// Stiff fractures cost conjugate gradients nothing; soft ones let blocks move, which costs some.
+#[test]
+fn iterations_are_bounded_for_stiff_and_soft_fractures() {
+    let mut counts = Vec::new();
+    for factor in [1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6] {
+        let mut problem = t_block(8);
+        for fracture in &mut problem.fractures {
+            fracture.law.closure.kind = lie_core::ClosureKind::Linear;
+            fracture.law.closure.normal_stiffness *= factor;
+            fracture.law.shear_stiffness *= factor;
+        }
+        let discretisation = Discretisation::of(&problem).expect("supported");
+        let system = System::assemble(&problem, discretisation);
+        let iterative = settings(LinearMethod::Iterative);
+        let mut newton = Newton::new(&system, iterative).expect("prepared");
+        let record = newton.step(&system, &mut system.initial_state(), 1.0, |_, _| {});
+        assert!(record.converged(), "{factor}: {record:?}");
+        counts.push(record.linear_iterations());
+    }
+    println!("iterations: {counts:?}");
+    assert!(counts.iter().all(|&count| count <= 90), "{counts:?}");
+}
