@@ -104,11 +104,12 @@ impl Mesh {
     /// # Errors
     /// As [`Mesh::build`].
     pub fn build_on(
-        draft: Draft,
-        Faces { adjacency }: Faces,
+        mut draft: Draft,
+        Faces { mut adjacency }: Faces,
         roles: &[SurfaceRole],
     ) -> Result<Self, Vec<Defect>> {
-        let nodes: Vec<DVec3> = draft.nodes.iter().copied().map(DVec3::from).collect();
+        let nodes = std::mem::take(&mut draft.nodes).into_iter();
+        let nodes: Vec<DVec3> = nodes.map(DVec3::from).collect();
         let mut defects = check::cells(&draft, &nodes);
         if !defects.is_empty() {
             return Err(defects);
@@ -126,13 +127,11 @@ impl Mesh {
         if !defects.is_empty() {
             return Err(defects);
         }
-        let mut is_fractured = vec![false; adjacency.face_count()];
         for &(minus, plus) in &faces {
-            is_fractured[minus as usize] = true;
-            is_fractured[plus as usize] = true;
+            adjacency.part(minus, plus);
         }
-        let sectors = sectors::find(cells, nodes.len(), &adjacency, &is_fractured);
-        let (block, block_count) = blocks::find(cells.len(), &adjacency, &is_fractured);
+        let sectors = sectors::find(cells, nodes.len(), &adjacency, &faces);
+        let (block, block_count) = blocks::find(cells, &adjacency);
         let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
         let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
         let shared = surfaces.shared.iter();
@@ -191,10 +190,15 @@ fn push_face(
     elements: &mut Elements,
     slots: &mut Vec<u32>,
 ) {
-    let own: Vec<usize> = adjacency.slots(cells, face).collect();
-    let nodes: Vec<u32> = own.iter().map(|&slot| cells.nodes[slot]).collect();
-    elements.push(adjacency.shape_of(cells, face).shape, &nodes);
-    slots.extend(own.iter().map(|&slot| slot as u32));
+    let first = slots.len();
+    slots.extend(adjacency.slots(cells, face).map(|slot| slot as u32));
+    // No face has more nodes than a quadratic quadrangle.
+    let mut nodes = [0; 9];
+    let own = &slots[first..];
+    for (node, &slot) in nodes.iter_mut().zip(own) {
+        *node = cells.nodes[slot as usize];
+    }
+    elements.push(adjacency.shape_of(cells, face).shape, &nodes[..own.len()]);
 }
 
 fn collect_facets(
@@ -223,8 +227,8 @@ fn collect_facets(
             facets.plus_slots.extend(twin.map(|slot| slot as u32));
         }
         facets.fracture.push(facet.fracture);
-        facets.minus.push(adjacency.cell_of_face[minus as usize]);
-        facets.plus.push(adjacency.cell_of_face[plus as usize]);
+        facets.minus.push(adjacency.cell_of(minus));
+        facets.plus.push(adjacency.cell_of(plus));
     }
     facets
 }
@@ -243,8 +247,7 @@ fn collect_boundaries(
             slots: Vec::new(),
         };
         for &face in faces {
-            let cell = adjacency.cell_of_face[face as usize];
-            boundary.cell.push(cell);
+            boundary.cell.push(adjacency.cell_of(face));
             push_face(
                 cells,
                 adjacency,

@@ -2,21 +2,19 @@
 
 use glam::DVec3;
 
-use crate::adjacency::Adjacency;
+use crate::adjacency::{Adjacency, NONE};
 use crate::check::{DraftFacet, Surfaces};
 use crate::defect::Defect;
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
+use crate::pairing::{Entry, visit_runs};
 
-/// An edge of a facet, as its first face runs along it.
-struct Edge {
-    key: (u32, u32, u32),
-    facet: u32,
-    forward: bool,
-}
-
-/// Facets that share an edge, and whether their first faces run along it the same way.
+/// The facet on the other side of an edge, or [`NONE`], and whether the first faces of both run
+/// along it the same way.
 type Link = (u32, bool);
+
+/// The links of a facet, in ascending order of the edges' nodes.
+type Links = [Link; 4];
 
 /// Returns `(minus face, plus face)` of every facet. Facets of one fracture that share an edge
 /// with no third facet of that fracture agree. Each connected surface then points upwards (z, else
@@ -61,48 +59,106 @@ fn chosen(facet: &DraftFacet, flip: Option<bool>) -> (u32, u32) {
 }
 
 fn placed_area(draft: &Draft, nodes: &[DVec3], adjacency: &Adjacency, face: u32) -> (DVec3, DVec3) {
+    let mut points = [DVec3::ZERO; 4];
+    let (corners, count) = corners(draft, adjacency, face);
+    for (point, node) in points.iter_mut().zip(&corners[..count]) {
+        *point = nodes[*node as usize];
+    }
+    let points = &points[..count];
+    (facet_centre(points), facet_area_vector(points))
+}
+
+/// Corner nodes of a face, and how many there are.
+fn corners(draft: &Draft, adjacency: &Adjacency, face: u32) -> ([u32; 4], usize) {
     let cells = &draft.cells.elements;
     let count = adjacency.shape_of(cells, face).corners().len();
-    let slots = adjacency.slots(cells, face).take(count);
-    let points: Vec<DVec3> = slots
-        .map(|slot| nodes[cells.nodes[slot] as usize])
-        .collect();
-    (facet_centre(&points), facet_area_vector(&points))
+    let mut corners = [NONE; 4];
+    for (corner, slot) in corners
+        .iter_mut()
+        .zip(adjacency.slots(cells, face).take(count))
+    {
+        *corner = cells.nodes[slot];
+    }
+    (corners, count)
 }
 
 /// For every facet its neighbours across edges where exactly two facets of the fracture meet.
-fn links(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Vec<Link>> {
-    let cells = &draft.cells.elements;
-    let mut edges = Vec::new();
-    for (facet, entry) in surfaces.facets.iter().enumerate() {
-        let face = entry.faces[0];
-        let count = adjacency.shape_of(cells, face).corners().len();
-        let slots = adjacency.slots(cells, face).take(count);
-        let nodes: Vec<u32> = slots.map(|slot| cells.nodes[slot]).collect();
-        for (i, &from) in nodes.iter().enumerate() {
-            let to = nodes[(i + 1) % nodes.len()];
-            let key = (entry.fracture, from.min(to), from.max(to));
-            edges.push(Edge {
-                key,
-                facet: facet as u32,
-                forward: from < to,
-            });
-        }
-    }
-    edges.sort_by_key(|edge| (edge.key, edge.facet));
-    let mut links = vec![Vec::new(); surfaces.facets.len()];
-    for run in edges.chunk_by(|a, b| a.key == b.key) {
+fn links(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Links> {
+    let emit = |facet: usize, entries: &mut Vec<Entry>| {
+        let DraftFacet {
+            fracture, faces, ..
+        } = surfaces.facets[facet];
+        entries.extend(
+            edges(draft, adjacency, faces[0])
+                .iter()
+                .enumerate()
+                .map(|(place, &(low, high, forward))| Entry {
+                    key: [fracture, low, high],
+                    item: Edge {
+                        facet: facet as u32,
+                        place,
+                        forward,
+                    }
+                    .pack(),
+                })
+                .filter(|entry| entry.key[1] != NONE),
+        );
+    };
+    let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[Entry]| {
         if let [a, b] = run {
-            let alike = a.forward == b.forward;
-            links[a.facet as usize].push((b.facet, alike));
-            links[b.facet as usize].push((a.facet, alike));
+            pairs.push([a, b].map(|entry| Edge::unpack(entry.item)));
         }
+    };
+    let mut links = vec![[(NONE, false); 4]; surfaces.facets.len()];
+    for [a, b] in visit_runs(surfaces.facets.len(), emit, visit)
+        .into_iter()
+        .flatten()
+    {
+        let alike = a.forward == b.forward;
+        links[a.facet as usize][a.place] = (b.facet, alike);
+        links[b.facet as usize][b.place] = (a.facet, alike);
     }
     links
 }
 
+/// Lower and higher node of the edges of a face, ascending, and whether the face runs from the
+/// lower to the higher; [`NONE`] behind.
+fn edges(draft: &Draft, adjacency: &Adjacency, face: u32) -> [(u32, u32, bool); 4] {
+    let (corners, count) = corners(draft, adjacency, face);
+    let mut edges = [(NONE, NONE, false); 4];
+    for (place, edge) in edges[..count].iter_mut().enumerate() {
+        let (from, to) = (corners[place], corners[(place + 1) % count]);
+        *edge = (from.min(to), from.max(to), from < to);
+    }
+    edges.sort_unstable();
+    edges
+}
+
+/// An edge of a facet.
+struct Edge {
+    facet: u32,
+    /// Its place among the edges of the facet.
+    place: usize,
+    /// Whether the facet's first face runs from its lower node to its higher.
+    forward: bool,
+}
+
+impl Edge {
+    fn pack(&self) -> u32 {
+        self.facet << 3 | (self.place as u32) << 1 | u32::from(self.forward)
+    }
+
+    fn unpack(item: u32) -> Self {
+        Self {
+            facet: item >> 3,
+            place: (item >> 1 & 3) as usize,
+            forward: item & 1 == 1,
+        }
+    }
+}
+
 /// Orients everything that hangs together with `seed`; false if the surface has only one side.
-fn spread(seed: u32, links: &[Vec<Link>], flipped: &mut [Option<bool>]) -> (Vec<u32>, bool) {
+fn spread(seed: u32, links: &[Links], flipped: &mut [Option<bool>]) -> (Vec<u32>, bool) {
     flipped[seed as usize] = Some(false);
     let mut surface = vec![seed];
     let mut consistent = true;
@@ -110,7 +166,7 @@ fn spread(seed: u32, links: &[Vec<Link>], flipped: &mut [Option<bool>]) -> (Vec<
     while next < surface.len() {
         let facet = surface[next] as usize;
         next += 1;
-        for &(other, alike) in &links[facet] {
+        for &(other, alike) in links[facet].iter().filter(|link| link.0 != NONE) {
             let wanted = flipped[facet].map(|flip| flip != alike);
             match flipped[other as usize] {
                 None => {

@@ -1,5 +1,7 @@
 //! Sectors of a node: groups of cells that reach each other without crossing a fracture.
 
+use rayon::prelude::*;
+
 use crate::adjacency::{Adjacency, NONE};
 use crate::disjoint_sets::DisjointSets;
 use crate::draft::Elements;
@@ -21,41 +23,40 @@ pub struct Sectors {
     pub of_cell_node: Vec<u32>,
 }
 
-/// Finds the sectors. `is_fractured[face]` tells which cell faces carry a fracture facet.
+/// Finds the sectors. `fractured` are the cell faces that carry a fracture facet; they have no
+/// neighbour any more in `adjacency`.
 pub(crate) fn find(
     cells: &Elements,
     node_count: usize,
     adjacency: &Adjacency,
-    is_fractured: &[bool],
+    fractured: &[(u32, u32)],
 ) -> Sectors {
-    let on_fracture = nodes_on_fractures(cells, node_count, adjacency, is_fractured);
-    let mut sets = DisjointSets::new(cells.nodes.len());
-    for (face, &other) in adjacency.neighbour.iter().enumerate() {
-        let joins = other != NONE && (face as u32) < other && !is_fractured[face];
-        if joins {
-            join_across(
-                cells,
-                adjacency,
-                face as u32,
-                other,
-                &on_fracture,
-                &mut sets,
-            );
+    let on_fracture = nodes_on_fractures(cells, node_count, adjacency, fractured);
+    let sets = DisjointSets::new(cells.nodes.len());
+    (0..cells.len()).into_par_iter().for_each(|cell| {
+        let nodes = cells.nodes_of(cell);
+        if !nodes.iter().any(|&node| on_fracture[node as usize]) {
+            return;
         }
-    }
-    number(cells, &on_fracture, &mut sets)
+        for face in adjacency.faces_of(cells, cell) {
+            let other = adjacency.neighbour[face as usize];
+            if other != NONE && face < other {
+                join_across(cells, adjacency, (face, other), &on_fracture, &sets);
+            }
+        }
+    });
+    number(cells, &on_fracture, sets.into_roots())
 }
 
 fn nodes_on_fractures(
     cells: &Elements,
     node_count: usize,
     adjacency: &Adjacency,
-    is_fractured: &[bool],
+    fractured: &[(u32, u32)],
 ) -> Vec<bool> {
     let mut on_fracture = vec![false; node_count];
-    let fractured = (0..is_fractured.len()).filter(|&face| is_fractured[face]);
-    for face in fractured {
-        for slot in adjacency.slots(cells, face as u32) {
+    for face in fractured.iter().flat_map(|&(minus, plus)| [minus, plus]) {
+        for slot in adjacency.slots(cells, face) {
             on_fracture[cells.nodes[slot] as usize] = true;
         }
     }
@@ -65,10 +66,9 @@ fn nodes_on_fractures(
 fn join_across(
     cells: &Elements,
     adjacency: &Adjacency,
-    face: u32,
-    other: u32,
+    (face, other): (u32, u32),
     on_fracture: &[bool],
-    sets: &mut DisjointSets,
+    sets: &DisjointSets,
 ) {
     for slot in adjacency.slots(cells, face) {
         let node = cells.nodes[slot];
@@ -83,25 +83,25 @@ fn join_across(
     }
 }
 
-fn number(cells: &Elements, on_fracture: &[bool], sets: &mut DisjointSets) -> Sectors {
+/// Numbers the sectors of each node. `roots` has the lowest slot of each sector at every slot, and
+/// becomes the sectors in place: the lowest slot comes first and has its number already.
+fn number(cells: &Elements, on_fracture: &[bool], mut roots: Vec<u32>) -> Sectors {
     let mut count = vec![0_u32; on_fracture.len()];
-    let mut of_cell_node = vec![0_u32; cells.nodes.len()];
-    for slot in 0..cells.nodes.len() {
-        let node = cells.nodes[slot] as usize;
+    for (slot, &node) in cells.nodes.iter().enumerate() {
+        let node = node as usize;
+        let root = roots[slot] as usize;
         if !on_fracture[node] {
             count[node] = 1;
-            continue;
-        }
-        let root = sets.root(slot as u32) as usize;
-        if root == slot {
-            of_cell_node[slot] = count[node];
+            roots[slot] = 0;
+        } else if root == slot {
+            roots[slot] = count[node];
             count[node] += 1;
         } else {
-            of_cell_node[slot] = of_cell_node[root];
+            roots[slot] = roots[root];
         }
     }
     Sectors {
         count,
-        of_cell_node,
+        of_cell_node: roots,
     }
 }
