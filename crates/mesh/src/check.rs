@@ -138,10 +138,9 @@ fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
         *corner = nodes[node as usize];
     }
     let pairs = corners.iter().enumerate();
-    let longest = pairs
-        .flat_map(|(place, a)| corners[..place].iter().map(|b| a.distance_squared(*b)))
-        .fold(0.0, f64::max)
-        .sqrt();
+    let distances =
+        pairs.flat_map(|(place, a)| corners[..place].iter().map(|b| a.distance_squared(*b)));
+    let longest = distances.fold(0.0, f64::max).sqrt();
     if longest == 0.0 {
         return 0.0;
     }

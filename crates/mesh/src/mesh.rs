@@ -1,6 +1,7 @@
 //! The checked mesh.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::adjacency::Adjacency;
 use crate::defect::Defect;
@@ -130,9 +131,17 @@ impl Mesh {
         for &(minus, plus) in &faces {
             adjacency.part(minus, plus);
         }
-        let sectors = sectors::find(cells, nodes.len(), &adjacency, &faces);
-        let (block, block_count) = blocks::find(cells, &adjacency);
-        let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
+        // The blocks are one thread's work, which leaves the others to the rest.
+        let ((block, block_count), (sectors, facets)) = rayon::join(
+            || blocks::find(cells, &adjacency),
+            || {
+                let sectors = sectors::find(cells, nodes.len(), &adjacency, &faces);
+                (
+                    sectors,
+                    collect_facets(cells, &adjacency, &surfaces, &faces),
+                )
+            },
+        );
         let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
         let shared = surfaces.shared.iter();
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
@@ -207,11 +216,39 @@ fn collect_facets(
     surfaces: &check::Surfaces,
     faces: &[(u32, u32)],
 ) -> Facets {
+    const PER_TASK: usize = 4096;
+    let tasks = surfaces.facets.par_chunks(PER_TASK);
+    let parts: Vec<Facets> = tasks
+        .zip(faces.par_chunks(PER_TASK))
+        .map(|(facets, faces)| facets_between(cells, adjacency, facets, faces))
+        .collect();
+    let mut whole = Facets {
+        elements: Elements::new(),
+        ..Facets::default()
+    };
+    for part in parts {
+        whole.elements.extend(&part.elements);
+        whole.fracture.extend(part.fracture);
+        whole.minus.extend(part.minus);
+        whole.plus.extend(part.plus);
+        whole.minus_slots.extend(part.minus_slots);
+        whole.plus_slots.extend(part.plus_slots);
+    }
+    whole
+}
+
+/// The facets between these pairs of minus and plus faces.
+fn facets_between(
+    cells: &Elements,
+    adjacency: &Adjacency,
+    drafts: &[check::DraftFacet],
+    faces: &[(u32, u32)],
+) -> Facets {
     let mut facets = Facets {
         elements: Elements::new(),
         ..Facets::default()
     };
-    for (facet, &(minus, plus)) in surfaces.facets.iter().zip(faces) {
+    for (draft, &(minus, plus)) in drafts.iter().zip(faces) {
         push_face(
             cells,
             adjacency,
@@ -221,12 +258,11 @@ fn collect_facets(
         );
         for slot in adjacency.slots(cells, minus) {
             let node = cells.nodes[slot];
-            let twin = adjacency
-                .slots(cells, plus)
-                .find(|&slot| cells.nodes[slot] == node);
+            let mut twins = adjacency.slots(cells, plus);
+            let twin = twins.find(|&slot| cells.nodes[slot] == node);
             facets.plus_slots.extend(twin.map(|slot| slot as u32));
         }
-        facets.fracture.push(facet.fracture);
+        facets.fracture.push(draft.fracture);
         facets.minus.push(adjacency.cell_of(minus));
         facets.plus.push(adjacency.cell_of(plus));
     }

@@ -1,6 +1,7 @@
 //! Orientation of fractures: which of the two cells at a facet is on the plus side.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, NONE};
 use crate::check::{DraftFacet, Surfaces};
@@ -25,7 +26,9 @@ pub(crate) fn fractures(
     adjacency: &Adjacency,
     surfaces: &Surfaces,
 ) -> (Vec<(u32, u32)>, Vec<Defect>) {
-    let links = links(draft, adjacency, surfaces);
+    let faces = surfaces.facets.par_iter().map(|facet| facet.faces[0]);
+    let rings: Vec<Ring> = faces.map(|face| Ring::of(draft, adjacency, face)).collect();
+    let links = links(surfaces, &rings);
     let mut flipped: Vec<Option<bool>> = vec![None; surfaces.facets.len()];
     let mut defects = Vec::new();
     for seed in 0..surfaces.facets.len() {
@@ -37,8 +40,9 @@ pub(crate) fn fractures(
             defects.push(one_sided(draft, surfaces, &surfaces.facets[seed]));
         }
         let areas = surface.iter().map(|&facet| {
-            let face = chosen(&surfaces.facets[facet as usize], flipped[facet as usize]).0;
-            placed_area(draft, nodes, adjacency, face)
+            let (centre, area) = rings[facet as usize].centre_and_area(nodes);
+            let flip = flipped[facet as usize] == Some(true);
+            (centre, if flip { -area } else { area })
         });
         if points_down(&areas.collect::<Vec<_>>()) {
             for &facet in &surface {
@@ -58,51 +62,62 @@ fn chosen(facet: &DraftFacet, flip: Option<bool>) -> (u32, u32) {
     if flip == Some(true) { (b, a) } else { (a, b) }
 }
 
-fn placed_area(draft: &Draft, nodes: &[DVec3], adjacency: &Adjacency, face: u32) -> (DVec3, DVec3) {
-    let mut points = [DVec3::ZERO; 4];
-    let (corners, count) = corners(draft, adjacency, face);
-    for (point, node) in points.iter_mut().zip(&corners[..count]) {
-        *point = nodes[*node as usize];
-    }
-    let points = &points[..count];
-    (facet_centre(points), facet_area_vector(points))
+/// The corners of a facet as its first face runs round them, and how many they are.
+#[derive(Clone, Copy)]
+struct Ring {
+    corners: [u32; 4],
+    count: usize,
 }
 
-/// Corner nodes of a face, and how many there are.
-fn corners(draft: &Draft, adjacency: &Adjacency, face: u32) -> ([u32; 4], usize) {
-    let cells = &draft.cells.elements;
-    let count = adjacency.shape_of(cells, face).corners().len();
-    let mut corners = [NONE; 4];
-    for (corner, slot) in corners
-        .iter_mut()
-        .zip(adjacency.slots(cells, face).take(count))
-    {
-        *corner = cells.nodes[slot];
+impl Ring {
+    fn of(draft: &Draft, adjacency: &Adjacency, face: u32) -> Self {
+        let cells = &draft.cells.elements;
+        let mut corners = [NONE; 4];
+        let count = adjacency.shape_of(cells, face).corners().len();
+        let slots = adjacency.slots(cells, face).take(count);
+        for (corner, slot) in corners.iter_mut().zip(slots) {
+            *corner = cells.nodes[slot];
+        }
+        Self { corners, count }
     }
-    (corners, count)
+
+    fn centre_and_area(&self, nodes: &[DVec3]) -> (DVec3, DVec3) {
+        let points = self.corners.map(|node| nodes.get(node as usize));
+        let points = points.map(|point| point.copied().unwrap_or_default());
+        let points = &points[..self.count];
+        (facet_centre(points), facet_area_vector(points))
+    }
+
+    /// Lower and higher node of each edge, ascending, and whether the ring runs from the lower to
+    /// the higher; [`NONE`] behind.
+    fn edges(&self) -> [(u32, u32, bool); 4] {
+        let mut edges = [(NONE, NONE, false); 4];
+        for (place, edge) in edges[..self.count].iter_mut().enumerate() {
+            let (from, to) = (self.corners[place], self.corners[(place + 1) % self.count]);
+            *edge = (from.min(to), from.max(to), from < to);
+        }
+        edges.sort_unstable();
+        edges
+    }
 }
 
 /// For every facet its neighbours across edges where exactly two facets of the fracture meet.
-fn links(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Links> {
+fn links(surfaces: &Surfaces, rings: &[Ring]) -> Vec<Links> {
     let emit = |facet: usize, entries: &mut Vec<Entry>| {
-        let DraftFacet {
-            fracture, faces, ..
-        } = surfaces.facets[facet];
-        entries.extend(
-            edges(draft, adjacency, faces[0])
-                .iter()
-                .enumerate()
-                .map(|(place, &(low, high, forward))| Entry {
-                    key: [fracture, low, high],
-                    item: Edge {
-                        facet: facet as u32,
-                        place,
-                        forward,
-                    }
-                    .pack(),
-                })
-                .filter(|entry| entry.key[1] != NONE),
-        );
+        let fracture = surfaces.facets[facet].fracture;
+        let edges = rings[facet].edges();
+        for (place, &(low, high, forward)) in edges[..rings[facet].count].iter().enumerate() {
+            let facet = facet as u32;
+            let edge = Edge {
+                facet,
+                place,
+                forward,
+            };
+            entries.push(Entry {
+                key: [fracture, low, high],
+                item: edge.pack(),
+            });
+        }
     };
     let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[Entry]| {
         if let [a, b] = run {
@@ -119,19 +134,6 @@ fn links(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Links
         links[b.facet as usize][b.place] = (a.facet, alike);
     }
     links
-}
-
-/// Lower and higher node of the edges of a face, ascending, and whether the face runs from the
-/// lower to the higher; [`NONE`] behind.
-fn edges(draft: &Draft, adjacency: &Adjacency, face: u32) -> [(u32, u32, bool); 4] {
-    let (corners, count) = corners(draft, adjacency, face);
-    let mut edges = [(NONE, NONE, false); 4];
-    for (place, edge) in edges[..count].iter_mut().enumerate() {
-        let (from, to) = (corners[place], corners[(place + 1) % count]);
-        *edge = (from.min(to), from.max(to), from < to);
-    }
-    edges.sort_unstable();
-    edges
 }
 
 /// An edge of a facet.

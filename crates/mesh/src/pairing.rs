@@ -27,6 +27,15 @@ impl Entry {
         [first, a.min(b), a.max(b)]
     }
 
+    /// Orders entries by key, those of one key by item.
+    fn rank(&self) -> u128 {
+        let digits = |sum: u128, digit: u32| sum << u32::BITS | u128::from(digit);
+        self.sorted_key()
+            .into_iter()
+            .chain([self.item])
+            .fold(0, digits)
+    }
+
     fn hash(&self) -> u64 {
         // Odd constants without pattern; only the upper bits are used, and these depend on all.
         const FIRST: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -48,7 +57,7 @@ impl Entry {
 
 /// Visits every run of two or more entries with one key, in ascending order of their items, and
 /// returns what each task has made of its runs. `emit` appends the entries of one of `count`
-/// elements. Which run a task visits, and when, depends on the keys alone.
+/// elements; items ascend from element to element. Which run a task visits, and when, depends on the keys alone.
 pub(crate) fn visit_runs<A: Default + Send>(
     count: usize,
     emit: impl Fn(usize, &mut Vec<Entry>) + Sync,
@@ -117,36 +126,41 @@ impl Buckets {
     fn fill(&mut self, dealt: &[Dealt], part: usize) {
         let entries = || dealt.iter().flat_map(|dealt| dealt.of_part(part));
         let count: usize = dealt.iter().map(|dealt| dealt.of_part(part).len()).sum();
-        // Two entries a bucket or a few more: most keys occur twice.
-        let bits = count.max(4).ilog2() - 1;
+        // One or two entries a bucket: most keys occur twice.
+        let bits = count.max(2).ilog2();
         self.start.clear();
-        self.start.resize((1 << bits) + 1, 0);
+        self.start.resize(1 << bits, 0);
         for entry in entries() {
             self.start[entry.bucket(bits)] += 1;
         }
         let mut end = 0;
         for start in &mut self.start {
-            end += *start;
-            *start = end;
+            (*start, end) = (end, end + *start);
         }
         self.entries.resize(count, Entry::default());
-        // Filled from its end, a bucket's start is where it has to be when all is done.
         for entry in entries() {
             let place = &mut self.start[entry.bucket(bits)];
-            *place -= 1;
             self.entries[*place as usize] = *entry;
+            *place += 1;
         }
+        // By now each start has moved on to the next.
     }
 
     fn visit_runs(&mut self, mut visit: impl FnMut(&[Entry])) {
-        for bounds in self.start.windows(2) {
-            let bucket = &mut self.entries[bounds[0] as usize..bounds[1] as usize];
-            if bucket.len() < 2 {
-                continue;
+        let mut start = 0;
+        for &end in &self.start {
+            let bucket = &mut self.entries[start as usize..end as usize];
+            start = end;
+            if let [first, second] = bucket {
+                // What there is in most buckets, in the order of the items already.
+                if first.sorted_key() == second.sorted_key() {
+                    visit(bucket);
+                }
+            } else if bucket.len() > 2 {
+                bucket.sort_unstable_by_key(Entry::rank);
+                let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
+                runs.filter(|run| run.len() > 1).for_each(&mut visit);
             }
-            bucket.sort_unstable_by_key(|entry| (entry.sorted_key(), entry.item));
-            let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
-            runs.filter(|run| run.len() > 1).for_each(&mut visit);
         }
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn find(
 ) -> Mute {
     let count = mesh.facets.fracture.len();
     let mute: Vec<bool> = (0..count).map(|facet| is_mute(mesh, facet)).collect();
-    let (pieces, patches) = (DisjointSets::new(count), DisjointSets::new(count));
+    let (mut pieces, mut patches) = (DisjointSets::new(count), DisjointSets::new(count));
     for run in edges.runs() {
         for own in run.chunk_by(|a, b| a.fracture == b.fracture) {
             let mut last_mute = None;
@@ -59,7 +59,7 @@ pub(super) fn find(
         moves[piece as usize] |= !mute[facet as usize];
     }
     let whole = |facet: u32| !moves[pieces.root(facet) as usize];
-    collect(mesh, geometry, &mute, &patches, whole)
+    collect(mesh, geometry, &mute, &mut patches, whole)
 }
 
 fn is_mute(mesh: &Mesh, facet: usize) -> bool {
@@ -78,8 +78,8 @@ fn collect(
     mesh: &Mesh,
     geometry: &FacetGeometry,
     mute: &[bool],
-    sets: &DisjointSets,
-    whole: impl Fn(u32) -> bool,
+    sets: &mut DisjointSets,
+    mut whole: impl FnMut(u32) -> bool,
 ) -> Mute {
     let mut patches: Vec<MutePatch> = Vec::new();
     let mut patch_of_facet: Vec<Option<u32>> = vec![None; mute.len()];
