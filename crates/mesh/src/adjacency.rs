@@ -1,129 +1,74 @@
 //! Who touches whom: the two cells at a face, the faces at a facet.
 
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::draft::Elements;
-use crate::shape::Face;
+use crate::draft::{Draft, Elements};
+use crate::pairing::{Entry, visit_runs};
+use crate::shape::{Face, Shape};
 
 /// Marks the absence of a neighbour.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Nodes whose faces one task pairs.
-const NODES_PER_TASK: usize = 4096;
-
-/// A face of a cell by its corner nodes, ascending; triangles end in [`NONE`].
-pub(crate) type Key = [u32; 4];
-
-/// The faces of all cells and how they pair up.
+/// The faces of all cells and how they pair up. The faces of a cell have consecutive numbers, as
+/// many a cell as the shape with the most faces needs, or a few more: cell and place in the cell
+/// are the upper and lower bits of a number.
 #[derive(Debug, Clone)]
 pub(crate) struct Adjacency {
-    /// Start of each cell's faces in `neighbour`; one entry more than there are cells.
-    pub(crate) face_offset: Vec<u32>,
+    /// Lower bits of a face's number.
+    local_bits: u32,
     /// For each cell face the cell face on its other side, or [`NONE`].
     pub(crate) neighbour: Vec<u32>,
-    /// The cell of each cell face.
-    pub(crate) cell_of_face: Vec<u32>,
     /// Faces that three or more cells share, one entry a surplus cell.
     pub(crate) crowded_cells: Vec<u32>,
-    /// Start of the faces with each lowest node in `bucket`.
-    bucket_offset: Vec<u32>,
-    bucket: Vec<u32>,
+    /// Cells that lie on the same side of a face as their neighbour there, ascending.
+    pub(crate) overlapping_cells: Vec<u32>,
+    /// Where the facets of the draft lie.
+    pub(crate) facets: Vec<FacetPlace>,
 }
 
-/// Sorted corner nodes of an element's face or of a facet.
-pub(crate) fn key(nodes: impl Iterator<Item = u32>) -> Key {
-    let mut key = [NONE; 4];
-    for (slot, node) in key.iter_mut().zip(nodes) {
-        *slot = node;
-    }
-    key.sort_unstable();
-    key
+/// Where a facet of the draft lies.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FacetPlace {
+    /// The cell faces (none, one or two) that have exactly its corners, ascending, [`NONE`] behind.
+    pub(crate) faces: [u32; 2],
+    /// The first facet with these corners; mostly this one.
+    pub(crate) first: u32,
 }
 
 impl Adjacency {
-    /// Pairs the faces of `cells` over `node_count` nodes, in time linear in the cells:
-    /// faces are bucketed by their lowest node, and buckets are short.
-    pub(crate) fn of(cells: &Elements, node_count: usize) -> Self {
-        let (face_offset, cell_of_face) = number_faces(cells);
-        let (bucket_offset, bucket) = bucket_by_lowest_node(cells, node_count);
-        let mut adjacency = Self {
-            neighbour: vec![NONE; cell_of_face.len()],
-            face_offset,
-            cell_of_face,
-            crowded_cells: Vec::new(),
-            bucket_offset,
-            bucket,
+    /// Pairs the faces of the cells, and the facets with them.
+    pub(crate) fn of(draft: &Draft) -> Self {
+        let cells = &draft.cells.elements;
+        let tetrahedra = |shape: &Shape| shape.faces().len() <= 4;
+        let local_bits = if cells.shapes.iter().all(tetrahedra) {
+            2
+        } else {
+            3
         };
-        adjacency.pair(cells, node_count);
-        adjacency
-    }
-
-    fn pair(&mut self, cells: &Elements, node_count: usize) {
-        let starts: Vec<usize> = (0..node_count).step_by(NODES_PER_TASK).collect();
-        let found: Vec<Paired> = starts
-            .into_par_iter()
-            .map(|start| {
-                let nodes = start..(start + NODES_PER_TASK).min(node_count);
-                self.pairs_among(cells, nodes)
-            })
-            .collect();
-        for paired in found {
-            for (first, second) in paired.pairs {
-                self.neighbour[first as usize] = second;
-                self.neighbour[second as usize] = first;
-            }
-            self.crowded_cells.extend(paired.crowded_cells);
+        let face_end = cells.len() << local_bits;
+        assert!(
+            face_end + draft.facets.elements.len() < NONE as usize,
+            "fewer than 2^32 faces"
+        );
+        Pairing {
+            cells,
+            facets: &draft.facets.elements,
+            local_bits,
+            face_end: face_end as u32,
+            neighbour: (0..face_end).map(|_| AtomicU32::new(NONE)).collect(),
         }
+        .run()
     }
 
-    /// Pairs among the faces whose lowest node is one of `nodes`.
-    fn pairs_among(&self, cells: &Elements, nodes: std::ops::Range<usize>) -> Paired {
-        let mut paired = Paired::default();
-        let mut keys: Vec<(Key, u32)> = Vec::new();
-        for node in nodes {
-            keys.clear();
-            keys.extend(
-                self.bucket_of(node)
-                    .iter()
-                    .map(|&face| (self.key_of(cells, face), face)),
-            );
-            keys.sort_unstable();
-            for run in keys.chunk_by(|a, b| a.0 == b.0) {
-                if let [(_, first), (_, second), surplus @ ..] = run {
-                    paired.pairs.push((*first, *second));
-                    let cell = |&(_, face): &(Key, u32)| self.cell_of_face[face as usize];
-                    paired.crowded_cells.extend(surplus.iter().map(cell));
-                }
-            }
-        }
-        paired
+    /// The cell of a face.
+    pub(crate) fn cell_of(&self, face: u32) -> u32 {
+        face >> self.local_bits
     }
 
-    fn bucket_of(&self, node: usize) -> &[u32] {
-        let range = self.bucket_offset[node] as usize..self.bucket_offset[node + 1] as usize;
-        &self.bucket[range]
-    }
-
-    fn key_of(&self, cells: &Elements, face: u32) -> Key {
-        let cell = self.cell_of_face[face as usize] as usize;
-        let nodes = cells.nodes_of(cell);
-        let corners = self.shape_of(cells, face).corners();
-        key(corners.iter().map(|&local| nodes[local as usize]))
-    }
-
-    /// The cell faces (none, one or two) that have exactly the corners of a facet.
-    pub(crate) fn faces_at(&self, cells: &Elements, corners: &[u32]) -> impl Iterator<Item = u32> {
-        let wanted = key(corners.iter().copied());
-        let bucket = self.bucket_of(wanted[0] as usize);
-        bucket
-            .iter()
-            .copied()
-            .filter(move |&face| self.key_of(cells, face) == wanted)
-    }
-
-    /// Number of faces of all cells, shared ones counted twice.
-    pub(crate) fn face_count(&self) -> usize {
-        self.neighbour.len()
+    /// Numbers of the faces of a cell.
+    pub(crate) fn faces_of(&self, cells: &Elements, cell: usize) -> std::ops::Range<u32> {
+        let first = (cell << self.local_bits) as u32;
+        first..first + cells.shapes[cell].faces().len() as u32
     }
 
     /// Positions of a face's nodes in the flat node list of the cells, in outward order.
@@ -132,68 +77,228 @@ impl Adjacency {
         cells: &'a Elements,
         face: u32,
     ) -> impl Iterator<Item = usize> + use<'a> {
-        let cell = self.cell_of_face[face as usize] as usize;
-        let start = cells.offsets[cell] as usize;
+        let start = cells.offsets[self.cell_of(face) as usize] as usize;
         let nodes = self.shape_of(cells, face).nodes;
         nodes.iter().map(move |&local| start + local as usize)
     }
 
     /// The face's place in its cell's table of faces.
     pub(crate) fn shape_of(&self, cells: &Elements, face: u32) -> &'static Face {
-        let cell = self.cell_of_face[face as usize] as usize;
-        &cells.shapes[cell].faces()[self.local_face(face)]
+        shape_of(cells, face, self.local_bits)
     }
 
-    /// Number of `face` within its cell.
-    fn local_face(&self, face: u32) -> usize {
-        let cell = self.cell_of_face[face as usize] as usize;
-        (face - self.face_offset[cell]) as usize
+    /// Cuts the cells at two faces off from each other.
+    pub(crate) fn part(&mut self, face: u32, other: u32) {
+        self.neighbour[face as usize] = NONE;
+        self.neighbour[other as usize] = NONE;
     }
+}
+
+fn shape_of(cells: &Elements, face: u32, local_bits: u32) -> &'static Face {
+    let local = face & ((1 << local_bits) - 1);
+    &cells.shapes[(face >> local_bits) as usize].faces()[local as usize]
+}
+
+/// The search for faces and facets with the same corners. Facets are numbered behind the faces.
+struct Pairing<'a> {
+    cells: &'a Elements,
+    facets: &'a Elements,
+    local_bits: u32,
+    face_end: u32,
+    /// Written once a face, by the only task that sees it.
+    neighbour: Vec<AtomicU32>,
 }
 
 /// What one task has found.
 #[derive(Default)]
-struct Paired {
-    pairs: Vec<(u32, u32)>,
-    crowded_cells: Vec<u32>,
+struct Found {
+    /// Surplus faces with their corners, by which their order is that of the nodes.
+    crowded: Vec<([u32; 4], u32)>,
+    /// The lower of two faces that run the same way round.
+    overlapping: Vec<u32>,
+    facets: Vec<(u32, FacetPlace)>,
 }
 
-/// Start of each cell's faces, and the cell of each face.
-fn number_faces(cells: &Elements) -> (Vec<u32>, Vec<u32>) {
-    let mut face_offset = Vec::with_capacity(cells.len() + 1);
-    let mut cell_of_face = Vec::new();
-    face_offset.push(0);
-    for (cell, shape) in cells.shapes.iter().enumerate() {
-        cell_of_face.extend(std::iter::repeat_n(cell as u32, shape.faces().len()));
-        face_offset.push(cell_of_face.len() as u32);
+impl Pairing<'_> {
+    fn run(self) -> Adjacency {
+        let count = self.cells.len() + self.facets.len();
+        let shapes = || self.cells.shapes.iter().chain(&self.facets.shapes);
+        let found = if shapes().all(|shape| has_triangles_only(*shape)) {
+            visit_runs(
+                count,
+                |i, out| self.emit(i, out),
+                |found, run| self.settle(found, run),
+            )
+        } else {
+            visit_runs(
+                count,
+                |i, out| self.emit(i, out),
+                |found, run| self.split(found, run),
+            )
+        };
+        let lonely = |facet: u32| FacetPlace {
+            faces: [NONE; 2],
+            first: facet,
+        };
+        let mut facets: Vec<_> = (0..self.facets.len() as u32).map(lonely).collect();
+        let (mut crowded, mut overlapping) = (Vec::new(), Vec::new());
+        for mut found in found {
+            crowded.append(&mut found.crowded);
+            overlapping.append(&mut found.overlapping);
+            for (facet, place) in found.facets {
+                facets[facet as usize] = place;
+            }
+        }
+        crowded.sort_unstable();
+        overlapping.sort_unstable();
+        let cell = |face: u32| face >> self.local_bits;
+        Adjacency {
+            local_bits: self.local_bits,
+            crowded_cells: crowded.iter().map(|&(_, face)| cell(face)).collect(),
+            overlapping_cells: overlapping.into_iter().map(cell).collect(),
+            facets,
+            neighbour: self
+                .neighbour
+                .into_iter()
+                .map(AtomicU32::into_inner)
+                .collect(),
+        }
     }
-    (face_offset, cell_of_face)
+
+    /// Appends the faces of a cell, or a facet where the cells are at their end.
+    fn emit(&self, element: usize, entries: &mut Vec<Entry>) {
+        let Some(facet) = element.checked_sub(self.cells.len()) else {
+            let nodes = self.cells.nodes_of(element);
+            let first = (element << self.local_bits) as u32;
+            let faces = self.cells.shapes[element].faces();
+            entries.extend((first..).zip(faces).map(|(item, face)| {
+                let corners = face.corners();
+                let key = match *corners {
+                    [a, b, c] => turned([a, b, c].map(|local| nodes[local as usize])),
+                    _ => lowest(corners.iter().map(|&local| nodes[local as usize])),
+                };
+                Entry { key, item }
+            }));
+            return;
+        };
+        let corners = &self.facets.nodes_of(facet)[..self.facets.shapes[facet].corner_count()];
+        let key = match *corners {
+            [a, b, c] => turned([a, b, c]),
+            _ => lowest(corners.iter().copied()),
+        };
+        entries.push(Entry {
+            key,
+            item: self.face_end + facet as u32,
+        });
+    }
+
+    /// Tells triangles from quadrangles, and these by their fourth corner.
+    fn split(&self, found: &mut Found, run: &[Entry]) {
+        let mut run: Vec<(u32, Entry)> = run
+            .iter()
+            .map(|entry| (self.fourth(entry.item), *entry))
+            .collect();
+        run.sort_by_key(|(fourth, _)| *fourth);
+        for alike in run.chunk_by(|a, b| a.0 == b.0) {
+            let alike: Vec<Entry> = alike.iter().map(|(_, entry)| *entry).collect();
+            self.settle(found, &alike);
+        }
+    }
+
+    /// The highest corner of a quadrangle; [`NONE`] for a triangle.
+    fn fourth(&self, item: u32) -> u32 {
+        self.corners(item)
+            .nth(3)
+            .map_or(NONE, |last| self.corners(item).fold(last, u32::max))
+    }
+
+    /// Corner nodes of a face or a facet, in order.
+    fn corners(&self, item: u32) -> impl Iterator<Item = u32> {
+        let (elements, element, locals) = match item.checked_sub(self.face_end) {
+            None => {
+                let face = shape_of(self.cells, item, self.local_bits);
+                (self.cells, item >> self.local_bits, face.corners())
+            }
+            Some(facet) => {
+                let count = self.facets.shapes[facet as usize].corner_count();
+                (self.facets, facet, &[0, 1, 2, 3][..count])
+            }
+        };
+        let nodes = elements.nodes_of(element as usize);
+        locals.iter().map(|&local| nodes[local as usize])
+    }
+
+    /// Notes what entries with the same corners have to do with each other.
+    fn settle(&self, found: &mut Found, run: &[Entry]) {
+        let (faces, facets) = run.split_at(run.partition_point(|e| e.item < self.face_end));
+        if let [first, second, surplus @ ..] = faces {
+            self.neighbour[first.item as usize].store(second.item, Ordering::Relaxed);
+            self.neighbour[second.item as usize].store(first.item, Ordering::Relaxed);
+            if self.runs_alike(first, second) {
+                found.overlapping.push(first.item);
+            }
+            let keyed = |entry: &Entry| {
+                let [a, b, c] = entry.sorted_key();
+                ([a, b, c, self.fourth(entry.item)], entry.item)
+            };
+            found.crowded.extend(surplus.iter().map(keyed));
+        }
+        if let Some(first) = facets.first() {
+            let face = |place: usize| faces.get(place).map_or(NONE, |face| face.item);
+            let place = FacetPlace {
+                faces: [face(0), face(1)],
+                first: first.item - self.face_end,
+            };
+            let placed = |facet: &Entry| (facet.item - self.face_end, place);
+            found.facets.extend(facets.iter().map(placed));
+        }
+    }
+
+    /// Whether two faces with the same corners run the same way round, so that both cells lie on
+    /// one side.
+    fn runs_alike(&self, face: &Entry, other: &Entry) -> bool {
+        let [a, b, c] = face.key;
+        let is_triangle = shape_of(self.cells, face.item, self.local_bits)
+            .corners()
+            .len()
+            == 3;
+        if is_triangle && a != b && b != c && a != c {
+            return b == other.key[1];
+        }
+        let mut own = self.corners(face.item);
+        let (Some(first), Some(second)) = (own.next(), own.next()) else {
+            return false;
+        };
+        let twin = || self.corners(other.item);
+        let after = twin().skip_while(|&node| node != first).nth(1);
+        after.or_else(|| twin().next()) == Some(second)
+    }
 }
 
-fn bucket_by_lowest_node(cells: &Elements, node_count: usize) -> (Vec<u32>, Vec<u32>) {
-    let lowest: Vec<u32> = (0..cells.len())
-        .into_par_iter()
-        .flat_map_iter(|cell| {
-            let nodes = cells.nodes_of(cell);
-            cells.shapes[cell].faces().iter().map(|face| {
-                let corners = face.corners().iter().map(|&local| nodes[local as usize]);
-                corners.min().unwrap_or(NONE)
-            })
-        })
-        .collect();
-    let mut offset = vec![0_u32; node_count + 1];
-    for &node in &lowest {
-        offset[node as usize + 1] += 1;
+fn has_triangles_only(shape: Shape) -> bool {
+    if shape.dimension() == 2 {
+        return shape.corner_count() == 3;
     }
-    for node in 0..node_count {
-        offset[node + 1] += offset[node];
+    shape.faces().iter().all(|face| face.corners().len() == 3)
+}
+
+/// The corners of a triangle from the lowest on; the order of the others tells which way round.
+fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
+    if a <= b && a <= c {
+        [a, b, c]
+    } else if b <= c {
+        [b, c, a]
+    } else {
+        [c, a, b]
     }
-    let mut next = offset.clone();
-    let mut bucket = vec![NONE; lowest.len()];
-    for (face, &node) in lowest.iter().enumerate() {
-        let slot = &mut next[node as usize];
-        bucket[*slot as usize] = face as u32;
-        *slot += 1;
+}
+
+/// The three lowest corners of a quadrangle, ascending.
+fn lowest(nodes: impl Iterator<Item = u32>) -> [u32; 3] {
+    let mut corners = [NONE; 4];
+    for (corner, node) in corners.iter_mut().zip(nodes) {
+        *corner = node;
     }
-    (offset, bucket)
+    corners.sort_unstable();
+    [corners[0], corners[1], corners[2]]
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::adjacency::{Adjacency, NONE};
+use crate::adjacency::{Adjacency, FacetPlace, NONE};
 use crate::defect::{Defect, sample};
 use crate::draft::Draft;
 use crate::geometry::cell_volume;
@@ -104,10 +104,6 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
             "give the rock a Physical Volume and mesh it in 3D (gmsh -3)",
         ));
     }
-    let tagged = |bad: &dyn Fn(usize) -> bool| -> Vec<u64> {
-        let of_bad = (0..cells.len()).filter(|&cell| bad(cell));
-        of_bad.map(|cell| draft.cells.tags[cell]).collect()
-    };
     let broken: Vec<u64> = (0..nodes.len())
         .filter(|&node| !nodes[node].is_finite())
         .map(|node| draft.node_tags[node])
@@ -116,14 +112,19 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
     if !broken.is_empty() {
         return defects;
     }
-    let volumes: Vec<f64> = (0..cells.len())
+    let wrong: Vec<(usize, bool)> = (0..cells.len())
         .into_par_iter()
-        .map(|cell| relative_volume(draft, nodes, cell))
+        .filter_map(|cell| {
+            let volume = relative_volume(draft, nodes, cell);
+            let is_flat = volume.abs() <= FLAT;
+            (is_flat || volume < 0.0).then_some((cell, is_flat))
+        })
         .collect();
-    let flat = tagged(&|cell| volumes[cell].abs() <= FLAT);
-    report(&mut defects, &draft.source, "cell", &flat, NO_VOLUME);
-    let inverted = tagged(&|cell| volumes[cell] < -FLAT);
-    report(&mut defects, &draft.source, "cell", &inverted, INSIDE_OUT);
+    for (flat, kind) in [(true, NO_VOLUME), (false, INSIDE_OUT)] {
+        let of_kind = wrong.iter().filter(|(_, is_flat)| *is_flat == flat);
+        let tags: Vec<u64> = of_kind.map(|&(cell, _)| draft.cells.tags[cell]).collect();
+        report(&mut defects, &draft.source, "cell", &tags, kind);
+    }
     defects
 }
 
@@ -136,11 +137,10 @@ fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
     for (corner, &node) in corners.iter_mut().zip(cells.nodes_of(cell)) {
         *corner = nodes[node as usize];
     }
-    let longest = corners
-        .iter()
-        .flat_map(|a| corners.iter().map(move |b| a.distance_squared(*b)))
-        .fold(0.0, f64::max)
-        .sqrt();
+    let pairs = corners.iter().enumerate();
+    let distances =
+        pairs.flat_map(|(place, a)| corners[..place].iter().map(|b| a.distance_squared(*b)));
+    let longest = distances.fold(0.0, f64::max).sqrt();
     if longest == 0.0 {
         return 0.0;
     }
@@ -150,21 +150,13 @@ fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
 /// Defects in how the cells fit together.
 pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
     let mut defects = Vec::new();
-    let tag = |cell: u32| draft.cells.tags[cell as usize];
-    let crowded: Vec<u64> = adjacency
-        .crowded_cells
-        .iter()
-        .map(|&cell| tag(cell))
-        .collect();
+    let tags = |cells: &[u32]| -> Vec<u64> {
+        let tags = cells.iter().map(|&cell| draft.cells.tags[cell as usize]);
+        tags.collect()
+    };
+    let crowded = tags(&adjacency.crowded_cells);
     report(&mut defects, &draft.source, "cell", &crowded, CROWDED);
-    let mut overlapping: Vec<u64> = (0..adjacency.face_count() as u32)
-        .into_par_iter()
-        .filter(|&face| {
-            let other = adjacency.neighbour[face as usize];
-            other != NONE && face < other && runs_alike(draft, adjacency, face, other)
-        })
-        .map(|face| tag(adjacency.cell_of_face[face as usize]))
-        .collect();
+    let mut overlapping = tags(&adjacency.overlapping_cells);
     overlapping.dedup();
     report(
         &mut defects,
@@ -174,21 +166,6 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
         OVERLAPPING,
     );
     defects
-}
-
-/// Whether two faces with the same corners run the same way round, so that both cells lie on one
-/// side.
-fn runs_alike(draft: &Draft, adjacency: &Adjacency, face: u32, other: u32) -> bool {
-    let cells = &draft.cells.elements;
-    let node = |slot: usize| cells.nodes[slot];
-    let count = adjacency.shape_of(cells, face).corners().len();
-    let mut own = adjacency.slots(cells, face).take(count).map(node);
-    let (Some(first), Some(second)) = (own.next(), own.next()) else {
-        return false;
-    };
-    let twin = || adjacency.slots(cells, other).take(count).map(node);
-    let after = twin().skip_while(|&node| node != first).nth(1);
-    after.or_else(|| twin().next()) == Some(second)
 }
 
 /// Matches the surfaces to faces of cells and collects what does not fit.
@@ -204,13 +181,18 @@ pub(crate) fn surfaces(
         shared: BTreeMap::new(),
     };
     let mut defects = Vec::new();
-    let mut taken = vec![NONE; adjacency.face_count()];
-    let matches = match_facets(draft, adjacency);
+    let mut taken = vec![NONE; draft.facets.elements.len()];
+    let of_set = facets_of_sets(draft);
     for (group, role) in roles.iter().enumerate() {
         if draft.groups[group].dimension != 2 {
             continue;
         }
-        let facets = facets_of(draft, &matches, group);
+        let sets = draft.group_sets.iter().zip(&of_set);
+        let own = sets.filter(|(set, _)| set.contains(&group));
+        let facets = own.flat_map(|(_, facets)| facets).map(|&facet| Placed {
+            tag: draft.facets.tags[facet as usize],
+            place: adjacency.facets[facet as usize],
+        });
         match role {
             SurfaceRole::Fracture => {
                 fracture(
@@ -229,61 +211,49 @@ pub(crate) fn surfaces(
     (surfaces, defects)
 }
 
-/// The facets of each set of groups, with the cell faces at each: none, one or two.
-type Matches = Vec<Vec<(u64, Vec<u32>)>>;
-
-fn match_facets(draft: &Draft, adjacency: &Adjacency) -> Matches {
-    let facets = &draft.facets;
-    let mut matches: Matches = vec![Vec::new(); draft.group_sets.len()];
-    for facet in 0..facets.elements.len() {
-        let count = facets.elements.shapes[facet].corner_count();
-        let corners = &facets.elements.nodes_of(facet)[..count];
-        let faces = adjacency.faces_at(&draft.cells.elements, corners).collect();
-        matches[facets.group_set[facet] as usize].push((facets.tags[facet], faces));
-    }
-    matches
+/// A facet of the draft and where it lies.
+struct Placed {
+    tag: u64,
+    place: FacetPlace,
 }
 
-fn facets_of<'a>(
-    draft: &'a Draft,
-    matches: &'a Matches,
-    group: usize,
-) -> impl Iterator<Item = &'a (u64, Vec<u32>)> {
-    let sets = draft.group_sets.iter().zip(matches);
-    sets.filter(move |(set, _)| set.contains(&group))
-        .flat_map(|(_, facets)| facets)
+/// The facets of each set of groups, in the order of the file.
+fn facets_of_sets(draft: &Draft) -> Vec<Vec<u32>> {
+    let mut of_set = vec![Vec::new(); draft.group_sets.len()];
+    for (facet, &set) in (0..).zip(&draft.facets.group_set) {
+        of_set[set as usize].push(facet);
+    }
+    of_set
 }
 
 /// A facet that two fractures share belongs to the first; one that a fracture lists twice is a
-/// defect.
-fn fracture<'a>(
+/// defect. `taken` has the fracture that holds a facet, at the first facet with its corners.
+fn fracture(
     draft: &Draft,
     group: usize,
-    facets: impl Iterator<Item = &'a (u64, Vec<u32>)>,
+    facets: impl Iterator<Item = Placed>,
     taken: &mut [u32],
     surfaces: &mut Surfaces,
     defects: &mut Vec<Defect>,
 ) {
     let number = surfaces.fractures.len() as u32;
+    let already = surfaces.facets.len();
     surfaces.fractures.push(group);
     let (mut loose, mut outer, mut double) = (Vec::new(), Vec::new(), Vec::new());
-    for &(tag, ref faces) in facets {
-        match faces[..] {
-            [] => loose.push(tag),
-            [_] => outer.push(tag),
-            [a, ..] if taken[a as usize] == number => double.push(tag),
-            [a, ..] if taken[a as usize] != NONE => {
-                *surfaces
-                    .shared
-                    .entry((number, taken[a as usize]))
-                    .or_default() += 1;
+    for Placed { tag, place } in facets {
+        let owner = &mut taken[place.first as usize];
+        match place.faces {
+            [NONE, _] => loose.push(tag),
+            [_, NONE] => outer.push(tag),
+            _ if *owner == number => double.push(tag),
+            _ if *owner != NONE => {
+                *surfaces.shared.entry((number, *owner)).or_default() += 1;
             }
-            [a, b, ..] => {
-                taken[a as usize] = number;
-                taken[b as usize] = number;
+            faces => {
+                *owner = number;
                 surfaces.facets.push(DraftFacet {
                     fracture: number,
-                    faces: [a, b],
+                    faces,
                     tag,
                 });
             }
@@ -293,32 +263,26 @@ fn fracture<'a>(
     report(defects, &place, "facet", &loose, NOT_EMBEDDED);
     report(defects, &place, "facet", &outer, ON_THE_OUTSIDE);
     report(defects, &place, "facet", &double, TWICE);
-    empty(
-        draft,
-        group,
-        surfaces.facets.iter().all(|f| f.fracture != number)
-            && loose.is_empty()
-            && outer.is_empty(),
-        defects,
-    );
+    let nothing = surfaces.facets.len() == already && loose.is_empty() && outer.is_empty();
+    empty(draft, group, nothing, defects);
 }
 
-fn boundary<'a>(
+fn boundary(
     draft: &Draft,
     group: usize,
-    facets: impl Iterator<Item = &'a (u64, Vec<u32>)>,
+    facets: impl Iterator<Item = Placed>,
     surfaces: &mut Surfaces,
     defects: &mut Vec<Defect>,
 ) {
     let (mut loose, mut inner, mut double) = (Vec::new(), Vec::new(), Vec::new());
     let mut faces_seen = std::collections::HashSet::new();
     let mut faces_kept = Vec::new();
-    for &(tag, ref faces) in facets {
-        match faces[..] {
-            [] => loose.push(tag),
-            [face] if faces_seen.insert(face) => faces_kept.push(face),
-            [_] => double.push(tag),
-            [..] => inner.push(tag),
+    for Placed { tag, place } in facets {
+        match place.faces {
+            [NONE, _] => loose.push(tag),
+            [face, NONE] if faces_seen.insert(face) => faces_kept.push(face),
+            [_, NONE] => double.push(tag),
+            _ => inner.push(tag),
         }
     }
     let place = format!("boundary `{}`", draft.groups[group].name);

@@ -54,6 +54,36 @@ impl Elements {
         self.offsets[index] as usize..self.offsets[index + 1] as usize
     }
 
+    /// Appends `count` elements of one shape, all of whose nodes are 0 still.
+    ///
+    /// # Panics
+    /// If the flat list outgrows 32 bits.
+    pub fn append(&mut self, shape: Shape, count: usize) {
+        let (first, width) = (self.nodes.len(), shape.node_count());
+        let end = first + count * width;
+        assert!(u32::try_from(end).is_ok(), "fewer than 2^32 element nodes");
+        self.shapes.resize(self.shapes.len() + count, shape);
+        self.nodes.resize(end, 0);
+        let ends = (1..=count).map(|element| (first + element * width) as u32);
+        self.offsets.extend(ends);
+    }
+
+    /// Appends all elements of another list.
+    ///
+    /// # Panics
+    /// If the flat list outgrows 32 bits.
+    pub fn extend(&mut self, other: &Self) {
+        let first = u32::try_from(self.nodes.len()).expect("fewer than 2^32 element nodes");
+        self.shapes.extend(&other.shapes);
+        self.nodes.extend(&other.nodes);
+        assert!(
+            u32::try_from(self.nodes.len()).is_ok(),
+            "fewer than 2^32 element nodes"
+        );
+        self.offsets
+            .extend(other.offsets[1..].iter().map(|end| first + end));
+    }
+
     /// Appends an element.
     ///
     /// # Panics

@@ -23,6 +23,7 @@ mod draft;
 mod geometry;
 mod mesh;
 mod orient;
+mod pairing;
 mod roles;
 mod sectors;
 mod shape;

@@ -1,6 +1,7 @@
 //! The checked mesh.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::adjacency::Adjacency;
 use crate::defect::Defect;
@@ -104,11 +105,12 @@ impl Mesh {
     /// # Errors
     /// As [`Mesh::build`].
     pub fn build_on(
-        draft: Draft,
-        Faces { adjacency }: Faces,
+        mut draft: Draft,
+        Faces { mut adjacency }: Faces,
         roles: &[SurfaceRole],
     ) -> Result<Self, Vec<Defect>> {
-        let nodes: Vec<DVec3> = draft.nodes.iter().copied().map(DVec3::from).collect();
+        let nodes = std::mem::take(&mut draft.nodes).into_iter();
+        let nodes: Vec<DVec3> = nodes.map(DVec3::from).collect();
         let mut defects = check::cells(&draft, &nodes);
         if !defects.is_empty() {
             return Err(defects);
@@ -126,14 +128,20 @@ impl Mesh {
         if !defects.is_empty() {
             return Err(defects);
         }
-        let mut is_fractured = vec![false; adjacency.face_count()];
         for &(minus, plus) in &faces {
-            is_fractured[minus as usize] = true;
-            is_fractured[plus as usize] = true;
+            adjacency.part(minus, plus);
         }
-        let sectors = sectors::find(cells, nodes.len(), &adjacency, &is_fractured);
-        let (block, block_count) = blocks::find(cells.len(), &adjacency, &is_fractured);
-        let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
+        // The blocks are one thread's work, which leaves the others to the rest.
+        let ((block, block_count), (sectors, facets)) = rayon::join(
+            || blocks::find(cells, &adjacency),
+            || {
+                let sectors = sectors::find(cells, nodes.len(), &adjacency, &faces);
+                (
+                    sectors,
+                    collect_facets(cells, &adjacency, &surfaces, &faces),
+                )
+            },
+        );
         let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
         let shared = surfaces.shared.iter();
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
@@ -191,10 +199,15 @@ fn push_face(
     elements: &mut Elements,
     slots: &mut Vec<u32>,
 ) {
-    let own: Vec<usize> = adjacency.slots(cells, face).collect();
-    let nodes: Vec<u32> = own.iter().map(|&slot| cells.nodes[slot]).collect();
-    elements.push(adjacency.shape_of(cells, face).shape, &nodes);
-    slots.extend(own.iter().map(|&slot| slot as u32));
+    let first = slots.len();
+    slots.extend(adjacency.slots(cells, face).map(|slot| slot as u32));
+    // No face has more nodes than a quadratic quadrangle.
+    let mut nodes = [0; 9];
+    let own = &slots[first..];
+    for (node, &slot) in nodes.iter_mut().zip(own) {
+        *node = cells.nodes[slot as usize];
+    }
+    elements.push(adjacency.shape_of(cells, face).shape, &nodes[..own.len()]);
 }
 
 fn collect_facets(
@@ -203,11 +216,39 @@ fn collect_facets(
     surfaces: &check::Surfaces,
     faces: &[(u32, u32)],
 ) -> Facets {
+    const PER_TASK: usize = 4096;
+    let tasks = surfaces.facets.par_chunks(PER_TASK);
+    let parts: Vec<Facets> = tasks
+        .zip(faces.par_chunks(PER_TASK))
+        .map(|(facets, faces)| facets_between(cells, adjacency, facets, faces))
+        .collect();
+    let mut whole = Facets {
+        elements: Elements::new(),
+        ..Facets::default()
+    };
+    for part in parts {
+        whole.elements.extend(&part.elements);
+        whole.fracture.extend(part.fracture);
+        whole.minus.extend(part.minus);
+        whole.plus.extend(part.plus);
+        whole.minus_slots.extend(part.minus_slots);
+        whole.plus_slots.extend(part.plus_slots);
+    }
+    whole
+}
+
+/// The facets between these pairs of minus and plus faces.
+fn facets_between(
+    cells: &Elements,
+    adjacency: &Adjacency,
+    drafts: &[check::DraftFacet],
+    faces: &[(u32, u32)],
+) -> Facets {
     let mut facets = Facets {
         elements: Elements::new(),
         ..Facets::default()
     };
-    for (facet, &(minus, plus)) in surfaces.facets.iter().zip(faces) {
+    for (draft, &(minus, plus)) in drafts.iter().zip(faces) {
         push_face(
             cells,
             adjacency,
@@ -217,14 +258,13 @@ fn collect_facets(
         );
         for slot in adjacency.slots(cells, minus) {
             let node = cells.nodes[slot];
-            let twin = adjacency
-                .slots(cells, plus)
-                .find(|&slot| cells.nodes[slot] == node);
+            let mut twins = adjacency.slots(cells, plus);
+            let twin = twins.find(|&slot| cells.nodes[slot] == node);
             facets.plus_slots.extend(twin.map(|slot| slot as u32));
         }
-        facets.fracture.push(facet.fracture);
-        facets.minus.push(adjacency.cell_of_face[minus as usize]);
-        facets.plus.push(adjacency.cell_of_face[plus as usize]);
+        facets.fracture.push(draft.fracture);
+        facets.minus.push(adjacency.cell_of(minus));
+        facets.plus.push(adjacency.cell_of(plus));
     }
     facets
 }
@@ -243,8 +283,7 @@ fn collect_boundaries(
             slots: Vec::new(),
         };
         for &face in faces {
-            let cell = adjacency.cell_of_face[face as usize];
-            boundary.cell.push(cell);
+            boundary.cell.push(adjacency.cell_of(face));
             push_face(
                 cells,
                 adjacency,

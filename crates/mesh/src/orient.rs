@@ -1,22 +1,21 @@
 //! Orientation of fractures: which of the two cells at a facet is on the plus side.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::adjacency::Adjacency;
+use crate::adjacency::{Adjacency, NONE};
 use crate::check::{DraftFacet, Surfaces};
 use crate::defect::Defect;
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
+use crate::pairing::{Entry, visit_runs};
 
-/// An edge of a facet, as its first face runs along it.
-struct Edge {
-    key: (u32, u32, u32),
-    facet: u32,
-    forward: bool,
-}
-
-/// Facets that share an edge, and whether their first faces run along it the same way.
+/// The facet on the other side of an edge, or [`NONE`], and whether the first faces of both run
+/// along it the same way.
 type Link = (u32, bool);
+
+/// The links of a facet, in ascending order of the edges' nodes.
+type Links = [Link; 4];
 
 /// Returns `(minus face, plus face)` of every facet. Facets of one fracture that share an edge
 /// with no third facet of that fracture agree. Each connected surface then points upwards (z, else
@@ -27,7 +26,9 @@ pub(crate) fn fractures(
     adjacency: &Adjacency,
     surfaces: &Surfaces,
 ) -> (Vec<(u32, u32)>, Vec<Defect>) {
-    let links = links(draft, adjacency, surfaces);
+    let faces = surfaces.facets.par_iter().map(|facet| facet.faces[0]);
+    let rings: Vec<Ring> = faces.map(|face| Ring::of(draft, adjacency, face)).collect();
+    let links = links(surfaces, &rings);
     let mut flipped: Vec<Option<bool>> = vec![None; surfaces.facets.len()];
     let mut defects = Vec::new();
     for seed in 0..surfaces.facets.len() {
@@ -39,8 +40,9 @@ pub(crate) fn fractures(
             defects.push(one_sided(draft, surfaces, &surfaces.facets[seed]));
         }
         let areas = surface.iter().map(|&facet| {
-            let face = chosen(&surfaces.facets[facet as usize], flipped[facet as usize]).0;
-            placed_area(draft, nodes, adjacency, face)
+            let (centre, area) = rings[facet as usize].centre_and_area(nodes);
+            let flip = flipped[facet as usize] == Some(true);
+            (centre, if flip { -area } else { area })
         });
         if points_down(&areas.collect::<Vec<_>>()) {
             for &facet in &surface {
@@ -60,49 +62,105 @@ fn chosen(facet: &DraftFacet, flip: Option<bool>) -> (u32, u32) {
     if flip == Some(true) { (b, a) } else { (a, b) }
 }
 
-fn placed_area(draft: &Draft, nodes: &[DVec3], adjacency: &Adjacency, face: u32) -> (DVec3, DVec3) {
-    let cells = &draft.cells.elements;
-    let count = adjacency.shape_of(cells, face).corners().len();
-    let slots = adjacency.slots(cells, face).take(count);
-    let points: Vec<DVec3> = slots
-        .map(|slot| nodes[cells.nodes[slot] as usize])
-        .collect();
-    (facet_centre(&points), facet_area_vector(&points))
+/// The corners of a facet as its first face runs round them, and how many they are.
+#[derive(Clone, Copy)]
+struct Ring {
+    corners: [u32; 4],
+    count: usize,
+}
+
+impl Ring {
+    fn of(draft: &Draft, adjacency: &Adjacency, face: u32) -> Self {
+        let cells = &draft.cells.elements;
+        let mut corners = [NONE; 4];
+        let count = adjacency.shape_of(cells, face).corners().len();
+        let slots = adjacency.slots(cells, face).take(count);
+        for (corner, slot) in corners.iter_mut().zip(slots) {
+            *corner = cells.nodes[slot];
+        }
+        Self { corners, count }
+    }
+
+    fn centre_and_area(&self, nodes: &[DVec3]) -> (DVec3, DVec3) {
+        let points = self.corners.map(|node| nodes.get(node as usize));
+        let points = points.map(|point| point.copied().unwrap_or_default());
+        let points = &points[..self.count];
+        (facet_centre(points), facet_area_vector(points))
+    }
+
+    /// Lower and higher node of each edge, ascending, and whether the ring runs from the lower to
+    /// the higher; [`NONE`] behind.
+    fn edges(&self) -> [(u32, u32, bool); 4] {
+        let mut edges = [(NONE, NONE, false); 4];
+        for (place, edge) in edges[..self.count].iter_mut().enumerate() {
+            let (from, to) = (self.corners[place], self.corners[(place + 1) % self.count]);
+            *edge = (from.min(to), from.max(to), from < to);
+        }
+        edges.sort_unstable();
+        edges
+    }
 }
 
 /// For every facet its neighbours across edges where exactly two facets of the fracture meet.
-fn links(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Vec<Link>> {
-    let cells = &draft.cells.elements;
-    let mut edges = Vec::new();
-    for (facet, entry) in surfaces.facets.iter().enumerate() {
-        let face = entry.faces[0];
-        let count = adjacency.shape_of(cells, face).corners().len();
-        let slots = adjacency.slots(cells, face).take(count);
-        let nodes: Vec<u32> = slots.map(|slot| cells.nodes[slot]).collect();
-        for (i, &from) in nodes.iter().enumerate() {
-            let to = nodes[(i + 1) % nodes.len()];
-            let key = (entry.fracture, from.min(to), from.max(to));
-            edges.push(Edge {
-                key,
-                facet: facet as u32,
-                forward: from < to,
+fn links(surfaces: &Surfaces, rings: &[Ring]) -> Vec<Links> {
+    let emit = |facet: usize, entries: &mut Vec<Entry>| {
+        let fracture = surfaces.facets[facet].fracture;
+        let edges = rings[facet].edges();
+        for (place, &(low, high, forward)) in edges[..rings[facet].count].iter().enumerate() {
+            let facet = facet as u32;
+            let edge = Edge {
+                facet,
+                place,
+                forward,
+            };
+            entries.push(Entry {
+                key: [fracture, low, high],
+                item: edge.pack(),
             });
         }
-    }
-    edges.sort_by_key(|edge| (edge.key, edge.facet));
-    let mut links = vec![Vec::new(); surfaces.facets.len()];
-    for run in edges.chunk_by(|a, b| a.key == b.key) {
+    };
+    let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[Entry]| {
         if let [a, b] = run {
-            let alike = a.forward == b.forward;
-            links[a.facet as usize].push((b.facet, alike));
-            links[b.facet as usize].push((a.facet, alike));
+            pairs.push([a, b].map(|entry| Edge::unpack(entry.item)));
         }
+    };
+    let mut links = vec![[(NONE, false); 4]; surfaces.facets.len()];
+    for [a, b] in visit_runs(surfaces.facets.len(), emit, visit)
+        .into_iter()
+        .flatten()
+    {
+        let alike = a.forward == b.forward;
+        links[a.facet as usize][a.place] = (b.facet, alike);
+        links[b.facet as usize][b.place] = (a.facet, alike);
     }
     links
 }
 
+/// An edge of a facet.
+struct Edge {
+    facet: u32,
+    /// Its place among the edges of the facet.
+    place: usize,
+    /// Whether the facet's first face runs from its lower node to its higher.
+    forward: bool,
+}
+
+impl Edge {
+    fn pack(&self) -> u32 {
+        self.facet << 3 | (self.place as u32) << 1 | u32::from(self.forward)
+    }
+
+    fn unpack(item: u32) -> Self {
+        Self {
+            facet: item >> 3,
+            place: (item >> 1 & 3) as usize,
+            forward: item & 1 == 1,
+        }
+    }
+}
+
 /// Orients everything that hangs together with `seed`; false if the surface has only one side.
-fn spread(seed: u32, links: &[Vec<Link>], flipped: &mut [Option<bool>]) -> (Vec<u32>, bool) {
+fn spread(seed: u32, links: &[Links], flipped: &mut [Option<bool>]) -> (Vec<u32>, bool) {
     flipped[seed as usize] = Some(false);
     let mut surface = vec![seed];
     let mut consistent = true;
@@ -110,7 +168,7 @@ fn spread(seed: u32, links: &[Vec<Link>], flipped: &mut [Option<bool>]) -> (Vec<
     while next < surface.len() {
         let facet = surface[next] as usize;
         next += 1;
-        for &(other, alike) in &links[facet] {
+        for &(other, alike) in links[facet].iter().filter(|link| link.0 != NONE) {
             let wanted = flipped[facet].map(|flip| flip != alike);
             match flipped[other as usize] {
                 None => {

@@ -1,9 +1,9 @@
 //! What can be told of physical surfaces before roles are given to them.
 
-use crate::adjacency::Adjacency;
+use crate::adjacency::{Adjacency, NONE};
 use crate::draft::Draft;
 
-/// How the faces of a draft's cells pair up: found once, asked before roles are given and by
+/// How the faces of a draft's cells pair up, and at which of them its facets lie: found once, asked before roles are given and by
 /// [`crate::Mesh::build_on`] afterwards.
 #[derive(Debug, Clone)]
 pub struct Faces {
@@ -11,10 +11,10 @@ pub struct Faces {
 }
 
 impl Faces {
-    /// Pairs the faces of the cells of `draft`.
+    /// Pairs the faces of the cells of `draft`, and its facets with them.
     pub fn of(draft: &Draft) -> Self {
         Self {
-            adjacency: Adjacency::of(&draft.cells.elements, draft.nodes.len()),
+            adjacency: Adjacency::of(draft),
         }
     }
 
@@ -22,13 +22,9 @@ impl Faces {
     /// between two cells.
     pub fn inner_surfaces(&self, draft: &Draft) -> Vec<bool> {
         let mut inner = vec![false; draft.groups.len()];
-        let facets = &draft.facets;
-        for facet in 0..facets.elements.len() {
-            let count = facets.elements.shapes[facet].corner_count();
-            let corners = &facets.elements.nodes_of(facet)[..count];
-            let faces = self.adjacency.faces_at(&draft.cells.elements, corners);
-            if faces.count() > 1 {
-                for &group in &draft.group_sets[facets.group_set[facet] as usize] {
+        for (place, &set) in self.adjacency.facets.iter().zip(&draft.facets.group_set) {
+            if place.faces[1] != NONE {
+                for &group in &draft.group_sets[set as usize] {
                     inner[group] = true;
                 }
             }

@@ -8,6 +8,7 @@
 use glam::DVec3;
 use lie_core::enrichment::coefficient;
 use lie_mesh::Mesh;
+use rayon::prelude::*;
 
 /// Numbering of points and unknowns.
 #[derive(Debug, Clone)]
@@ -30,7 +31,8 @@ impl Points {
             node.extend(std::iter::repeat_n(index as u32, sectors as usize));
             offset.push(node.len() as u32);
         }
-        let of_cell_node = std::iter::zip(&mesh.cells.nodes, &mesh.sectors.of_cell_node)
+        let slots = mesh.cells.nodes.par_iter().zip(&mesh.sectors.of_cell_node);
+        let of_cell_node = slots
             .map(|(&node, &sector)| offset[node as usize] + sector)
             .collect();
         Self {

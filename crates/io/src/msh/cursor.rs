@@ -10,6 +10,17 @@ use super::source::{Encoding, Source, is_space};
 /// No writer needs more for a number, and decimal parsers are at risk with less usual input.
 const LONGEST_NUMBER: usize = 64;
 
+/// Items that are read at a time: enough to be worth a task, few enough to stay in the cache.
+const ITEMS_PER_PIECE: usize = 8192;
+
+/// Some items of a block that stand one behind the other.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Piece {
+    pub(super) count: usize,
+    /// Where they stand in the file.
+    pub(super) bytes: Range<usize>,
+}
+
 /// A place in the body of a section.
 pub(super) struct Cursor<'a> {
     source: Source<'a>,
@@ -87,6 +98,36 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
+    /// Steps over `items` items of so many unsigned numbers each and cuts them into pieces.
+    pub(super) fn pieces(
+        &mut self,
+        what: &str,
+        items: usize,
+        numbers: usize,
+    ) -> Result<Vec<Piece>, Defect> {
+        let mut bytes = self.at..self.at;
+        if self.encoding != Encoding::Text {
+            self.skip_sizes(what, items * numbers)?;
+        }
+        let mut pieces = Vec::with_capacity(items.div_ceil(ITEMS_PER_PIECE));
+        let mut left = items;
+        while left > 0 {
+            let count = left.min(ITEMS_PER_PIECE);
+            if self.encoding == Encoding::Text {
+                self.skip_sizes(what, count * numbers)?;
+                bytes = bytes.end..self.at;
+            } else {
+                bytes = bytes.end..bytes.end + count * numbers * size_of::<u64>();
+            }
+            pieces.push(Piece {
+                count,
+                bytes: bytes.clone(),
+            });
+            left -= count;
+        }
+        Ok(pieces)
+    }
+
     /// Checks that nothing but white space is left.
     pub(super) fn finish(self) -> Result<(), Defect> {
         let rest = &self.source.bytes[self.at..self.end];
@@ -99,11 +140,6 @@ impl<'a> Cursor<'a> {
     /// A defect right here.
     pub(super) fn defect(&self, problem: impl Into<String>) -> Defect {
         self.source.defect_at(self.at, self.encoding, problem)
-    }
-
-    /// Byte of the file where the next number is looked for.
-    pub(super) fn position(&self) -> usize {
-        self.at
     }
 
     fn fixed<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Defect> {

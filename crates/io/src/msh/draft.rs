@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use lie_mesh::{Defect, Draft, Shape, TaggedElements, sample};
-use mshio::{ElementBlock, ElementType};
+use mshio::ElementType;
+use rayon::prelude::*;
 
+use super::cursor::Piece;
 use super::elements::Block;
 use super::entities::{EntityKey, entity_name};
 use super::groups::Groups;
@@ -48,10 +50,13 @@ pub(super) fn build(survey: Survey) -> Result<Draft, Vec<Defect>> {
         facets: TaggedElements::new(),
         ..Draft::default()
     };
-    if survey.nodes_are_readable() {
-        draft.nodes = keep(&mut defects, coordinates(&survey)).unwrap_or_default();
-    }
-    keep(&mut defects, fill_elements(&survey, groups, &mut draft));
+    let (nodes, elements) = rayon::join(
+        || survey.nodes_are_readable().then(|| coordinates(&survey)),
+        || fill_elements(&survey, groups, &mut draft),
+    );
+    let nodes = nodes.and_then(|nodes| keep(&mut defects, nodes));
+    keep(&mut defects, elements);
+    draft.nodes = nodes.unwrap_or_default();
     draft.node_tags = survey.nodes.tags;
     if defects.is_empty() {
         Ok(draft)
@@ -71,52 +76,93 @@ fn coordinates(survey: &Survey) -> Result<Vec<[f64; 3]>, Defect> {
 }
 
 fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Result<(), Defect> {
-    let parsed = mshio_calls::elements(survey.source, survey.encoding, &survey.elements_body)?;
-    if parsed.element_blocks.len() != survey.blocks.len() {
-        return Err(disagreement(survey, "element blocks"));
-    }
     let index = TagIndex::new(&survey.nodes.tags);
-    let mut dangling = Dangling::default();
-    for (block, walked) in parsed.element_blocks.iter().zip(&survey.blocks) {
-        let target = match (walked.entity.0, shape_of(walked.kind)) {
-            (3, Some(shape)) => Some((&mut draft.cells, shape)),
-            (2, Some(shape)) => Some((&mut draft.facets, shape)),
-            _ => None,
-        };
-        if let Some((elements, shape)) = target {
-            let set = groups.set_of(walked.entity, &survey.entities);
-            append(elements, block, shape, set, &index, &mut dangling);
+    for block in &survey.blocks {
+        if let Some((target, shape)) = target_of(block, &mut draft.cells, &mut draft.facets) {
+            let set = groups.set_of(block.entity, &survey.entities);
+            target.elements.append(shape, block.count);
+            target.tags.resize(target.elements.len(), 0);
+            target.group_set.resize(target.elements.len(), set);
         }
     }
+    let found: Vec<Result<Dangling, Defect>> = readings(survey, draft)
+        .into_par_iter()
+        .map(|reading| reading.run(survey, &index))
+        .collect();
     draft.groups = groups.groups;
     draft.group_sets = groups.sets;
+    let mut dangling = Dangling::default();
+    for found in found {
+        let mut found = found?;
+        dangling.elements.append(&mut found.elements);
+        dangling.nodes.append(&mut found.nodes);
+    }
     dangling.check(survey.source.name)
 }
 
-fn append(
-    target: &mut TaggedElements,
-    block: &ElementBlock<u64, i32>,
-    shape: Shape,
-    set: u32,
-    index: &TagIndex,
-    dangling: &mut Dangling,
-) {
-    let mut nodes = Vec::with_capacity(shape.node_count());
-    for element in &block.elements {
-        nodes.clear();
-        nodes.extend(element.nodes.iter().filter_map(|&tag| index.get(tag)));
-        if nodes.len() == shape.node_count() {
-            target.elements.push(shape, &nodes);
-            target.tags.push(element.element_tag);
-            target.group_set.push(set);
-        } else {
-            let missing = element
-                .nodes
-                .iter()
-                .filter(|&&tag| index.get(tag).is_none());
-            dangling.nodes.extend(missing);
-            dangling.elements.push(element.element_tag);
+/// Where the elements of a block belong, if anywhere, and their shape.
+fn target_of<T>(block: &Block, cells: T, facets: T) -> Option<(T, Shape)> {
+    match (block.entity.0, shape_of(block.kind)) {
+        (3, Some(shape)) => Some((cells, shape)),
+        (2, Some(shape)) => Some((facets, shape)),
+        _ => None,
+    }
+}
+
+/// A piece of a block, and where its elements go.
+struct Reading<'a> {
+    kind: ElementType,
+    piece: &'a Piece,
+    tags: &'a mut [u64],
+    nodes: &'a mut [u32],
+}
+
+/// Everything there is to read, in the order of the file.
+fn readings<'a>(survey: &'a Survey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
+    let room = |of: &'a mut TaggedElements| (&mut of.tags[..], &mut of.elements.nodes[..]);
+    let (mut cells, mut facets) = (room(&mut draft.cells), room(&mut draft.facets));
+    let mut readings = Vec::new();
+    for block in &survey.blocks {
+        let Some((rest, shape)) = target_of(block, &mut cells, &mut facets) else {
+            continue;
+        };
+        for piece in &block.pieces {
+            let (tags, nodes) = std::mem::take(rest);
+            let (tags, tags_left) = tags.split_at_mut(piece.count);
+            let (nodes, nodes_left) = nodes.split_at_mut(piece.count * shape.node_count());
+            *rest = (tags_left, nodes_left);
+            readings.push(Reading {
+                kind: block.kind,
+                piece,
+                tags,
+                nodes,
+            });
         }
+    }
+    readings
+}
+
+impl Reading<'_> {
+    fn run(self, survey: &Survey, index: &TagIndex) -> Result<Dangling, Defect> {
+        let mut dangling = Dangling::default();
+        let elements =
+            mshio_calls::elements(survey.source, survey.encoding, self.kind, self.piece)?;
+        let width = self.nodes.len() / self.piece.count;
+        let places = self.tags.iter_mut().zip(self.nodes.chunks_exact_mut(width));
+        for (element, (tag, nodes)) in elements.iter().zip(places) {
+            *tag = element.element_tag;
+            let missing = dangling.nodes.len();
+            for (place, &tag) in nodes.iter_mut().zip(&element.nodes) {
+                match index.get(tag) {
+                    Some(node) => *place = node,
+                    None => dangling.nodes.push(tag),
+                }
+            }
+            if dangling.nodes.len() > missing {
+                dangling.elements.push(*tag);
+            }
+        }
+        Ok(dangling)
     }
 }
 

@@ -1,24 +1,21 @@
 //! `$Elements`: the blocks, checked against the bytes that exist.
 
-use std::borrow::Cow;
-
 use lie_mesh::Defect;
 use mshio::ElementType;
 use num_traits::FromPrimitive;
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Piece};
 use super::entities::EntityKey;
 use super::nodes::check_header;
-use super::source::Encoding;
 
 /// One block: elements of one type on one entity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Block {
     pub(super) entity: EntityKey,
     pub(super) kind: ElementType,
     pub(super) count: usize,
-    /// Where the number of the type ends in the file.
-    type_end: usize,
+    /// Where its elements stand: a tag and the tags of the nodes each.
+    pub(super) pieces: Vec<Piece>,
 }
 
 /// Walks the section to its end.
@@ -43,7 +40,6 @@ fn walk_block(cursor: &mut Cursor) -> Result<Block, Defect> {
     let dimension = cursor.int("dimension of an element block")?;
     let tag = cursor.int("entity of an element block")?;
     let number = cursor.int("element type")?;
-    let type_end = cursor.position();
     let dimension = usize::try_from(dimension).ok().filter(|&d| d <= 3);
     let Some(dimension) = dimension else {
         return Err(cursor.defect("the dimension of an element block is none of 0, 1, 2, 3"));
@@ -52,40 +48,14 @@ fn walk_block(cursor: &mut Cursor) -> Result<Block, Defect> {
         return Err(unknown_type(cursor, number));
     };
     let count = cursor.count("number of elements in a block", 1 + nodes as u64)?;
-    cursor.skip_sizes("node tag of an element", count * (1 + nodes))?;
+    let pieces = cursor.pieces("node tag of an element", count, 1 + nodes)?;
     let entity = (dimension, tag);
     Ok(Block {
         entity,
         kind,
         count,
-        type_end,
+        pieces,
     })
-}
-
-/// The body of the section, which begins at byte `start` of the file, as mshio can read it: it
-/// takes the 18-node prism for one of 28 nodes, so these are announced as another type of 18 nodes.
-pub(super) fn readable<'a>(
-    encoding: Encoding,
-    body: &'a [u8],
-    start: usize,
-    blocks: &[Block],
-) -> Cow<'a, [u8]> {
-    const STAND_IN: ElementType = ElementType::Tri18;
-    let number = STAND_IN as i32;
-    let announced = match encoding {
-        Encoding::Text => number.to_string().into_bytes(),
-        Encoding::LittleEndian => number.to_le_bytes().to_vec(),
-        Encoding::BigEndian => number.to_be_bytes().to_vec(),
-    };
-    let mut body = Cow::Borrowed(body);
-    for block in blocks
-        .iter()
-        .filter(|block| block.kind == ElementType::Pri18)
-    {
-        let end = block.type_end - start;
-        body.to_mut()[end - announced.len()..end].copy_from_slice(&announced);
-    }
-    body
 }
 
 /// The type of that number and how many nodes it has.

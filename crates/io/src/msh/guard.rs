@@ -4,8 +4,6 @@
 //! It also drops node tags, physical names and partitioned entities. So all sections that matter
 //! are walked here first, number by number.
 
-use std::borrow::Cow;
-
 use lie_mesh::{Defect, Group};
 
 use super::cursor::Cursor;
@@ -26,8 +24,6 @@ pub(super) struct Survey<'a> {
     pub(super) blocks: Vec<Block>,
     /// Body of `$Nodes`.
     pub(super) nodes_body: &'a [u8],
-    /// Body of `$Elements`, as mshio can read it.
-    pub(super) elements_body: Cow<'a, [u8]>,
 }
 
 impl Survey<'_> {
@@ -53,8 +49,6 @@ pub(super) fn survey(source: Source<'_>, encoding: Encoding) -> Result<Survey<'_
         return Err(defects);
     };
     let body = |at: Option<&Section>| at.map_or(&[][..], |at| &source.bytes[at.body.clone()]);
-    let start = elements_at.map_or(0, |at| at.body.start);
-    let elements_body = elements::readable(encoding, body(elements_at), start, &blocks);
     Ok(Survey {
         source,
         encoding,
@@ -63,7 +57,6 @@ pub(super) fn survey(source: Source<'_>, encoding: Encoding) -> Result<Survey<'_
         nodes,
         blocks,
         nodes_body: body(nodes_at),
-        elements_body,
     })
 }
 

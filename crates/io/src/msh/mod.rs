@@ -15,9 +15,12 @@ mod sections;
 mod source;
 mod tags;
 
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use lie_mesh::{Defect, Draft};
+use rayon::prelude::*;
 
 use header::Format;
 use source::Source;
@@ -72,7 +75,7 @@ fn older(source: Source, version: f64) -> Defect {
 }
 
 fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
-    std::fs::read(path).map_err(|error| {
+    read_bytes(path).map_err(|error| {
         let problem = format!("cannot be read: {error}");
         Defect::new(
             path.display().to_string(),
@@ -80,4 +83,24 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
             "check the path and the permissions",
         )
     })
+}
+
+/// Large files are read by several tasks: copying them out of the system's cache takes as long as
+/// the parsing of a binary one.
+fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    const PART: usize = 8 << 20;
+    let length = std::fs::metadata(path)?.len();
+    // What is no ordinary file has no length.
+    let length = usize::try_from(length).map_err(io::Error::other)?;
+    if length < 2 * PART {
+        return std::fs::read(path);
+    }
+    let mut bytes = vec![0; length];
+    let parts = bytes.par_chunks_mut(PART).enumerate();
+    parts.try_for_each(|(number, part)| {
+        let mut file = File::open(path)?;
+        file.seek(SeekFrom::Start((number * PART) as u64))?;
+        file.read_exact(part)
+    })?;
+    Ok(bytes)
 }

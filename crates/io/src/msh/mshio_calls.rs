@@ -1,8 +1,12 @@
-//! The two calls of mshio. Each gets one section that the guard has walked, behind a clean header.
+//! The two calls of mshio. Each gets what the guard has walked, behind a clean header: the section
+//! of nodes, or a piece of a block of elements, many of which can be read at the same time.
+
+use std::fmt::Display;
 
 use lie_mesh::Defect;
-use mshio::{Elements, MshData, MshParserError, Nodes};
+use mshio::{Element, ElementType, MshData, MshParserError, Nodes};
 
+use super::cursor::Piece;
 use super::source::{Encoding, Source};
 
 /// Parses the body of `$Nodes`.
@@ -16,15 +20,52 @@ pub(super) fn nodes(
         .ok_or_else(|| refused(source, "Nodes", "no section"))
 }
 
-/// Parses the body of `$Elements`.
+/// Parses elements of one type, as many as the guard has counted.
 pub(super) fn elements(
     source: Source,
     encoding: Encoding,
-    body: &[u8],
-) -> Result<Elements<u64, i32>, Defect> {
-    let data = parse(source, encoding, "Elements", body)?;
-    data.elements
-        .ok_or_else(|| refused(source, "Elements", "no section"))
+    kind: ElementType,
+    piece: &Piece,
+) -> Result<Vec<Element<u64>>, Defect> {
+    let body = lone_block(source, encoding, kind, piece);
+    let data = parse(source, encoding, "Elements", &body)?;
+    let blocks = data.elements.map(|section| section.element_blocks);
+    match blocks.unwrap_or_default().pop() {
+        Some(block) if block.elements.len() == piece.count => Ok(block.elements),
+        _ => Err(refused(source, "Elements", "another number of elements")),
+    }
+}
+
+/// The body of a section with this piece for its only block. Only the type and the number of the
+/// elements matter.
+fn lone_block(source: Source, encoding: Encoding, kind: ElementType, piece: &Piece) -> Vec<u8> {
+    let kind = match kind {
+        // mshio takes the 18-node prism for one of 28 nodes; this is another type of 18 nodes.
+        ElementType::Pri18 => ElementType::Tri18,
+        kind => kind,
+    };
+    let records = &source.bytes[piece.bytes.clone()];
+    let count = piece.count as u64;
+    let mut body = Vec::with_capacity(records.len() + 128);
+    // Blocks, elements, lowest and highest tag: with the true tags, mshio would index sparse ones.
+    for number in [1, count, 1, count] {
+        push(&mut body, encoding, number, &number.to_le_bytes());
+    }
+    for number in [3, 1, kind as i32] {
+        push(&mut body, encoding, number, &number.to_le_bytes());
+    }
+    push(&mut body, encoding, count, &count.to_le_bytes());
+    body.extend_from_slice(records);
+    body
+}
+
+/// Appends a number in the encoding of the file.
+fn push(body: &mut Vec<u8>, encoding: Encoding, number: impl Display, little: &[u8]) {
+    match encoding {
+        Encoding::Text => body.extend(format!("{number} ").bytes()),
+        Encoding::LittleEndian => body.extend(little),
+        Encoding::BigEndian => body.extend(little.iter().rev()),
+    }
 }
 
 /// Only this section is handed on: mshio searches the end of others in quadratic time.

@@ -1,7 +1,7 @@
 //! Edges of facets: which facets meet there, and whether the outer surface runs along.
 
 use super::{FractureSurvey, FracturesAtNodes};
-use crate::adjacency::{Key, key};
+use crate::adjacency::NONE;
 use crate::mesh::Mesh;
 
 /// An edge between two nodes as one facet has it.
@@ -85,6 +85,16 @@ fn ring_edges(ring: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     ring.iter().zip(next).map(|(&a, &b)| [a.min(b), a.max(b)])
 }
 
+/// A face of a cell by its corner nodes, ascending; triangles end in [`NONE`].
+type Key = [u32; 4];
+
+fn key(nodes: &[u32]) -> Key {
+    let mut key = [NONE; 4];
+    key[..nodes.len()].copy_from_slice(nodes);
+    key.sort_unstable();
+    key
+}
+
 /// Edges of faces with a cell on one side only, as far as both ends are on fractures.
 fn outer_edges(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Vec<[u32; 2]> {
     let mut faces: Vec<(Key, [u32; 4], u8)> = Vec::new();
@@ -102,7 +112,7 @@ fn outer_edges(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Vec<[u32; 2]> {
             }
             let own = &ring[..count];
             if own.iter().filter(|&&node| at_nodes.any(node)).count() > 1 {
-                faces.push((key(own.iter().copied()), ring, count as u8));
+                faces.push((key(own), ring, count as u8));
             }
         }
     }

@@ -8,7 +8,8 @@
 use std::ops::Range;
 
 use faer::linalg::solvers::SolveCore;
-use faer::{Conj, Mat, Side};
+use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
+use faer::{Conj, Mat, Par, Side};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
@@ -52,6 +53,24 @@ struct CoupledRow {
     row: u32,
     /// Numbers among the jumps, and addresses of the blocks.
     jumps: Vec<(u32, usize)>,
+}
+
+/// The diagonal block `D = L L^T` of a node.
+struct NodeFactor {
+    /// `D^-1`, row by row.
+    inverse: Vec<DMat3>,
+    /// `L^-T z` with signs `z`: a start vector with equal energy in stiff and soft directions, so that
+    /// a power iteration does not take the largest stiffness for the largest eigenvalue.
+    start: Vec<DVec3>,
+}
+
+/// A fixed pattern of signs without a short period.
+fn sign(index: usize) -> f64 {
+    if (index * index * 7919 + index * 13) % 101 < 50 {
+        1.0
+    } else {
+        -1.0
+    }
 }
 
 impl JumpBlock {
@@ -102,14 +121,22 @@ impl JumpBlock {
         for (&place, block) in self.places.iter().zip(stiffness) {
             self.tangent.blocks[place] += *block;
         }
-        let inverses = self.nodes.par_iter().map(|own| self.inverse(own.clone()));
-        self.inverses = inverses.collect::<Result<Vec<_>, _>>()?.concat();
-        self.largest_eigenvalue = POWER_MARGIN * self.power_iteration();
+        let factors = self.nodes.par_iter().map(|own| self.factorise(own.clone()));
+        let factors = factors.collect::<Result<Vec<_>, _>>()?;
+        self.inverses = factors
+            .iter()
+            .flat_map(|f| f.inverse.iter().copied())
+            .collect();
+        let start = factors
+            .iter()
+            .flat_map(|f| f.start.iter().copied())
+            .collect();
+        self.largest_eigenvalue = POWER_MARGIN * self.power_iteration(start);
         Ok(())
     }
 
-    /// Inverse of the diagonal block of a node.
-    fn inverse(&self, own: Range<usize>) -> Result<Vec<DMat3>, LinearFailure> {
+    /// The diagonal block of a node, factorised.
+    fn factorise(&self, own: Range<usize>) -> Result<NodeFactor, LinearFailure> {
         let count = own.len();
         let mut block = Mat::<f64>::zeros(3 * count, 3 * count);
         for row in own.clone() {
@@ -135,17 +162,20 @@ impl JumpBlock {
             };
             DMat3::from_cols(column_of(0), column_of(1), column_of(2))
         };
-        Ok((0..count * count)
-            .map(|k| entry(k / count, k % count))
-            .collect())
+        let mut start = Mat::from_fn(3 * count, 1, |i, _| sign(3 * own.start + i));
+        solve_upper_triangular_in_place(factor.L().transpose(), start.as_mut(), Par::Seq);
+        Ok(NodeFactor {
+            inverse: (0..count * count)
+                .map(|k| entry(k / count, k % count))
+                .collect(),
+            start: (0..count)
+                .map(|i| DVec3::from_array([0, 1, 2].map(|c| start[(3 * i + c, 0)])))
+                .collect(),
+        })
     }
 
-    /// Largest eigenvalue of `D^-1 A` by its Rayleigh quotient, from a fixed start vector.
-    fn power_iteration(&self) -> f64 {
-        let number = |i: usize| ((i * 7919 + 13) % 101) as f64 / 50.0 - 1.0;
-        let mut vector: Vec<DVec3> = (0..self.unknowns.len())
-            .map(|i| DVec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2)))
-            .collect();
+    /// Largest eigenvalue of `D^-1 A` by its Rayleigh quotient.
+    fn power_iteration(&self, mut vector: Vec<DVec3>) -> f64 {
         let mut image = vector.clone();
         let mut largest = 1.0_f64;
         for _ in 0..POWER_STEPS {
