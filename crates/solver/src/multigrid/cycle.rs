@@ -51,10 +51,14 @@ impl<const N: usize> Transfer<N> {
         let mut sum = [0.0; 6];
         for &(row, position) in self.transpose.column(aggregate) {
             let block = &self.prolongator.blocks[position as usize];
+            let mut part = [0.0; 6];
             for (line, &entry) in block.iter().zip(&residual[row as usize]) {
-                for (sum, &weight) in sum.iter_mut().zip(line) {
-                    *sum += weight * entry;
+                for (part, &weight) in part.iter_mut().zip(line) {
+                    *part += weight * entry;
                 }
+            }
+            for (sum, part) in sum.iter_mut().zip(part) {
+                *sum += part;
             }
         }
         sum

@@ -141,10 +141,15 @@ impl<const N: usize> Sparse<N, N> {
         let mut sum = x[row];
         for (&column, block) in self.columns[range.clone()].iter().zip(&self.blocks[range]) {
             let x = &x[column as usize];
+            // Apart from the sum, so that blocks need not wait for each other.
+            let mut part = [0.0; N];
             for (line, &x) in block.iter().zip(x) {
-                for (sum, &entry) in sum.iter_mut().zip(line) {
-                    *sum += entry * x;
+                for (part, &entry) in part.iter_mut().zip(line) {
+                    *part += entry * x;
                 }
+            }
+            for (sum, part) in sum.iter_mut().zip(part) {
+                *sum += part;
             }
         }
         sum
