@@ -18,9 +18,9 @@ use crate::multigrid::{BlockRows, OwnedBlockRows};
 use crate::system::System;
 
 /// Products with the block in one application.
-const DEGREE: usize = 4;
+const DEGREE: usize = 3;
 /// Ratio of largest to smallest eigenvalue that the polynomial is made for.
-const CONDITION: f64 = 12.0;
+const CONDITION: f64 = 8.0;
 /// Steps of the power iteration for the largest eigenvalue, and what it may have missed.
 const POWER_STEPS: usize = 12;
 const POWER_MARGIN: f64 = 1.15;
