@@ -15,6 +15,7 @@
 //! Which side of a fracture is plus is decided here, once.
 
 mod adjacency;
+mod arrange;
 mod blocks;
 mod check;
 mod defect;

@@ -10,12 +10,24 @@ use super::source::Source;
 use super::{bytes_of, parse_msh};
 use crate::gmsh::convert_mesh;
 
+/// Cells from which on a mesh outgrows the caches, so that it pays to arrange it.
+const LARGE: usize = 20_000;
+
 /// Reads an MSH file of any version; gmsh converts those before 4.1 to a file in `scratch_dir`,
-/// which is removed again.
+/// which is removed again. Large meshes are arranged ([`Draft::arrange`]); small ones keep the order
+/// of the file.
 ///
 /// # Errors
 /// As [`super::read_msh`], and what gmsh says against the file.
 pub fn load_msh(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
+    let mut draft = load(path, scratch_dir)?;
+    if draft.cells.elements.len() >= LARGE {
+        draft.arrange();
+    }
+    Ok(draft)
+}
+
+fn load(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
     let name = path.display().to_string();
     let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
     let source = Source {
