@@ -1,6 +1,6 @@
 //! What a nonlinear run costs against one linear solve of the same system; see README.md.
 //!
-//!     cargo bench --bench nonlinear -- [CUBES [METHOD]]
+//!     cargo bench --bench nonlinear -- [CUBES [METHOD [once]]]
 #![allow(clippy::print_stdout, reason = "the table is what it is run for")]
 
 mod block;
@@ -68,7 +68,10 @@ fn main() {
     let cubes = arguments
         .first()
         .map_or(32, |size| size.parse().expect("a number of cubes"));
-    let method = arguments.get(1).map(|name| name.parse().expect("a method"));
+    let method = match arguments.get(1).map(String::as_str) {
+        None | Some("chosen") => None,
+        Some(name) => Some(name.parse().expect("a method")),
+    };
     let problem = block::problem(cubes, &block::TWO_PLANES);
     let discretisation = Discretisation::of(&problem).expect("supported");
     let fractured = discretisation.points.jump_count() as f64;
@@ -105,6 +108,9 @@ fn main() {
         timed(|| run(&system, method, 1)),
         once,
     );
+    if arguments.get(2).is_some_and(|word| word == "once") {
+        return;
+    }
     tell("100 steps", timed(|| run(&system, method, 100)), one);
     tell(
         "50 stiffnesses",

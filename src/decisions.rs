@@ -1,7 +1,9 @@
 //! What the program decided, and what went wrong, in words.
 
 use lie_mesh::Defect;
-use lie_solver::{LinearFailure, Outcome, Plan, Prediction, Problem, StepRecord, Support, System};
+use lie_solver::{
+    LinearFailure, LinearMethod, Outcome, Plan, Prediction, Problem, StepRecord, Support, System,
+};
 
 use crate::scene::SolverEntry;
 use crate::summary::FractureSummary;
@@ -82,7 +84,8 @@ pub fn of_plan(plan: &Plan, asked: &SolverEntry) -> String {
     };
     let why = match asked.linear {
         Some(_) => "as the scene asks",
-        None => "the cheapest",
+        None if plan.method == LinearMethod::Iterative => "the cheapest",
+        None => "exact and quick enough",
     };
     let chosen = plan.prediction();
     let others = plan.predictions.iter().filter(|p| p.method != plan.method);

@@ -37,7 +37,7 @@ ROUNDS = {20: 3, 55: 3, 146: 2, 414: 1}
 LARGEST_OPENED = 55
 """Thousands of unknowns up to which the opened joint is compared too."""
 
-CUBES = {"small": (21, 31), "all": (21, 31, 50, 69)}
+CUBES = {"small": (21, 31), "medium": (21, 31, 69), "all": (21, 31, 50, 69)}
 """Cubes an edge of the linear systems: 30, 95, 390 and 1014 thousand unknowns."""
 
 CUBE_ROUNDS = {21: 3, 31: 3, 50: 1, 69: 1}
@@ -81,7 +81,8 @@ def say(text):
 def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(prog="sh benches/peers/run", description=__doc__.splitlines()[0])
-    parser.add_argument("--sizes", choices=("small", "all"), default="all", help="small: up to 100 000 unknowns")
+    parser.add_argument("--sizes", choices=("small", "medium", "all"), default="all",
+                        help="small: up to 100 000 unknowns; medium: whole runs up to 146 000, linear systems 30 000 to 1 million")
     parser.add_argument("--again", action="store_true", help="forget what was measured before")
     parser.add_argument("--prefix", default="", help="a command in front of every measured command, like `nice -n -5`")
     return parser.parse_args()
@@ -214,7 +215,7 @@ class WholeRun:
         inspect = [ROOT / "target/release/kluft", "inspect", folder / "closed.toml"]
         text = run([*inspect, "--json", "--out", folder / "out"])
         for solver in json.loads(text)["solvers"] if text else []:
-            if "operations" in solver:
+            if solver.get("operations"):
                 results.add(**key, operations=solver["operations"])
                 return
 
@@ -304,7 +305,7 @@ def main():
     results = Results(WORK / "results.jsonl", options.again)
     builds = {"opengeosys": version("ogs"), "kluft": build()}
     measure_machine(results, prefix)
-    sizes = problems.SIZES if options.sizes == "all" else problems.SIZES[:2]
+    sizes = problems.SIZES[: {"small": 2, "medium": 3, "all": 4}[options.sizes]]
     measure_runs(sizes, builds, results, prefix)
     measure_linear(CUBES[options.sizes], results, prefix)
     measure_own_linear(CUBES[options.sizes], builds["kluft"], results, prefix)

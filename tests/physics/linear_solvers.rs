@@ -149,5 +149,21 @@ fn iterations_are_bounded_for_stiff_and_soft_fractures() {
         counts.push(record.linear_iterations());
     }
     println!("iterations: {counts:?}");
-    assert!(counts.iter().all(|&count| count <= 90), "{counts:?}");
+    assert!(counts.iter().all(|&count| count <= 120), "{counts:?}");
+}
+
+#[test]
+fn iterations_do_not_depend_on_the_number_of_threads() {
+    let problem = t_block(8);
+    for method in LinearMethod::ALL {
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let pool = pool.expect("threads");
+            pool.install(|| solve(&problem, method, 2).0.displacements)
+        };
+        let one = with(1);
+        for threads in [2, 3] {
+            assert_eq!(one, with(threads), "{method}, {threads} threads");
+        }
+    }
 }

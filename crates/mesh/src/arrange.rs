@@ -124,8 +124,11 @@ mod tests {
     use super::*;
     use crate::structured::tetrahedra;
 
+    /// Tag, group set, tags of nodes and bits of their coordinates.
+    type Content = (u64, u32, Vec<u64>, Vec<[u64; 3]>);
+
     /// Everything an arranged draft says of its elements, whatever their order.
-    fn content(draft: &Draft) -> Vec<(u64, u32, Vec<u64>, Vec<[u64; 3]>)> {
+    fn content(draft: &Draft) -> Vec<Content> {
         let mut all = Vec::new();
         for part in [&draft.cells, &draft.facets] {
             for element in 0..part.elements.len() {

@@ -22,6 +22,8 @@ const MAX_ITERATIONS: usize = 2000;
 /// taken for one that rounding ended.
 const ROUNDED: f64 = 1e-3;
 
+/// How often the spectrum of the jumps may turn out wider than it was taken for.
+const MOST_WIDENINGS: usize = 4;
 /// Steps of the first guess, and the factor by which each must reduce the residual.
 const MOST_GUESSES: usize = 6;
 const HELPS: f64 = 0.3;
@@ -126,37 +128,45 @@ impl TangentSolver for Iterative {
             rock: vec![DVec3::ZERO; self.rock.len()],
             correction: vec![DVec3::ZERO; self.rock.len()],
         };
-        let report = conjugate_gradients(
-            multiply,
-            |residual, correction| {
-                let workspace = &mut self.workspace;
-                precondition(
-                    (&self.multigrid, workspace),
-                    (&self.rock, &self.jumps, rows),
-                    &mut parts,
-                    (residual, correction),
-                );
-            },
-            &residual,
-            &mut correction,
-            ConjugateGradientSettings {
-                tolerance: wanted,
-                max_iterations: MAX_ITERATIONS,
-            },
-        );
+        let mut iterations = 0;
+        for attempt in 0..=MOST_WIDENINGS {
+            let report = conjugate_gradients(
+                multiply,
+                |residual, correction| {
+                    let workspace = &mut self.workspace;
+                    precondition(
+                        (&self.multigrid, workspace),
+                        (&self.rock, &self.jumps, rows),
+                        &mut parts,
+                        (residual, correction),
+                    );
+                },
+                &residual,
+                &mut correction,
+                ConjugateGradientSettings {
+                    tolerance: wanted,
+                    max_iterations: MAX_ITERATIONS,
+                },
+            );
+            iterations += report.iterations;
+            let last = report.residuals.last().copied().unwrap_or(f64::NAN);
+            match report.outcome {
+                ConjugateGradientOutcome::NotFinite => return Err(LinearFailure::NotFinite),
+                // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
+                _ if last <= wanted.max(ROUNDED) => break,
+                ConjugateGradientOutcome::Breakdown if attempt < MOST_WIDENINGS => {
+                    self.jumps.widen();
+                }
+                _ => return Err(LinearFailure::Stalled(iterations)),
+            }
+        }
         for (unknown, change) in unknowns.iter_mut().zip(&correction) {
             *unknown += *change;
         }
-        let last = report.residuals.last().copied().unwrap_or(f64::NAN);
-        match report.outcome {
-            ConjugateGradientOutcome::NotFinite => Err(LinearFailure::NotFinite),
-            // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
-            _ if last <= wanted.max(ROUNDED) => Ok(LinearSolution {
-                unknowns,
-                iterations: report.iterations,
-            }),
-            _ => Err(LinearFailure::Stalled(report.iterations)),
-        }
+        Ok(LinearSolution {
+            unknowns,
+            iterations,
+        })
     }
 }
 

@@ -21,9 +21,11 @@ use crate::system::System;
 const DEGREE: usize = 3;
 /// Ratio of largest to smallest eigenvalue that the polynomial is made for.
 const CONDITION: f64 = 8.0;
-/// Steps of the power iteration for the largest eigenvalue, and what it may have missed.
+/// Steps of the power iteration for the largest eigenvalue, and what it may have missed at first.
 const POWER_STEPS: usize = 12;
 const POWER_MARGIN: f64 = 1.15;
+/// Factor by which the margin grows when it was too small.
+const WIDENING: f64 = 1.4;
 
 /// The jumps' own block of the tangent, and what couples it to the rock.
 pub(super) struct JumpBlock {
@@ -44,6 +46,8 @@ pub(super) struct JumpBlock {
     /// Start of each unknown's row among them.
     inverse_offset: Vec<usize>,
     largest_eigenvalue: f64,
+    /// Factor on the result of the power iteration.
+    margin: f64,
     coupling: Vec<CoupledRow>,
 }
 
@@ -104,6 +108,7 @@ impl JumpBlock {
             tangent: own,
             inverses: Vec::new(),
             largest_eigenvalue: 1.0,
+            margin: POWER_MARGIN,
             unknowns,
         }
     }
@@ -131,8 +136,15 @@ impl JumpBlock {
             .iter()
             .flat_map(|f| f.start.iter().copied())
             .collect();
-        self.largest_eigenvalue = POWER_MARGIN * self.power_iteration(start);
+        self.largest_eigenvalue = self.margin * self.power_iteration(start);
         Ok(())
+    }
+
+    /// Takes the spectrum for wider than before, because the polynomial turned out not to be positive: a
+    /// power iteration misses eigenvectors that live on a few bad cells.
+    pub(super) fn widen(&mut self) {
+        self.margin *= WIDENING;
+        self.largest_eigenvalue *= WIDENING;
     }
 
     /// The diagonal block of a node, factorised.

@@ -1,4 +1,5 @@
-//! Which linear solver a problem gets: the one with the least predicted time among those that fit.
+//! Which linear solver a problem gets: the one with the least predicted time among those that fit, and a
+//! direct one, because it is exact, where that takes next to no time.
 //!
 //! Times are predicted from operations and bytes moved, at fixed rates of an ordinary machine, so the
 //! choice is the same everywhere; only their ratios matter.
@@ -13,11 +14,17 @@ use crate::problem::Problem;
 use crate::system::{Discretisation, System};
 
 /// Operations of a factorisation in a second (1/s).
-const OPERATIONS: f64 = 6e10;
+const OPERATIONS: f64 = 3e10;
+/// Time to order and to analyse an unknown (s).
+const ANALYSIS: f64 = 5e-6;
 /// Bytes read in a second (1/s).
 const BYTES: f64 = 2e10;
 /// Cholesky factors of solid bodies take about this times the square of the unknowns (operations).
 const SOLID: f64 = 18.0;
+/// Time below which a direct solver is taken even if the iterative one is faster (s).
+const QUICK: f64 = 0.3;
+/// Weight of so short a time.
+const NEGLIGIBLE: f64 = 1e-3;
 /// A direct solver is not even analysed if it is bound to lose by this factor.
 const HOPELESS: f64 = 10.0;
 
@@ -127,6 +134,19 @@ pub struct Prediction {
     pub operations: f64,
 }
 
+impl Prediction {
+    /// The time that counts: direct solvers are exact to rounding, so one that is over in no time is as
+    /// good as any.
+    fn worth(&self) -> f64 {
+        let is_exact = self.method != LinearMethod::Iterative;
+        if is_exact && self.seconds < QUICK {
+            self.seconds * NEGLIGIBLE
+        } else {
+            self.seconds
+        }
+    }
+}
+
 /// The chosen solver and what is known of it before any value is computed.
 pub struct Plan {
     /// What was chosen.
@@ -169,7 +189,7 @@ impl Plan {
         }
         let candidates = || predictions.iter().filter(|p| is_wanted(p.method));
         let fitting = candidates().filter(|p| p.memory_bytes <= memory_bytes);
-        let fastest = fitting.min_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        let fastest = fitting.min_by(|a, b| a.worth().total_cmp(&b.worth()));
         let smallest = candidates().min_by_key(|p| p.memory_bytes);
         let method = fastest.or(smallest).map_or(iterative.method, |p| p.method);
         let analysis = analyses.into_iter().find(|(of, _)| *of == method);
@@ -246,7 +266,7 @@ fn predict(
     };
     Prediction {
         method,
-        seconds,
+        seconds: seconds + ANALYSIS * 3.0 * unknowns.points.len() as f64,
         memory_bytes: analysis.memory_bytes() + extra as usize,
         factor_entries: analysis.factor_entries(),
         operations: analysis.factor_operations(),
@@ -257,7 +277,7 @@ fn predict(
 fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     const SETUP_BYTES: f64 = 4000.0;
     const ITERATION_BYTES: f64 = 400.0;
-    const MEMORY_BYTES: f64 = 110.0;
+    const MEMORY_BYTES: f64 = 190.0;
     let blocks = unknowns.pattern.columns.len() as f64;
     let iterations = if workload.is_nonlinear {
         30.0 + 20.0 * workload.steps as f64

@@ -1,56 +1,70 @@
-//! A first guess for a load step: the path of the last two states, continued.
+//! A first guess for a load step: the path of the last states, continued.
 //!
-//! Displacements and tractions are continued alike. Both enter the balance of forces linearly, so
-//! the guess is in balance; all that is wrong with it is how far the apertures are from the law.
+//! Displacements and tractions are continued alike, as polynomials of the load. Both enter the balance
+//! of forces linearly, so the guess is in balance; all that is wrong with it is how far the
+//! apertures are from the law.
+
+use std::collections::VecDeque;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::system::{FacetPointState, State, System};
 
-/// Longest continuation, against the step that it continues.
-const LONGEST: f64 = 2.0;
+/// States that are kept: with the present one enough for a cubic.
+const KEPT: usize = 3;
+/// Largest sum of the sizes of the weights; 15 for a cubic through equal steps. A longer way would
+/// magnify what the states have of error.
+const WEIGHTIEST: f64 = 15.0;
 
-/// A converged state to continue from, beside the one a step starts from.
+/// Converged states, the latest first, beside the one that a step starts from.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Path(VecDeque<Former>);
+
 #[derive(Debug, Clone)]
-pub(super) struct Former {
+struct Former {
     load: f64,
     unknowns: Vec<DVec3>,
     /// Tractions of the laws (Pa).
     tractions: Vec<DVec3>,
 }
 
-impl Former {
-    pub(super) fn of(system: &System<'_>, state: &State) -> Self {
-        Self {
+impl Path {
+    /// Remembers a converged state that a step has left.
+    pub(super) fn remember(&mut self, system: &System<'_>, state: &State) {
+        self.0.truncate(KEPT - 1);
+        self.0.push_front(Former {
             load: state.load,
             unknowns: state.unknowns.clone(),
             tractions: system.law_tractions(state),
-        }
+        });
     }
 
-    /// Continues the straight path from here through `state` to `load`.
+    /// Continues the path through `state` to `load`, if there is one and `load` is not too far.
     pub(super) fn continue_through(&self, system: &System<'_>, state: &mut State, load: f64) {
-        let ratio = (load - state.load) / (state.load - self.load);
-        if !(ratio.abs() <= LONGEST && ratio != 0.0) {
+        let Some((own, weights)) = self.weights(state.load, load) else {
             return;
-        }
-        let tractions = system.law_tractions(state);
-        let before = system
-            .discretisation
-            .interface
-            .jumps(&state.unknowns, state.load);
-        let unknowns = state.unknowns.par_iter_mut().zip(&self.unknowns);
-        unknowns.for_each(|(now, former)| *now += ratio * (*now - *former));
+        };
+        let formers = || self.0.iter().zip(&weights);
+        let tractions: Vec<DVec3> = system
+            .law_tractions(state)
+            .into_par_iter()
+            .enumerate()
+            .map(|(i, now)| own * now + formers().map(|(f, w)| *w * f.tractions[i]).sum::<DVec3>())
+            .collect();
+        let interface = &system.discretisation.interface;
+        let before = interface.jumps(&state.unknowns, state.load);
+        let unknowns = state.unknowns.par_iter_mut().enumerate();
+        unknowns.for_each(|(i, now)| {
+            *now = own * *now + formers().map(|(f, w)| *w * f.unknowns[i]).sum::<DVec3>();
+        });
         state.load = load;
-        let after = system.discretisation.interface.jumps(&state.unknowns, load);
-        let points = &system.discretisation.interface.points;
-        for (index, point) in points.iter().enumerate() {
-            let traction = tractions[index] + ratio * (tractions[index] - self.tractions[index]);
+        let after = interface.jumps(&state.unknowns, load);
+        for (index, point) in interface.points.iter().enumerate() {
             let moved = (after[index] - before[index]).dot(point.normal);
             let closure = &system.law(point).closure;
             let state = &mut state.facet_points[index];
-            let across = traction.dot(point.normal);
+            let across = tractions[index].dot(point.normal);
             let landed = state.separation.moved(state.mismatch + moved);
             let separation = if closure.normal_stiffness == 0.0 {
                 landed
@@ -60,8 +74,66 @@ impl Former {
             *state = FacetPointState {
                 separation,
                 mismatch: landed.beyond(separation),
-                shear: traction - across * point.normal,
+                shear: tractions[index] - across * point.normal,
             };
         }
+    }
+
+    /// Lagrange's weights of the present state and of the former ones, of as many as are close
+    /// enough together; none if there is nothing to continue.
+    fn weights(&self, present: f64, load: f64) -> Option<(f64, Vec<f64>)> {
+        let loads: Vec<f64> = self.0.iter().map(|former| former.load).collect();
+        (1..=loads.len()).rev().find_map(|count| {
+            let points: Vec<f64> = [present]
+                .into_iter()
+                .chain(loads[..count].iter().copied())
+                .collect();
+            let weight = |i: usize| -> f64 {
+                let others = (0..points.len()).filter(|&j| j != i);
+                others
+                    .map(|j| (load - points[j]) / (points[i] - points[j]))
+                    .product()
+            };
+            let weights: Vec<f64> = (0..points.len()).map(weight).collect();
+            let size: f64 = weights.iter().map(|weight| weight.abs()).sum();
+            (size <= WEIGHTIEST).then(|| (weights[0], weights[1..].to_vec()))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(loads: &[f64]) -> Path {
+        let former = |&load: &f64| Former {
+            load,
+            unknowns: Vec::new(),
+            tractions: Vec::new(),
+        };
+        Path(loads.iter().map(former).collect())
+    }
+
+    #[test]
+    fn weights_continue_cubics_through_equal_steps() {
+        let (own, weights) = path(&[0.3, 0.2, 0.1]).weights(0.4, 0.5).expect("a path");
+        for (weight, exact) in [own].iter().chain(&weights).zip([4.0, -6.0, 4.0, -1.0]) {
+            assert!((weight - exact).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_return_to_a_former_load_takes_its_state() {
+        let (own, weights) = path(&[0.5]).weights(1.0, 0.5).expect("a path");
+        assert_eq!((own, weights), (0.0, vec![1.0]));
+    }
+
+    #[test]
+    fn loads_that_repeat_or_lie_far_off_are_left_out() {
+        let (_, weights) = path(&[0.5, 1.0]).weights(1.0, 0.5).expect("a path");
+        assert_eq!(weights.len(), 1);
+        assert!(path(&[0.99]).weights(1.0, 2.0).is_none());
+        assert!(path(&[]).weights(1.0, 2.0).is_none());
+        assert!(path(&[1.0]).weights(1.0, 2.0).is_none());
     }
 }

@@ -23,7 +23,7 @@ use glam::DVec3;
 use crate::interface::Interface;
 use crate::linear::{LinearFailure, Plan, TangentSolver, Unknowns, Workload};
 use crate::system::{State, System, norm};
-use extrapolation::Former;
+use extrapolation::Path;
 use walls::Landing;
 
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
@@ -38,8 +38,7 @@ const LOOSEST_SOLVE: f64 = 1e-3;
 pub struct Newton {
     settings: NewtonSettings,
     linear: Box<dyn TangentSolver>,
-    /// The state that the last step started from.
-    former: Option<Former>,
+    path: Path,
 }
 
 /// What a step works on.
@@ -77,7 +76,7 @@ impl Newton {
     ) -> Result<Self, LinearFailure> {
         Ok(Self {
             linear: plan.prepare(system)?,
-            former: None,
+            path: Path::default(),
             settings,
         })
     }
@@ -101,7 +100,7 @@ impl Newton {
                     observe(record.iterations.len(), &iteration);
                     if self.is_converged(system, &iteration) {
                         record.outcome = Outcome::Converged;
-                        self.former = Some(Former::of(system, state));
+                        self.path.remember(system, state);
                         *state = trial.state;
                         break;
                     }
@@ -119,9 +118,7 @@ impl Newton {
     /// The first guess for a step.
     fn start(&self, system: &System<'_>, state: &State, load: f64) -> Trial {
         let mut guess = state.clone();
-        if let Some(former) = &self.former {
-            former.continue_through(system, &mut guess, load);
-        }
+        self.path.continue_through(system, &mut guess, load);
         walls::move_supports(system, &mut guess, load);
         let rock_forces = system.rock_forces(&guess.unknowns);
         let tractions = system.law_tractions(&guess);
@@ -132,7 +129,7 @@ impl Newton {
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
             } else {
-                self.settings.force
+                0.1 * self.settings.force
             },
             state: guess,
         }
