@@ -111,6 +111,7 @@ fn one_set_up_serves_other_laws() {
         let discretisation = Discretisation::of(&problem).expect("supported");
         let mut system = System::assemble(&problem, discretisation);
         let mut newton = Newton::new(&system, settings(method)).expect("prepared");
+        let mut former = system.initial_state();
         for factor in [1e-2, 1.0, 1e3] {
             let mut stiffer = problem.clone();
             for fracture in &mut stiffer.fractures {
@@ -125,6 +126,10 @@ fn one_set_up_serves_other_laws() {
             let (alone, _) = solve(&stiffer, method, 1);
             let error = difference(&alone, &solution(&system, &state));
             assert!(error < 1e-6, "{method}, {factor}: {error:e}");
+            let record = newton.step(&system, &mut former, 1.0, |_, _| {});
+            assert!(record.converged(), "{method}, {factor}: {record:?}");
+            let error = difference(&alone, &solution(&system, &former));
+            assert!(error < 1e-6, "{method}, {factor}, continued: {error:e}");
         }
     }
 }

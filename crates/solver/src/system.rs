@@ -75,6 +75,8 @@ pub struct State {
     pub unknowns: Vec<DVec3>,
     /// State of each facet point.
     pub facet_points: Vec<FacetPointState>,
+    /// Which laws of the system it was reached with.
+    generation: u32,
 }
 
 /// State of one facet point.
@@ -101,6 +103,8 @@ pub struct System<'a> {
     pub loads: Loads,
     /// Law of each fracture; see [`System::set_laws`].
     laws: Vec<FractureLaw>,
+    /// How often the laws were changed.
+    generation: u32,
 }
 
 impl<'a> System<'a> {
@@ -123,13 +127,16 @@ impl<'a> System<'a> {
                 .iter()
                 .map(|fracture| fracture.law)
                 .collect(),
+            generation: 0,
             discretisation,
         }
     }
 
     /// Gives the fractures other laws, one each. Rock and loads stay, and with them whatever a solver
-    /// prepared.
+    /// prepared. A state reached with the former laws serves as a first guess for a step with the new
+    /// ones.
     pub fn set_laws(&mut self, laws: Vec<FractureLaw>) {
+        self.generation += 1;
         self.discretisation
             .interface
             .carry_initial_stress(self.problem, &laws);
@@ -160,6 +167,28 @@ impl<'a> System<'a> {
             load: 0.0,
             unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
             facet_points: facet_points.collect(),
+            generation: self.generation,
+        }
+    }
+
+    /// Restates a state that was reached with other laws: apertures stay, the rest follows from the
+    /// jumps and the present laws.
+    pub(crate) fn adapt(&self, state: &mut State) {
+        if state.generation == self.generation {
+            return;
+        }
+        state.generation = self.generation;
+        let interface = &self.discretisation.interface;
+        let jumps = interface.jumps(&state.unknowns, state.load);
+        let points = interface.points.iter().zip(jumps);
+        for ((point, jump), state) in points.zip(&mut state.facet_points) {
+            let law = self.law(point);
+            let seen = point.initial_jump + jump;
+            let opening = seen.dot(point.normal);
+            let aperture = state.separation.aperture;
+            state.separation = law.closure.opened(aperture - law.closure.aperture);
+            state.mismatch = opening - state.separation.opening;
+            state.shear = law.shear_stiffness * (seen - opening * point.normal);
         }
     }
 

@@ -436,7 +436,8 @@ fn a_sub_block_is_the_matrix_of_the_kept_rows() {
     let mut product = part.clone();
     sub.view().multiply(&part, &mut product);
     for (&row, value) in kept.iter().zip(&product) {
-        assert_eq!(whole_product[row as usize], *value);
+        // The sums of a row are grouped by its length, so they agree to rounding.
+        assert!((whole_product[row as usize] - *value).length() < 1e-15);
     }
     let modes: Vec<[DVec3; 6]> = kept.iter().map(|&row| case.modes[row as usize]).collect();
     let direct = Multigrid::of_sub_block(case.matrix.view(), &kept, &modes).unwrap();

@@ -118,6 +118,7 @@ impl Newton {
     /// The first guess for a step.
     fn start(&self, system: &System<'_>, state: &State, load: f64) -> Trial {
         let mut guess = state.clone();
+        system.adapt(&mut guess);
         self.path.continue_through(system, &mut guess, load);
         walls::move_supports(system, &mut guess, load);
         let rock_forces = system.rock_forces(&guess.unknowns);
