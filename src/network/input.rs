@@ -6,6 +6,7 @@ use glam::DVec3;
 use lie_mesh::Defect;
 use lie_network::{
     Domain, Given, Orientation, Outline, Polygon, SIDES, Sizes, check_name, read_list,
+    repeated_names,
 };
 
 use super::scene::{Passages, passages};
@@ -194,7 +195,7 @@ fn read_description(
     for section in root.listed_sections("fracture") {
         given.extend(read_fracture(section, &names));
     }
-    names_once(&given, defects);
+    repeated_names(&given, defects);
     Some(Input {
         title: root.text("title").unwrap_or("Fracture network").to_owned(),
         domain: domain?,
@@ -204,20 +205,6 @@ fn read_description(
         passages: passages(root),
         assumptions: Vec::new(),
     })
-}
-
-fn names_once(given: &[Given], defects: &mut Vec<Defect>) {
-    let mut first = std::collections::HashMap::new();
-    for fracture in given {
-        if let Some(other) = first.insert(&fracture.name, &fracture.place) {
-            let problem = format!("the name `{}` is taken ({other})", fracture.name);
-            defects.push(Defect::new(
-                &fracture.place,
-                problem,
-                "give each fracture a name of its own",
-            ));
-        }
-    }
 }
 
 /// The domain of the description, or that of the command line in its place.

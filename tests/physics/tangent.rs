@@ -3,7 +3,6 @@
 use glam::DVec3;
 use lie_core::ClosureKind;
 use lie_mesh::structured::Patch;
-use lie_solver::multigrid::BlockRows;
 use lie_solver::{Analysis, Cholesky, Discretisation, NodeOrder, Problem, Support, System, norm};
 
 use crate::scenes::{self, EXACT, joint};
@@ -129,13 +128,7 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
         let order = NodeOrder::of(pattern, points).expect("ordering");
         let (row_offset, columns) = (&pattern.row_offset, &pattern.columns);
         let analysis = Analysis::of(row_offset, columns, order.all(points)).expect("analysis");
-        let blocks = &tangent.blocks;
-        let rows = BlockRows {
-            row_offset,
-            columns,
-            blocks,
-        };
-        let mut solver = Cholesky::new(analysis, rows);
+        let mut solver = Cholesky::new(analysis, tangent.rows(pattern));
         assert_eq!(solver.factorise(), Ok(()), "closed to {closure}");
     }
 }

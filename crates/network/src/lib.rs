@@ -23,7 +23,7 @@ pub use clip::{Domain, FACES};
 pub use fisher::Fisher;
 pub use geo::{Grouping, write_geo};
 pub use intersections::{Intersection, distance, intersection};
-pub use list::read_list;
+pub use list::{read_list, repeated_names};
 pub use list_row::SIDES;
 pub use network::{Fracture, Given, LeftOut, Network, Sizes};
 pub use orientation::Orientation;

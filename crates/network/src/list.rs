@@ -109,7 +109,8 @@ fn columns(
     found
 }
 
-fn repeated_names(fractures: &[Given], defects: &mut Vec<Defect>) {
+/// Reports every fracture whose name another one before it has.
+pub fn repeated_names(fractures: &[Given], defects: &mut Vec<Defect>) {
     let mut first: HashMap<&str, &str> = HashMap::new();
     for fracture in fractures {
         if let Some(other) = first.insert(&fracture.name, &fracture.place) {

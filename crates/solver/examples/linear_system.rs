@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 use lie_core::{FacetQuadrature, Rock};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Mesh, SurfaceRole};
-use lie_solver::multigrid::{BlockRows, Multigrid, rigid_modes};
+use lie_solver::multigrid::{Multigrid, rigid_modes};
 use lie_solver::{
     Analysis, Cholesky, Condition, ConjugateGradientSettings, Discretisation, NodeOrder, Problem,
     Support, System, conjugate_gradients,
@@ -88,11 +88,7 @@ fn right_hand_side(system: &System<'_>) -> Vec<DVec3> {
 
 fn by_multigrid(system: &System<'_>, right: &[DVec3]) {
     let discretisation = &system.discretisation;
-    let matrix = BlockRows {
-        row_offset: &discretisation.pattern.row_offset,
-        columns: &discretisation.pattern.columns,
-        blocks: &system.rock.blocks,
-    };
+    let matrix = system.rock_rows();
     let start = Instant::now();
     let nodes = &system.problem.mesh.nodes;
     let modes: Vec<[DVec3; 6]> = (0..right.len())

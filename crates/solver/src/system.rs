@@ -247,12 +247,7 @@ impl<'a> System<'a> {
 
     /// The stiffness of the rock, row by row.
     pub fn rock_rows(&self) -> BlockRows<'_> {
-        let pattern = &self.discretisation.pattern;
-        BlockRows {
-            row_offset: &pattern.row_offset,
-            columns: &pattern.columns,
-            blocks: &self.rock.blocks,
-        }
+        self.rock.rows(&self.discretisation.pattern)
     }
 
     /// Forces by which the rock resists the unknowns (N), `K y`.
@@ -297,10 +292,25 @@ impl<'a> System<'a> {
     pub fn tangent(&self, tangents: &[DMat3]) -> BlockMatrix {
         let mut whole = self.rock.clone();
         let stiffness = self.discretisation.interface.stiffness(tangents);
-        for ((row, place), block) in self.interface_places().iter().zip(stiffness) {
-            whole.blocks[self.discretisation.pattern.row_offset[*row] + place] += block;
+        let row_offset = &self.discretisation.pattern.row_offset;
+        for (row, place, block) in self.tangent_blocks(&self.interface_places(), &stiffness) {
+            whole.blocks[row_offset[row] + place] = block;
         }
         whole
+    }
+
+    /// The blocks of the tangent that the fractures have a part in: block row, number of the block in
+    /// it, and the block. `places` are [`Self::interface_places`].
+    pub(crate) fn tangent_blocks(
+        &self,
+        places: &[(usize, usize)],
+        stiffness: &[DMat3],
+    ) -> impl Iterator<Item = (usize, usize, DMat3)> {
+        let row_offset = &self.discretisation.pattern.row_offset;
+        places.iter().zip(stiffness).map(|(&(row, place), block)| {
+            let rock = self.rock.blocks[row_offset[row] + place];
+            (row, place, rock + *block)
+        })
     }
 
     /// Where the blocks that [`Interface::stiffness`] returns belong in the matrix: block row and

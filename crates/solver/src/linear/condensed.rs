@@ -29,7 +29,6 @@ impl Condensed {
     /// If the rock is not positive definite or memory runs out.
     pub fn new(system: &System<'_>, analysis: Analysis) -> Result<Self, LinearFailure> {
         let interface = &system.discretisation.interface;
-        let pattern = &system.discretisation.pattern;
         let mut cholesky = Cholesky::new(analysis, system.rock_rows());
         let springs: Vec<DMat3> = interface
             .points
@@ -37,9 +36,8 @@ impl Condensed {
             .map(|point| point.spring * DMat3::IDENTITY)
             .collect();
         let springs = interface.stiffness(&springs);
-        for ((row, place), block) in system.interface_places().into_iter().zip(&springs) {
-            let rock = system.rock.blocks[pattern.row_offset[row] + place];
-            cholesky.set_block(row, place, rock + *block);
+        for (row, place, block) in system.tangent_blocks(&system.interface_places(), &springs) {
+            cholesky.set_block(row, place, block);
         }
         cholesky.factorise()?;
         cholesky.forget_values();

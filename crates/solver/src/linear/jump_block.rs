@@ -14,7 +14,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::LinearFailure;
-use crate::multigrid::{BlockRows, OwnedBlockRows};
+use crate::multigrid::{BlockRows, DROPPED, OwnedBlockRows, numbers};
 use crate::system::System;
 
 /// Products with the block in one application.
@@ -308,15 +308,12 @@ fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
 }
 
 fn coupling(rows: BlockRows<'_>, rock: &[u32], jumps: &[u32]) -> Vec<CoupledRow> {
-    let mut number = vec![u32::MAX; rows.rows()];
-    for (index, &jump) in jumps.iter().enumerate() {
-        number[jump as usize] = index as u32;
-    }
+    let number = numbers(rows.rows(), jumps);
     let coupled = |(index, &unknown): (usize, &u32)| {
         let range = rows.row_offset[unknown as usize]..rows.row_offset[unknown as usize + 1];
         let jumps: Vec<(u32, usize)> = range
             .map(|address| (number[rows.columns[address] as usize], address))
-            .filter(|(jump, _)| *jump != u32::MAX)
+            .filter(|(jump, _)| *jump != DROPPED)
             .collect();
         (!jumps.is_empty()).then_some(CoupledRow {
             row: index as u32,

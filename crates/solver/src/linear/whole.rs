@@ -32,10 +32,8 @@ impl TangentSolver for Whole {
             return Ok(());
         }
         self.stiffness = None;
-        let row_offset = &system.discretisation.pattern.row_offset;
-        for (&(row, place), block) in self.places.iter().zip(&stiffness) {
-            let rock = system.rock.blocks[row_offset[row] + place];
-            self.cholesky.set_block(row, place, rock + *block);
+        for (row, place, block) in system.tangent_blocks(&self.places, &stiffness) {
+            self.cholesky.set_block(row, place, block);
         }
         self.cholesky.factorise()?;
         self.stiffness = Some(stiffness);

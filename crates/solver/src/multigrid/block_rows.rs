@@ -8,7 +8,7 @@ use super::sparse::{row_shares, sum_up};
 /// Rows that one task treats; fixed, so that no result depends on the number of threads.
 const ROWS_PER_TASK: usize = 1024;
 /// Marks a row of the larger matrix that is not kept.
-pub(super) const DROPPED: u32 = u32::MAX;
+pub(crate) const DROPPED: u32 = u32::MAX;
 
 /// A symmetric sparse matrix of 3x3 blocks, row by row, both triangles stored.
 #[derive(Debug, Clone, Copy)]
@@ -62,8 +62,14 @@ impl<'a> BlockRows<'a> {
         even + odd
     }
 
-    /// `product = A vector`, both of one entry a block row, without allocating.
+    /// `product = A vector`, both of one entry a block row, without allocating. Each row is summed by
+    /// one thread in a fixed order, so the result does not depend on the number of threads.
+    ///
+    /// # Panics
+    /// If `vector` or `product` has not one entry for each block row.
     pub fn multiply(&self, vector: &[DVec3], product: &mut [DVec3]) {
+        let lengths = [vector.len(), product.len()];
+        assert_eq!(lengths, [self.rows(); 2], "one entry a block row");
         let tasks = product.par_chunks_mut(ROWS_PER_TASK).enumerate();
         tasks.for_each(|(task, chunk)| {
             for (place, sum) in chunk.iter_mut().enumerate() {
@@ -127,7 +133,7 @@ impl OwnedBlockRows {
 }
 
 /// New number of each row, [`DROPPED`] for those not kept.
-pub(super) fn numbers(rows: usize, kept: &[u32]) -> Vec<u32> {
+pub(crate) fn numbers(rows: usize, kept: &[u32]) -> Vec<u32> {
     let mut number = vec![DROPPED; rows];
     for (new, &old) in kept.iter().enumerate() {
         number[old as usize] = new as u32;

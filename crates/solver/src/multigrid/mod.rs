@@ -26,6 +26,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 pub use block_rows::{BlockRows, OwnedBlockRows};
+pub(crate) use block_rows::{DROPPED, numbers};
 use coarsest::Dense;
 use cycle::{Below, Level, Transfer};
 use galerkin::Coarse;
