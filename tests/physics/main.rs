@@ -6,6 +6,7 @@
 
 mod closed_forms;
 mod conditions;
+mod contact;
 mod dice;
 mod families;
 mod geometries;
