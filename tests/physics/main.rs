@@ -9,6 +9,7 @@ mod conditions;
 mod contact;
 mod dice;
 mod families;
+mod friction;
 mod geometries;
 mod junctions;
 mod linear_solvers;

@@ -246,15 +246,18 @@ impl Newton {
     }
 
     /// Error allowed in a linear solve, against its right-hand side: enough for what the
-    /// linearisation is worth, and for the test of the forces.
+    /// linearisation is worth, and for the test of the forces. A residual above rounding is always
+    /// reduced: tractions may still move where forces are in balance.
     fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
-        let size = norm(residual);
-        let wanted = trial.looseness * size.min(trial.scales.force);
-        let enough = 0.1 * self.settings.force * trial.scales.force;
-        if size > 0.0 {
-            wanted.max(enough) / size
-        } else {
+        let (size, scale) = (norm(residual), trial.scales.force);
+        let wanted = trial.looseness * size.min(scale);
+        let enough = 0.1 * self.settings.force * scale;
+        let tolerance = wanted.max(enough);
+        let rounding = 1e-3 * self.settings.force * scale;
+        if size <= rounding {
             1.0
+        } else {
+            (tolerance / size).min(0.1)
         }
     }
 }

@@ -40,7 +40,7 @@ impl Default for NewtonSettings {
             force: 1e-9,
             increment: 1e-5,
             closure: 1e-9,
-            max_iterations: 50,
+            max_iterations: 25,
             path: 1e-3,
             linear: None,
         }
