@@ -11,6 +11,7 @@ mod families;
 mod geometries;
 mod junctions;
 mod linear_solvers;
+mod load_paths;
 mod loops;
 mod manufactured;
 mod networks;

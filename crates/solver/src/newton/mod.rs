@@ -22,7 +22,8 @@ use glam::DVec3;
 
 use crate::interface::Interface;
 use crate::linear::{LinearFailure, Plan, TangentSolver, Unknowns, Workload};
-use crate::system::{State, System, norm};
+use crate::schedule::Load;
+use crate::system::{Sizes, State, System, norm};
 use extrapolation::Path;
 use walls::Landing;
 
@@ -30,6 +31,10 @@ pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
 const LOOSEST_SOLVE: f64 = 1e-3;
+
+/// Share of the largest sizes of a path that still counts once the loads are gone: what is left then
+/// is rounding, and would be compared with nothing but itself.
+const REMEMBERED: f64 = 1e-3;
 
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
 ///
@@ -47,7 +52,9 @@ struct Trial {
     landings: Vec<Landing>,
     /// Forces by which the rock resists the unknowns (N).
     rock_forces: Vec<DVec3>,
-    /// Largest of the forces that must balance (N).
+    /// Sizes of the state.
+    sizes: Sizes,
+    /// What residuals are measured against: the largest of the forces that must balance (N).
     force_scale: f64,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
@@ -81,18 +88,18 @@ impl Newton {
         })
     }
 
-    /// Solves one load step from `state`, calling `observe` after each iteration. `state` is
+    /// Solves one load step from `state` to `load`, calling `observe` after each iteration. `state` is
     /// replaced if the step converges and kept if not.
     pub fn step(
         &mut self,
         system: &System<'_>,
         state: &mut State,
-        load: f64,
+        load: &Load,
         mut observe: impl FnMut(usize, &Iteration),
     ) -> StepRecord {
         let start = Instant::now();
         let mut trial = self.start(system, state, load);
-        let mut record = StepRecord::new(load);
+        let mut record = StepRecord::new(load.clone());
         while record.iterations.len() < self.settings.max_iterations {
             match self.iterate(system, &mut trial, &mut record) {
                 Ok(iteration) => {
@@ -101,6 +108,7 @@ impl Newton {
                     if self.is_converged(system, &iteration) {
                         record.outcome = Outcome::Converged;
                         self.path.remember(system, state);
+                        trial.state.reached = trial.sizes.or_share(1.0, trial.state.reached);
                         *state = trial.state;
                         break;
                     }
@@ -116,16 +124,18 @@ impl Newton {
     }
 
     /// The first guess for a step.
-    fn start(&self, system: &System<'_>, state: &State, load: f64) -> Trial {
+    fn start(&self, system: &System<'_>, state: &State, load: &Load) -> Trial {
         let mut guess = state.clone();
         system.adapt(&mut guess);
         self.path.continue_through(system, &mut guess, load);
         walls::move_supports(system, &mut guess, load);
         let rock_forces = system.rock_forces(&guess.unknowns);
         let tractions = system.law_tractions(&guess);
+        let force = system.force_scale(&rock_forces, &tractions, load);
         Trial {
             landings: vec![Landing::default(); guess.facet_points.len()],
-            force_scale: system.force_scale(&rock_forces, &tractions, load),
+            sizes: Sizes::default(),
+            force_scale: force.max(REMEMBERED * guess.reached.force),
             rock_forces,
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
@@ -155,7 +165,7 @@ impl Newton {
         updated.map_err(Outcome::Linear)?;
         record.factorise_seconds += start.elapsed().as_secs_f64();
         let tractions = walls::linearised_tractions(system, &trial.state, &tangents);
-        let residual = system.residual(&trial.rock_forces, &tractions, trial.state.load);
+        let residual = system.residual(&trial.rock_forces, &tractions, &trial.state.load);
         let solution = self
             .linear
             .solve(system, &residual, self.tolerance(trial, &residual));
@@ -178,7 +188,7 @@ impl Newton {
             self.settings.linearisation,
             &mut trial.state,
             &mut trial.landings,
-            &interface(system).jumps(correction, 0.0),
+            &interface(system).jumps(correction, &Load::NONE),
         );
         let mut iteration = assess(system, trial, correction, &errors, record)?;
         iteration.linear_iterations = solution.iterations;
@@ -221,10 +231,9 @@ fn assess(
     let largest_normal = normal
         .map(|(point, traction)| traction.dot(point.normal).abs())
         .fold(0.0, f64::max);
-    let residual = norm(&system.residual(&trial.rock_forces, &tractions, state.load));
-    trial.force_scale = system.force_scale(&trial.rock_forces, &tractions, state.load);
-    let change = system.displacements(correction, 0.0);
-    let displacements = system.displacements(&state.unknowns, state.load);
+    let residual = norm(&system.residual(&trial.rock_forces, &tractions, &state.load));
+    let change = system.displacements(correction, &Load::NONE);
+    let displacements = system.displacements(&state.unknowns, &state.load);
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     record.worst_facet_point = worst;
     let separations = || state.facet_points.iter().map(|point| point.separation);
@@ -232,10 +241,17 @@ fn assess(
     let opening = separations()
         .map(|separation| separation.opening.abs())
         .fold(0.0, f64::max);
+    trial.sizes = Sizes {
+        force: system.force_scale(&trial.rock_forces, &tractions, &state.load),
+        displacement: largest(&displacements).max(opening),
+        traction: largest_normal,
+    };
+    let scale = trial.sizes.or_share(REMEMBERED, state.reached);
+    trial.force_scale = scale.force;
     Ok(Iteration {
-        force_residual: ratio(residual, trial.force_scale),
-        increment: ratio(largest(&change), largest(&displacements).max(opening)),
-        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), largest_normal),
+        force_residual: ratio(residual, scale.force),
+        increment: ratio(largest(&change), scale.displacement),
+        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), scale.traction),
         smallest_aperture: separations()
             .map(|separation| separation.aperture)
             .fold(f64::INFINITY, f64::min),

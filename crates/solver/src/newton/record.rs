@@ -1,6 +1,7 @@
 //! Settings of a nonlinear solve, and its record.
 
 use crate::linear::{LinearFailure, LinearMethod};
+use crate::schedule::Load;
 
 /// Where a facet point is linearised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -75,8 +76,8 @@ pub enum Outcome {
 /// Record of a load step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepRecord {
-    /// Factor on the loads.
-    pub load: f64,
+    /// Load at its end.
+    pub load: Load,
     /// Every iteration, in order.
     pub iterations: Vec<Iteration>,
     /// How it ended.
@@ -90,7 +91,7 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
-    pub(super) fn new(load: f64) -> Self {
+    pub(super) fn new(load: Load) -> Self {
         Self {
             load,
             iterations: Vec::new(),

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::Linearisation;
 use crate::interface::FacetPoint;
+use crate::schedule::Load;
 use crate::system::{FacetPointState, State, System};
 
 /// Where the last linear solve of a step put a facet point.
@@ -28,13 +29,13 @@ impl Landing {
     }
 }
 
-/// Takes the state to another load factor: prescribed displacements move walls that are held.
-pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: f64) {
-    let step = load - state.load;
-    state.load = load;
-    let points = &system.discretisation.interface.points;
-    for (point, state) in points.iter().zip(&mut state.facet_points) {
-        let jump = step * point.prescribed;
+/// Takes the state to another load: prescribed displacements move walls that are held.
+pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: &Load) {
+    let interface = &system.discretisation.interface;
+    let jumps = interface.prescribed_change(&state.load, load);
+    state.load.clone_from(load);
+    let points = interface.points.iter().zip(jumps);
+    for ((point, jump), state) in points.zip(&mut state.facet_points) {
         let opening = jump.dot(point.normal);
         state.mismatch += opening;
         state.shear += system.law(point).shear_stiffness * (jump - opening * point.normal);
