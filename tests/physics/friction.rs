@@ -35,7 +35,10 @@ fn column(fracture: Fracture, axial: f64) -> Problem {
     let draft = scenes::geometry("inclined-joint", &[("dip", 60.0), ("h", 0.4)]);
     let mesh = scenes::build(draft);
     let mut problem = scenes::problem(mesh, fracture);
-    scenes::load_with_stress(&mut problem, DMat3::from_diagonal(DVec3::new(0.0, 0.0, -axial)));
+    scenes::load_with_stress(
+        &mut problem,
+        DMat3::from_diagonal(DVec3::new(0.0, 0.0, -axial)),
+    );
     let (low, high) = problem.mesh.bounds();
     scenes::fix_rigid_motions(
         &mut problem,
@@ -58,9 +61,19 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
             for (axial, slides) in [(3.4606e6, false), (3.4676e6, true)] {
                 let problem = column(rubbing(closure, stiffness, 30.0, 1e6), axial);
                 let (record, solution, _) = scenes::try_solve(&problem, NewtonSettings::default());
-                println!("{:?} {stiffness:e} {axial}: {:?} {:?} {}", closure.kind, record.outcome, record.parts, record.iterations.len());
+                println!(
+                    "{:?} {stiffness:e} {axial}: {:?} {:?} {}",
+                    closure.kind,
+                    record.outcome,
+                    record.parts,
+                    record.iterations.len()
+                );
                 assert_eq!(record.converged(), !slides);
-                let largest = solution.facet_points.iter().map(|p| p.slip.length()).fold(0.0, f64::max);
+                let largest = solution
+                    .facet_points
+                    .iter()
+                    .map(|p| p.slip.length())
+                    .fold(0.0, f64::max);
                 println!("   slip {largest:e}");
             }
         }

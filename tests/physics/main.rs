@@ -13,6 +13,7 @@ mod friction;
 mod geometries;
 mod junctions;
 mod linear_solvers;
+mod load_paths;
 mod loops;
 mod manufactured;
 mod networks;
