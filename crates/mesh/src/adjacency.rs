@@ -71,6 +71,20 @@ impl Adjacency {
         first..first + cells.shapes[cell].faces().len() as u32
     }
 
+    /// Faces of lower cells that lie at the faces of this one.
+    pub(crate) fn lower_neighbours(
+        &self,
+        cells: &Elements,
+        cell: usize,
+    ) -> impl Iterator<Item = u32> {
+        let faces = self.faces_of(cells, cell);
+        let others = &self.neighbour[faces.start as usize..faces.end as usize];
+        others
+            .iter()
+            .copied()
+            .filter(move |&other| other < faces.start)
+    }
+
     /// Positions of a face's nodes in the flat node list of the cells, in outward order.
     pub(crate) fn slots<'a>(
         &self,
