@@ -1,7 +1,9 @@
 //! Finds what has the same key among millions of items, in a time linear in their number.
 //!
-//! Items are dealt out by a hash of their key, first into parts that fit a processor's cache, then
-//! into buckets of a few; only within a bucket they are sorted. Every part is the work of one task.
+//! Items are dealt out by the first number of their key, a node, into parts that fit a processor's
+//! cache; what has the same key within a part, a hash table finds. Where the elements lie in the
+//! order of their nodes, most items of a part come from a few stretches of elements: these are not
+//! dealt out but asked for again. Every part is the work of one task.
 
 use std::ops::Range;
 
@@ -9,9 +11,12 @@ use rayon::prelude::*;
 
 /// Elements whose items one task deals out.
 const ELEMENTS_PER_TASK: usize = 16_384;
-/// The hash has this many bits for the part.
-const PART_BITS: u32 = 7;
-const PARTS: usize = 1 << PART_BITS;
+/// So many nodes have a few hundred kilobytes of faces around them.
+const NODES_PER_PART: usize = 512;
+/// Each task of the dealing has a list as long as there are parts.
+const MOST_PARTS: usize = 1024;
+/// Marks the end of a chain, and a free place.
+const NONE: u32 = u32::MAX;
 
 /// An item and the three numbers it is matched by, the last two in any order.
 #[derive(Debug, Clone, Copy, Default)]
@@ -27,15 +32,6 @@ impl Entry {
         [first, a.min(b), a.max(b)]
     }
 
-    /// Orders entries by key, those of one key by item.
-    fn rank(&self) -> u128 {
-        let digits = |sum: u128, digit: u32| sum << u32::BITS | u128::from(digit);
-        self.sorted_key()
-            .into_iter()
-            .chain([self.item])
-            .fold(0, digits)
-    }
-
     fn hash(&self) -> u64 {
         // Odd constants without pattern; only the upper bits are used, and these depend on all.
         const FIRST: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -44,69 +40,153 @@ impl Entry {
         let mixed = (first | a << 32).wrapping_mul(FIRST).rotate_left(32) ^ b;
         mixed.wrapping_mul(SECOND)
     }
-
-    fn part(&self) -> usize {
-        (self.hash() >> (u64::BITS - PART_BITS)) as usize
-    }
-
-    /// The bucket within the part, of `2^bits`.
-    fn bucket(&self, bits: u32) -> usize {
-        (self.hash() << PART_BITS >> (u64::BITS - bits)) as usize
-    }
 }
 
 /// Visits every run of two or more entries with one key, in ascending order of their items, and
 /// returns what each task has made of its runs. `emit` appends the entries of one of `count`
-/// elements; items ascend from element to element. Which run a task visits, and when, depends on the keys alone.
+/// elements, one at least, their keys beginning with a number below `end`. Which run a task visits,
+/// and when, depends on the keys alone.
 pub(crate) fn visit_runs<A: Default + Send>(
     count: usize,
+    end: usize,
     emit: impl Fn(usize, &mut Vec<Entry>) + Sync,
     visit: impl Fn(&mut A, &[Entry]) + Sync,
 ) -> Vec<A> {
+    let parts = Parts::of(end);
     let deal = |entries: &mut Vec<Entry>, task: usize| {
         let first = task * ELEMENTS_PER_TASK;
-        entries.clear();
-        (first..count.min(first + ELEMENTS_PER_TASK)).for_each(|element| emit(element, entries));
-        Dealt::of(entries)
+        let elements = first..count.min(first + ELEMENTS_PER_TASK);
+        Dealt::in_order(parts, elements.clone(), &emit, entries)
+            .unwrap_or_else(|| Dealt::all(parts, elements, &emit, entries))
     };
     let tasks = (0..count.div_ceil(ELEMENTS_PER_TASK)).into_par_iter();
     let dealt: Vec<Dealt> = tasks.map_init(Vec::new, deal).collect();
-    let visit_part = |buckets: &mut Buckets, part: usize| {
+    let visit_part = |table: &mut Table, part: usize| {
         let mut answer = A::default();
-        buckets.fill(&dealt, part);
-        buckets.visit_runs(|run| visit(&mut answer, run));
+        table.entries.clear();
+        for dealt in &dealt {
+            for element in dealt.own(part) {
+                parts.emit_into(part, &mut table.entries, |entries| emit(element, entries));
+            }
+            table.entries.extend(dealt.of_part(part));
+        }
+        table.visit_runs(|run| visit(&mut answer, run));
         answer
     };
-    let parts = (0..PARTS).into_par_iter();
-    parts.map_init(Buckets::default, visit_part).collect()
+    let all = (0..parts.count).into_par_iter();
+    all.map_init(Table::default, visit_part).collect()
 }
 
-/// The entries of one task, those of one part side by side.
+/// How first numbers of keys are divided.
+#[derive(Clone, Copy)]
+struct Parts {
+    shift: u32,
+    count: usize,
+}
+
+impl Parts {
+    fn of(end: usize) -> Self {
+        let per_part = end.div_ceil(MOST_PARTS).max(NODES_PER_PART);
+        let shift = per_part.next_power_of_two().ilog2();
+        let count = (end >> shift) + 1;
+        Self { shift, count }
+    }
+
+    fn of_entry(self, entry: &Entry) -> usize {
+        (entry.key[0] >> self.shift) as usize
+    }
+
+    /// Appends those entries of an element that belong to a part.
+    fn emit_into(self, part: usize, entries: &mut Vec<Entry>, emit: impl Fn(&mut Vec<Entry>)) {
+        let first = entries.len();
+        emit(entries);
+        self.keep(entries, first, |entry_part| entry_part == part);
+    }
+
+    /// Drops entries of some parts, from `first` on.
+    fn keep(self, entries: &mut Vec<Entry>, first: usize, wanted: impl Fn(usize) -> bool) {
+        let mut end = first;
+        for place in first..entries.len() {
+            // Without a branch, for which parts come next cannot be foreseen.
+            let entry = entries[place];
+            entries[end] = entry;
+            end += usize::from(wanted(self.of_entry(&entry)));
+        }
+        entries.truncate(end);
+    }
+}
+
+/// What one task has dealt out.
 struct Dealt {
+    /// First of the elements that each part has to ask for again, and of those behind.
+    own: Vec<usize>,
+    /// The entries of all other elements, and those that do not belong to the part of their element;
+    /// those of one part side by side.
     entries: Vec<Entry>,
-    start: [u32; PARTS + 1],
+    start: Vec<u32>,
 }
 
 impl Dealt {
-    fn of(entries: &[Entry]) -> Self {
-        let mut start = [0; PARTS + 1];
-        for entry in entries {
-            start[entry.part() + 1] += 1;
+    /// Leaves elements to the parts of their lowest keys, if these ascend.
+    fn in_order(
+        parts: Parts,
+        elements: Range<usize>,
+        emit: impl Fn(usize, &mut Vec<Entry>),
+        entries: &mut Vec<Entry>,
+    ) -> Option<Self> {
+        let mut own = Vec::with_capacity(parts.count + 1);
+        entries.clear();
+        for element in elements.clone() {
+            let first = entries.len();
+            emit(element, entries);
+            let home = entries[first..].iter().map(|entry| parts.of_entry(entry));
+            let home = home.min()?;
+            if home + 1 < own.len() {
+                return None;
+            }
+            own.resize(home + 1, element);
+            parts.keep(entries, first, |part| part != home);
         }
-        for part in 0..PARTS {
+        own.resize(parts.count + 1, elements.end);
+        Some(Self::of(parts, own, entries))
+    }
+
+    /// Leaves no element to the parts.
+    fn all(
+        parts: Parts,
+        elements: Range<usize>,
+        emit: impl Fn(usize, &mut Vec<Entry>),
+        entries: &mut Vec<Entry>,
+    ) -> Self {
+        entries.clear();
+        elements.for_each(|element| emit(element, entries));
+        Self::of(parts, vec![0; parts.count + 1], entries)
+    }
+
+    fn of(parts: Parts, own: Vec<usize>, entries: &[Entry]) -> Self {
+        let mut start = vec![0; parts.count + 1];
+        for entry in entries {
+            start[parts.of_entry(entry) + 1] += 1;
+        }
+        for part in 0..parts.count {
             start[part + 1] += start[part];
         }
-        let mut next = start;
+        let mut next = start.clone();
         let mut dealt = vec![Entry::default(); entries.len()];
         for entry in entries {
-            let place = &mut next[entry.part()];
+            let place = &mut next[parts.of_entry(entry)];
             dealt[*place as usize] = *entry;
             *place += 1;
         }
         Self {
+            own,
             entries: dealt,
             start,
         }
+    }
+
+    fn own(&self, part: usize) -> Range<usize> {
+        self.own[part]..self.own[part + 1]
     }
 
     fn of_part(&self, part: usize) -> &[Entry] {
@@ -115,51 +195,73 @@ impl Dealt {
     }
 }
 
-/// The entries of one part, those of one bucket side by side.
+/// The entries of one part and where those with equal keys are.
 #[derive(Default)]
-struct Buckets {
+struct Table {
     entries: Vec<Entry>,
-    start: Vec<u32>,
+    /// At the hash of a key, or behind: the first entry with this key.
+    first: Vec<u32>,
+    /// For each entry another one with its key.
+    next: Vec<u32>,
+    run: Vec<Entry>,
 }
 
-impl Buckets {
-    fn fill(&mut self, dealt: &[Dealt], part: usize) {
-        let entries = || dealt.iter().flat_map(|dealt| dealt.of_part(part));
-        let count: usize = dealt.iter().map(|dealt| dealt.of_part(part).len()).sum();
-        // One or two entries a bucket: most keys occur twice.
-        let bits = count.max(2).ilog2();
-        self.start.clear();
-        self.start.resize(1 << bits, 0);
-        for entry in entries() {
-            self.start[entry.bucket(bits)] += 1;
+impl Table {
+    fn visit_runs(&mut self, mut visit: impl FnMut(&[Entry])) {
+        self.link();
+        for &first in self.first.iter().filter(|&&first| first != NONE) {
+            let mut next = self.next[first as usize];
+            if next == NONE {
+                continue;
+            }
+            let [one, other] = [first, next].map(|number| self.entries[number as usize]);
+            next = self.next[next as usize];
+            if next == NONE {
+                // What there is in most chains.
+                let pair = [one, other];
+                visit(&if one.item < other.item {
+                    pair
+                } else {
+                    [other, one]
+                });
+                continue;
+            }
+            self.run.clear();
+            self.run.extend([one, other]);
+            while next != NONE {
+                self.run.push(self.entries[next as usize]);
+                next = self.next[next as usize];
+            }
+            self.run.sort_unstable_by_key(|entry| entry.item);
+            visit(&self.run);
         }
-        let mut end = 0;
-        for start in &mut self.start {
-            (*start, end) = (end, end + *start);
-        }
-        self.entries.resize(count, Entry::default());
-        for entry in entries() {
-            let place = &mut self.start[entry.bucket(bits)];
-            self.entries[*place as usize] = *entry;
-            *place += 1;
-        }
-        // By now each start has moved on to the next.
     }
 
-    fn visit_runs(&mut self, mut visit: impl FnMut(&[Entry])) {
-        let mut start = 0;
-        for &end in &self.start {
-            let bucket = &mut self.entries[start as usize..end as usize];
-            start = end;
-            if let [first, second] = bucket {
-                // What there is in most buckets, in the order of the items already.
-                if first.sorted_key() == second.sorted_key() {
-                    visit(bucket);
+    /// Puts each entry into the chain of those with its key.
+    fn link(&mut self) {
+        // At least half of the places stay free, so that a search is short.
+        let bits = (2 * self.entries.len()).max(2).next_power_of_two().ilog2();
+        self.first.clear();
+        self.first.resize(1 << bits, NONE);
+        self.next.clear();
+        self.next.resize(self.entries.len(), NONE);
+        for (number, entry) in self.entries.iter().enumerate() {
+            let mut place = (entry.hash() >> (u64::BITS - bits)) as usize;
+            let first = loop {
+                let first = &mut self.first[place];
+                if *first == NONE {
+                    *first = number as u32;
+                    break number;
                 }
-            } else if bucket.len() > 2 {
-                bucket.sort_unstable_by_key(Entry::rank);
-                let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
-                runs.filter(|run| run.len() > 1).for_each(&mut visit);
+                let found = *first as usize;
+                if self.entries[found].sorted_key() == entry.sorted_key() {
+                    break found;
+                }
+                place = (place + 1) & ((1 << bits) - 1);
+            };
+            if first != number {
+                self.next[number] = self.next[first];
+                self.next[first] = number as u32;
             }
         }
     }
@@ -193,7 +295,7 @@ mod tests {
         let visit = |found: &mut Vec<Vec<u32>>, run: &[Entry]| {
             found.push(run.iter().map(|entry| entry.item).collect());
         };
-        let mut runs = visit_runs(COUNT, emit, visit).concat();
+        let mut runs = visit_runs(COUNT, COUNT, emit, visit).concat();
         runs.sort_by_key(Vec::len);
         assert_eq!(runs.len(), COUNT);
         let longest = runs.pop().expect("runs");
