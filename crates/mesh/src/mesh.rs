@@ -111,38 +111,32 @@ impl Mesh {
     ) -> Result<Self, Vec<Defect>> {
         let nodes = std::mem::take(&mut draft.nodes).into_iter();
         let nodes: Vec<DVec3> = nodes.map(DVec3::from).collect();
-        let mut defects = check::cells(&draft, &nodes);
+        // The surfaces are mostly one thread's work, which leaves the others to the cells.
+        let (defects, fitted) = rayon::join(
+            || check::cells(&draft, &nodes),
+            || fit_surfaces(&draft, &nodes, roles, &adjacency),
+        );
         if !defects.is_empty() {
             return Err(defects);
         }
+        let (surfaces, faces) = fitted?;
         let cells = &draft.cells.elements;
-        defects.extend(check::faces(&draft, &adjacency));
-        if !defects.is_empty() {
-            // Where cells overlap, nothing can be said of the surfaces.
-            return Err(defects);
-        }
-        let (surfaces, found) = check::surfaces(&draft, roles, &adjacency);
-        defects.extend(found);
-        let (faces, found) = orient::fractures(&draft, &nodes, &adjacency, &surfaces);
-        defects.extend(found);
-        if !defects.is_empty() {
-            return Err(defects);
-        }
         for &(minus, plus) in &faces {
             adjacency.part(minus, plus);
         }
-        // The blocks are one thread's work, which leaves the others to the rest.
-        let ((block, block_count), (sectors, facets)) = rayon::join(
-            || blocks::find(cells, &adjacency),
+        // Each ends with one thread's work, which leaves the others to the rest.
+        let (sectors, ((block, block_count), (facets, boundaries))) = rayon::join(
+            || sectors::find(cells, nodes.len(), &adjacency, &faces),
             || {
-                let sectors = sectors::find(cells, nodes.len(), &adjacency, &faces);
-                (
-                    sectors,
-                    collect_facets(cells, &adjacency, &surfaces, &faces),
+                rayon::join(
+                    || blocks::find(cells, &adjacency),
+                    || {
+                        let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
+                        (facets, collect_boundaries(&draft, &adjacency, &surfaces))
+                    },
                 )
             },
         );
-        let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
         let shared = surfaces.shared.iter();
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
         let shared_facets = shared_facets.collect();
@@ -191,6 +185,31 @@ impl Mesh {
     }
 }
 
+/// Surfaces, and the minus and plus faces of their fractures' facets.
+type Fitted = (check::Surfaces, Vec<(u32, u32)>);
+
+/// Matches the surfaces to the cells' faces and tells minus from plus.
+fn fit_surfaces(
+    draft: &Draft,
+    nodes: &[DVec3],
+    roles: &[SurfaceRole],
+    adjacency: &Adjacency,
+) -> Result<Fitted, Vec<Defect>> {
+    let defects = check::faces(draft, adjacency);
+    if !defects.is_empty() {
+        // Where cells overlap, nothing can be said of the surfaces.
+        return Err(defects);
+    }
+    let (surfaces, mut defects) = check::surfaces(draft, roles, adjacency);
+    let (faces, found) = orient::fractures(draft, nodes, adjacency, &surfaces);
+    defects.extend(found);
+    if defects.is_empty() {
+        Ok((surfaces, faces))
+    } else {
+        Err(defects)
+    }
+}
+
 /// Appends the cell face `face` to `elements` and its slots to `slots`.
 fn push_face(
     cells: &Elements,
@@ -222,10 +241,7 @@ fn collect_facets(
         .zip(faces.par_chunks(PER_TASK))
         .map(|(facets, faces)| facets_between(cells, adjacency, facets, faces))
         .collect();
-    let mut whole = Facets {
-        elements: Elements::new(),
-        ..Facets::default()
-    };
+    let mut whole = room_for(faces.len());
     for part in parts {
         whole.elements.extend(&part.elements);
         whole.fracture.extend(part.fracture);
@@ -237,6 +253,22 @@ fn collect_facets(
     whole
 }
 
+/// No facets, and room for so many triangles.
+fn room_for(count: usize) -> Facets {
+    let mut elements = Elements::new();
+    elements.shapes.reserve(count);
+    elements.offsets.reserve(count);
+    elements.nodes.reserve(3 * count);
+    Facets {
+        elements,
+        fracture: Vec::with_capacity(count),
+        minus: Vec::with_capacity(count),
+        plus: Vec::with_capacity(count),
+        minus_slots: Vec::with_capacity(3 * count),
+        plus_slots: Vec::with_capacity(3 * count),
+    }
+}
+
 /// The facets between these pairs of minus and plus faces.
 fn facets_between(
     cells: &Elements,
@@ -244,10 +276,7 @@ fn facets_between(
     drafts: &[check::DraftFacet],
     faces: &[(u32, u32)],
 ) -> Facets {
-    let mut facets = Facets {
-        elements: Elements::new(),
-        ..Facets::default()
-    };
+    let mut facets = room_for(faces.len());
     for (draft, &(minus, plus)) in drafts.iter().zip(faces) {
         push_face(
             cells,
