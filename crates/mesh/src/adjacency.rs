@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use crate::draft::{Draft, Elements};
-use crate::pairing::{Entry, visit_runs};
+use crate::pairing::{Entry, bounds, visit_runs};
 use crate::shape::{Face, Shape, TETRAHEDRON};
 
 /// Marks the absence of a neighbour.
@@ -111,9 +111,10 @@ impl Adjacency {
     }
 
     /// Cuts the cells at two faces off from each other.
-    pub(crate) fn part(&mut self, face: u32, other: u32) {
-        self.neighbour[face as usize] = NONE;
-        self.neighbour[other as usize] = NONE;
+    pub(crate) fn part(&mut self, faces: [u32; 2]) {
+        for face in faces {
+            self.neighbour[face as usize] = NONE;
+        }
     }
 }
 
@@ -152,6 +153,7 @@ impl Pairing<'_> {
             visit_runs(
                 count,
                 self.node_count,
+                |i| self.reach(i),
                 |i, out| self.emit(i, out),
                 |found, run| self.settle(found, run),
             )
@@ -159,6 +161,7 @@ impl Pairing<'_> {
             visit_runs(
                 count,
                 self.node_count,
+                |i| self.reach(i),
                 |i, out| self.emit(i, out),
                 |found, run| self.split(found, run),
             )
@@ -222,6 +225,19 @@ impl Pairing<'_> {
             key,
             item: self.face_end + facet as u32,
         });
+    }
+
+    /// The lowest corner that is the lowest of a face, and one that is not below the others.
+    fn reach(&self, element: usize) -> (u32, u32) {
+        let Some(facet) = element.checked_sub(self.cells.len()) else {
+            let nodes = self.cells.nodes_of(element);
+            let shape = self.cells.shapes[element];
+            if let (Shape::Tet4 | Shape::Tet10, Some(corners)) = (shape, nodes.first_chunk()) {
+                return lowest_two(*corners);
+            }
+            return bounds(&nodes[..shape.corner_count()]);
+        };
+        bounds(&self.facets.nodes_of(facet)[..self.facets.shapes[facet].corner_count()])
     }
 
     /// Tells triangles from quadrangles, and these by their fourth corner.
@@ -307,6 +323,14 @@ impl Pairing<'_> {
         let after = twin().skip_while(|&node| node != first).nth(1);
         after.or_else(|| twin().next()) == Some(second)
     }
+}
+
+/// The lowest corner of a tetrahedron, and the lowest of the face across.
+fn lowest_two([a, b, c, d]: [u32; 4]) -> (u32, u32) {
+    let (low, high) = (a.min(b), a.max(b));
+    let (other_low, other_high) = (c.min(d), c.max(d));
+    let second = low.max(other_low).min(high).min(other_high);
+    (low.min(other_low), second)
 }
 
 /// The faces of a tetrahedron, numbered from `first` on.

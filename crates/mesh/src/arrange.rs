@@ -95,7 +95,7 @@ fn spread_bits(value: u64) -> u64 {
 /// Gives the nodes of elements other numbers and returns the lowest of each element.
 fn renumber(elements: &mut Elements, number: &[u32]) -> Vec<u32> {
     let offsets = &elements.offsets;
-    let mut lowest = vec![0; offsets.len() - 1];
+    let mut lowest = vec![0; elements.shapes.len()];
     let tasks = split(offsets, ELEMENTS_PER_TASK, &mut elements.nodes).into_par_iter();
     let tasks = tasks.zip(lowest.par_chunks_mut(ELEMENTS_PER_TASK));
     tasks.for_each(|((stretch, nodes), lowest)| {

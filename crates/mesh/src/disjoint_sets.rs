@@ -44,6 +44,10 @@ impl<'a> Stretch<'a> {
     }
 
     pub(crate) fn join(&mut self, a: u32, b: u32) {
+        if *self.above(a) == *self.above(b) {
+            // As it is most often, where much hangs together.
+            return;
+        }
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
         *self.above(high) = low;

@@ -132,7 +132,7 @@ pub(crate) fn split<'a, T>(
     at_a_time: usize,
     mut values: &'a mut [T],
 ) -> Vec<(Range<usize>, &'a mut [T])> {
-    let count = offsets.len() - 1;
+    let count = offsets.len().saturating_sub(1);
     let firsts = (0..count).step_by(at_a_time);
     let stretches = firsts.map(|first| first..count.min(first + at_a_time));
     let mut cut = |stretch: Range<usize>| {

@@ -111,32 +111,33 @@ impl Mesh {
     ) -> Result<Self, Vec<Defect>> {
         let nodes = std::mem::take(&mut draft.nodes).into_iter();
         let nodes: Vec<DVec3> = nodes.map(DVec3::from).collect();
-        // The surfaces are mostly one thread's work, which leaves the others to the cells.
-        let (defects, fitted) = rayon::join(
-            || check::cells(&draft, &nodes),
-            || fit_surfaces(&draft, &nodes, roles, &adjacency),
-        );
+        let overlapping = check::faces(&draft, &adjacency);
+        if !overlapping.is_empty() {
+            // There nothing can be said of the surfaces; defects of the cells may be the cause.
+            let broken = check::cells(&draft, &nodes);
+            return Err(if broken.is_empty() {
+                overlapping
+            } else {
+                broken
+            });
+        }
+        let (surfaces, mut defects) = check::surfaces(&draft, roles, &adjacency);
+        for facet in &surfaces.facets {
+            adjacency.part(facet.faces);
+        }
+        // The fractures are mostly one thread's work, which leaves the others to the cells.
+        let ((facets, boundaries, one_sided), (broken, (block, block_count), sectors)) =
+            rayon::join(
+                || collect(&draft, &nodes, &adjacency, &surfaces),
+                || divide(&draft, &nodes, &adjacency, &surfaces),
+            );
+        if !broken.is_empty() {
+            return Err(broken);
+        }
+        defects.extend(one_sided);
         if !defects.is_empty() {
             return Err(defects);
         }
-        let (surfaces, faces) = fitted?;
-        let cells = &draft.cells.elements;
-        for &(minus, plus) in &faces {
-            adjacency.part(minus, plus);
-        }
-        // Each ends with one thread's work, which leaves the others to the rest.
-        let (sectors, ((block, block_count), (facets, boundaries))) = rayon::join(
-            || sectors::find(cells, nodes.len(), &adjacency, &faces),
-            || {
-                rayon::join(
-                    || blocks::find(cells, &adjacency),
-                    || {
-                        let facets = collect_facets(cells, &adjacency, &surfaces, &faces);
-                        (facets, collect_boundaries(&draft, &adjacency, &surfaces))
-                    },
-                )
-            },
-        );
         let shared = surfaces.shared.iter();
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
         let shared_facets = shared_facets.collect();
@@ -185,29 +186,37 @@ impl Mesh {
     }
 }
 
-/// Surfaces, and the minus and plus faces of their fractures' facets.
-type Fitted = (check::Surfaces, Vec<(u32, u32)>);
-
-/// Matches the surfaces to the cells' faces and tells minus from plus.
-fn fit_surfaces(
+/// The facets of fractures and boundaries, and defects of the fractures.
+fn collect(
     draft: &Draft,
     nodes: &[DVec3],
-    roles: &[SurfaceRole],
     adjacency: &Adjacency,
-) -> Result<Fitted, Vec<Defect>> {
-    let defects = check::faces(draft, adjacency);
-    if !defects.is_empty() {
-        // Where cells overlap, nothing can be said of the surfaces.
-        return Err(defects);
-    }
-    let (surfaces, mut defects) = check::surfaces(draft, roles, adjacency);
-    let (faces, found) = orient::fractures(draft, nodes, adjacency, &surfaces);
-    defects.extend(found);
-    if defects.is_empty() {
-        Ok((surfaces, faces))
-    } else {
-        Err(defects)
-    }
+    surfaces: &check::Surfaces,
+) -> (Facets, Vec<Boundary>, Vec<Defect>) {
+    let (faces, found) = orient::fractures(draft, nodes, adjacency, surfaces);
+    let facets = collect_facets(&draft.cells.elements, adjacency, surfaces, &faces);
+    (
+        facets,
+        collect_boundaries(draft, adjacency, surfaces),
+        found,
+    )
+}
+
+/// Defects of the cells, their blocks, the sectors of the nodes.
+fn divide(
+    draft: &Draft,
+    nodes: &[DVec3],
+    adjacency: &Adjacency,
+    surfaces: &check::Surfaces,
+) -> (Vec<Defect>, (Vec<u32>, usize), Sectors) {
+    let cells = &draft.cells.elements;
+    let broken = check::cells(draft, nodes);
+    let fractured = surfaces.facets.iter().flat_map(|facet| facet.faces);
+    let (blocks, sectors) = rayon::join(
+        || blocks::find(cells, adjacency),
+        || sectors::find(cells, nodes.len(), adjacency, fractured),
+    );
+    (broken, blocks, sectors)
 }
 
 /// Appends the cell face `face` to `elements` and its slots to `slots`.

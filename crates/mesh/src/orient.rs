@@ -8,7 +8,7 @@ use crate::check::{DraftFacet, Surfaces};
 use crate::defect::Defect;
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
-use crate::pairing::{Entry, visit_runs};
+use crate::pairing::{Entry, bounds, visit_runs};
 
 /// The facet on the other side of an edge, or [`NONE`], and whether the first faces of both run
 /// along it the same way.
@@ -120,13 +120,17 @@ fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
             });
         }
     };
+    let reach = |facet: usize| {
+        let corners = &rings[facet].corners[..rings[facet].count];
+        bounds(corners)
+    };
     let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[Entry]| {
         if let [a, b] = run {
             pairs.push([a, b].map(|entry| Edge::unpack(entry.item)));
         }
     };
     let mut links = vec![[(NONE, false); 4]; surfaces.facets.len()];
-    for [a, b] in visit_runs(surfaces.facets.len(), node_count, emit, visit)
+    for [a, b] in visit_runs(surfaces.facets.len(), node_count, reach, emit, visit)
         .into_iter()
         .flatten()
     {

@@ -1,7 +1,7 @@
 //! Finds what has the same key among millions of items, in a time linear in their number.
 //!
 //! Items are dealt out by the first number of their key, a node, into parts that fit a processor's
-//! cache; what has the same key within a part, a hash table finds. Where the elements lie in the
+//! cache, and there into buckets, within which they are compared one by one. Where the elements lie in the
 //! order of their nodes, most items of a part come from a few stretches of elements: these are not
 //! dealt out but asked for again. Every part is the work of one task.
 
@@ -15,8 +15,6 @@ const ELEMENTS_PER_TASK: usize = 16_384;
 const NODES_PER_PART: usize = 512;
 /// Each task of the dealing has a list as long as there are parts.
 const MOST_PARTS: usize = 1024;
-/// Marks the end of a chain, and a free place.
-const NONE: u32 = u32::MAX;
 
 /// An item and the three numbers it is matched by, the last two in any order.
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,24 +29,16 @@ impl Entry {
         let [first, a, b] = self.key;
         [first, a.min(b), a.max(b)]
     }
-
-    fn hash(&self) -> u64 {
-        // Odd constants without pattern; only the upper bits are used, and these depend on all.
-        const FIRST: u64 = 0x9E37_79B9_7F4A_7C15;
-        const SECOND: u64 = 0xD6E8_FEB8_6659_FD93;
-        let [first, a, b] = self.sorted_key().map(u64::from);
-        let mixed = (first | a << 32).wrapping_mul(FIRST).rotate_left(32) ^ b;
-        mixed.wrapping_mul(SECOND)
-    }
 }
 
 /// Visits every run of two or more entries with one key, in ascending order of their items, and
 /// returns what each task has made of its runs. `emit` appends the entries of one of `count`
-/// elements, one at least, their keys beginning with a number below `end`. Which run a task visits,
-/// and when, depends on the keys alone.
+/// elements, their keys beginning with a number below `end`; `reach` gives the lowest of these numbers
+/// and one that none of them exceeds. Which run a task visits, and when, depends on the keys alone.
 pub(crate) fn visit_runs<A: Default + Send>(
     count: usize,
     end: usize,
+    reach: impl Fn(usize) -> (u32, u32) + Sync,
     emit: impl Fn(usize, &mut Vec<Entry>) + Sync,
     visit: impl Fn(&mut A, &[Entry]) + Sync,
 ) -> Vec<A> {
@@ -56,25 +46,33 @@ pub(crate) fn visit_runs<A: Default + Send>(
     let deal = |entries: &mut Vec<Entry>, task: usize| {
         let first = task * ELEMENTS_PER_TASK;
         let elements = first..count.min(first + ELEMENTS_PER_TASK);
-        Dealt::in_order(parts, elements.clone(), &emit, entries)
+        Dealt::in_order(parts, elements.clone(), &reach, &emit, entries)
             .unwrap_or_else(|| Dealt::all(parts, elements, &emit, entries))
     };
     let tasks = (0..count.div_ceil(ELEMENTS_PER_TASK)).into_par_iter();
     let dealt: Vec<Dealt> = tasks.map_init(Vec::new, deal).collect();
-    let visit_part = |table: &mut Table, part: usize| {
+    let visit_part = |buckets: &mut Buckets, part: usize| {
         let mut answer = A::default();
-        table.entries.clear();
+        buckets.entries.clear();
         for dealt in &dealt {
             for element in dealt.own(part) {
-                parts.emit_into(part, &mut table.entries, |entries| emit(element, entries));
+                parts.emit_into(part, &mut buckets.entries, |entries| emit(element, entries));
             }
-            table.entries.extend(dealt.of_part(part));
+            buckets.entries.extend(dealt.of_part(part));
         }
-        table.visit_runs(|run| visit(&mut answer, run));
+        buckets.visit_runs(parts, |run| visit(&mut answer, run));
         answer
     };
     let all = (0..parts.count).into_par_iter();
-    all.map_init(Table::default, visit_part).collect()
+    all.map_init(Buckets::default, visit_part).collect()
+}
+
+/// The lowest and the highest of some numbers.
+pub(crate) fn bounds(numbers: &[u32]) -> (u32, u32) {
+    let all = numbers.iter().copied();
+    all.fold((u32::MAX, 0), |(low, high), number| {
+        (low.min(number), high.max(number))
+    })
 }
 
 /// How first numbers of keys are divided.
@@ -92,8 +90,12 @@ impl Parts {
         Self { shift, count }
     }
 
+    fn of_number(self, number: u32) -> usize {
+        (number >> self.shift) as usize
+    }
+
     fn of_entry(self, entry: &Entry) -> usize {
-        (entry.key[0] >> self.shift) as usize
+        self.of_number(entry.key[0])
     }
 
     /// Appends those entries of an element that belong to a part.
@@ -105,6 +107,12 @@ impl Parts {
 
     /// Drops entries of some parts, from `first` on.
     fn keep(self, entries: &mut Vec<Entry>, first: usize, wanted: impl Fn(usize) -> bool) {
+        if entries[first..]
+            .iter()
+            .all(|entry| wanted(self.of_entry(entry)))
+        {
+            return;
+        }
         let mut end = first;
         for place in first..entries.len() {
             // Without a branch, for which parts come next cannot be foreseen.
@@ -131,21 +139,24 @@ impl Dealt {
     fn in_order(
         parts: Parts,
         elements: Range<usize>,
+        reach: impl Fn(usize) -> (u32, u32),
         emit: impl Fn(usize, &mut Vec<Entry>),
         entries: &mut Vec<Entry>,
     ) -> Option<Self> {
         let mut own = Vec::with_capacity(parts.count + 1);
         entries.clear();
         for element in elements.clone() {
-            let first = entries.len();
-            emit(element, entries);
-            let home = entries[first..].iter().map(|entry| parts.of_entry(entry));
-            let home = home.min()?;
+            let (home, last) = reach(element);
+            let (home, last) = (parts.of_number(home), parts.of_number(last));
             if home + 1 < own.len() {
                 return None;
             }
             own.resize(home + 1, element);
-            parts.keep(entries, first, |part| part != home);
+            if last > home {
+                let first = entries.len();
+                emit(element, entries);
+                parts.keep(entries, first, |part| part != home);
+            }
         }
         own.resize(parts.count + 1, elements.end);
         Some(Self::of(parts, own, entries))
@@ -195,76 +206,85 @@ impl Dealt {
     }
 }
 
-/// The entries of one part and where those with equal keys are.
+/// The entries of one part.
 #[derive(Default)]
-struct Table {
+struct Buckets {
+    /// As they come.
     entries: Vec<Entry>,
-    /// At the hash of a key, or behind: the first entry with this key.
-    first: Vec<u32>,
-    /// For each entry another one with its key.
-    next: Vec<u32>,
-    run: Vec<Entry>,
+    /// Those whose keys begin with the same number side by side.
+    sorted: Vec<Entry>,
+    end: Vec<u32>,
 }
 
-impl Table {
-    fn visit_runs(&mut self, mut visit: impl FnMut(&[Entry])) {
-        self.link();
-        for &first in self.first.iter().filter(|&&first| first != NONE) {
-            let mut next = self.next[first as usize];
-            if next == NONE {
-                continue;
-            }
-            let [one, other] = [first, next].map(|number| self.entries[number as usize]);
-            next = self.next[next as usize];
-            if next == NONE {
-                // What there is in most chains.
-                let pair = [one, other];
-                visit(&if one.item < other.item {
-                    pair
-                } else {
-                    [other, one]
-                });
-                continue;
-            }
-            self.run.clear();
-            self.run.extend([one, other]);
-            while next != NONE {
-                self.run.push(self.entries[next as usize]);
-                next = self.next[next as usize];
-            }
-            self.run.sort_unstable_by_key(|entry| entry.item);
-            visit(&self.run);
+impl Buckets {
+    fn visit_runs(&mut self, parts: Parts, mut visit: impl FnMut(&[Entry])) {
+        self.sort(parts);
+        let mut start = 0;
+        for &end in &self.end {
+            visit_bucket(&mut self.sorted[start..end as usize], &mut visit);
+            start = end as usize;
         }
     }
 
-    /// Puts each entry into the chain of those with its key.
-    fn link(&mut self) {
-        // At least half of the places stay free, so that a search is short.
-        let bits = (2 * self.entries.len()).max(2).next_power_of_two().ilog2();
-        self.first.clear();
-        self.first.resize(1 << bits, NONE);
-        self.next.clear();
-        self.next.resize(self.entries.len(), NONE);
-        for (number, entry) in self.entries.iter().enumerate() {
-            let mut place = (entry.hash() >> (u64::BITS - bits)) as usize;
-            let first = loop {
-                let first = &mut self.first[place];
-                if *first == NONE {
-                    *first = number as u32;
-                    break number;
-                }
-                let found = *first as usize;
-                if self.entries[found].sorted_key() == entry.sorted_key() {
-                    break found;
-                }
-                place = (place + 1) & ((1 << bits) - 1);
-            };
-            if first != number {
-                self.next[number] = self.next[first];
-                self.next[first] = number as u32;
-            }
+    fn sort(&mut self, parts: Parts) {
+        let bucket = |entry: &Entry| entry.key[0] as usize & ((1 << parts.shift) - 1);
+        self.end.clear();
+        self.end.resize(1 << parts.shift, 0);
+        for entry in &self.entries {
+            self.end[bucket(entry)] += 1;
+        }
+        let mut sum = 0;
+        for end in &mut self.end {
+            (*end, sum) = (sum, sum + *end);
+        }
+        self.sorted.resize(self.entries.len(), Entry::default());
+        for entry in &self.entries {
+            // A begin that moves on to the end.
+            let end = &mut self.end[bucket(entry)];
+            self.sorted[*end as usize] = *entry;
+            *end += 1;
         }
     }
+}
+
+/// Visits the runs among entries whose keys begin alike: around a node there are a few dozen.
+fn visit_bucket(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
+    const MANY: usize = 64;
+    if bucket.len() > MANY {
+        return visit_sorted(bucket, visit);
+    }
+    let (mut first, mut end) = (0, bucket.len());
+    while first < end {
+        let one = bucket[first];
+        let key = one.sorted_key();
+        let (mut twin, mut twins) = (first, 0);
+        // Without a branch, for where the twin is cannot be foreseen.
+        for (place, entry) in bucket[..end].iter().enumerate().skip(first + 1) {
+            let is_twin = entry.sorted_key() == key;
+            twin = if is_twin { place } else { twin };
+            twins += usize::from(is_twin);
+        }
+        if twins > 1 {
+            return visit_sorted(&mut bucket[first..end], visit);
+        }
+        first += 1;
+        if twins == 1 {
+            let other = bucket[twin];
+            end -= 1;
+            bucket[twin] = bucket[end];
+            visit(&if one.item < other.item {
+                [one, other]
+            } else {
+                [other, one]
+            });
+        }
+    }
+}
+
+fn visit_sorted(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
+    bucket.sort_unstable_by_key(|entry| (entry.sorted_key(), entry.item));
+    let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
+    runs.filter(|run| run.len() > 1).for_each(visit);
 }
 
 #[cfg(test)]
@@ -292,10 +312,20 @@ mod tests {
                 entries.push(Entry { key: key(0), item });
             }
         };
+        // Element 2 and others lie in two parts; the elements do not all ascend.
+        let reach = |element: usize| {
+            let firsts = [element, (element + 1) % COUNT].map(|i| i as u32 / 3);
+            let low = if element % 50 == 2 {
+                0
+            } else {
+                firsts[0].min(firsts[1])
+            };
+            (low, firsts[0].max(firsts[1]))
+        };
         let visit = |found: &mut Vec<Vec<u32>>, run: &[Entry]| {
             found.push(run.iter().map(|entry| entry.item).collect());
         };
-        let mut runs = visit_runs(COUNT, COUNT, emit, visit).concat();
+        let mut runs = visit_runs(COUNT, COUNT, reach, emit, visit).concat();
         runs.sort_by_key(Vec::len);
         assert_eq!(runs.len(), COUNT);
         let longest = runs.pop().expect("runs");

@@ -34,7 +34,7 @@ pub(crate) fn find(
     cells: &Elements,
     node_count: usize,
     adjacency: &Adjacency,
-    fractured: &[(u32, u32)],
+    fractured: impl Iterator<Item = u32>,
 ) -> Sectors {
     let around = Around {
         cells,
@@ -62,10 +62,10 @@ fn nodes_on_fractures(
     cells: &Elements,
     node_count: usize,
     adjacency: &Adjacency,
-    fractured: &[(u32, u32)],
+    fractured: impl Iterator<Item = u32>,
 ) -> Vec<bool> {
     let mut on_fracture = vec![false; node_count];
-    for face in fractured.iter().flat_map(|&(minus, plus)| [minus, plus]) {
+    for face in fractured {
         for slot in adjacency.slots(cells, face) {
             on_fracture[cells.nodes[slot] as usize] = true;
         }
