@@ -3,8 +3,8 @@
 use glam::DVec3;
 use lie_mesh::structured::Patch;
 use lie_solver::{
-    Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, Solution, Support, System,
-    solution,
+    Bookmark, Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, Solution,
+    Support, System, solution,
 };
 
 use crate::networks;
@@ -176,4 +176,58 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
             assert_eq!(one, with(threads), "{method}, {threads} threads");
         }
     }
+}
+
+/// A run that goes on in a new solver from the bytes of a bookmark, whatever the solver has learnt
+/// before: factors of former tangents, paths that turn.
+#[test]
+fn bookmarks_continue_to_the_last_bit() {
+    const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
+    let problem = t_block(14);
+    for method in LinearMethod::ALL {
+        let discretisation = Discretisation::of(&problem).expect("supported");
+        let system = System::assemble(&problem, discretisation);
+        let prepared = || Newton::new(&system, settings(method)).expect("prepared");
+        let step = |newton: &mut Newton, state: &mut _, factor: f64| {
+            let record = newton.step(&system, state, &Load::proportional(factor), |_, _| {});
+            assert!(record.converged(), "{method}, {factor}: {record:?}");
+            record.linear_iterations()
+        };
+        let (mut newton, mut state) = (prepared(), system.initial_state());
+        let mut bookmarks = Vec::new();
+        let mut iterations = 0;
+        for factor in FACTORS {
+            let bytes = postcard::to_stdvec(&newton.bookmark(&state));
+            bookmarks.push(bytes.expect("bytes"));
+            iterations += step(&mut newton, &mut state, factor);
+        }
+        assert!(
+            method == LinearMethod::Direct || iterations > 0,
+            "{method} has no history"
+        );
+        let end = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes");
+        for start in [0, 1, 4, 7] {
+            let mut newton = prepared();
+            let bookmark: Bookmark<'_> =
+                postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
+            assert!(bookmark.fits(&system));
+            let mut state = newton.turn_to(bookmark).expect("prepared");
+            for factor in &FACTORS[start..] {
+                step(&mut newton, &mut state, *factor);
+            }
+            let same = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes") == end;
+            assert!(same, "{method} from step {start}");
+        }
+    }
+}
+
+#[test]
+fn a_bookmark_of_another_system_does_not_fit() {
+    let (small, large) = (t_block(4), t_block(6));
+    let system = |problem| System::assemble(problem, Discretisation::of(problem).expect("held"));
+    let (small, large) = (system(&small), system(&large));
+    let newton = Newton::new(&small, settings(LinearMethod::Direct)).expect("prepared");
+    let state = small.initial_state();
+    let bookmark = newton.bookmark(&state);
+    assert!(bookmark.fits(&small) && !bookmark.fits(&large));
 }

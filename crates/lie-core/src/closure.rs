@@ -13,6 +13,8 @@
 //! This is the *total* law. It has the convex potential `Psi`, `sigma_n = dPsi/dw_n`, so the
 //! frictionless problem is a convex minimisation and its tangent is positive definite.
 
+use serde::{Deserialize, Serialize};
+
 /// How the normal stiffness depends on the aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ClosureKind {
@@ -29,7 +31,7 @@ pub enum ClosureKind {
 
 /// How far the walls of a fracture are apart, to full relative precision wherever that matters:
 /// the opening near the initial aperture, the aperture near closure.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Separation {
     /// Opening `w_n` (m).
     pub opening: f64,

@@ -32,11 +32,11 @@ pub use conjugate_gradients::{
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
     Analysis, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod, LinearSolution,
-    NodeOrder, Plan, Prediction, TangentSolver, Unknowns, Whole, Workload,
+    NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Unknowns, Whole, Workload,
 };
 pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;
-pub use newton::{Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
+pub use newton::{Bookmark, Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
 pub use pattern::{Lists, Pattern};
 pub use points::Points;
 pub use problem::{
