@@ -46,7 +46,7 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
     if problem.fractures.is_empty() {
         lines.push("no fracture: plain elasticity, one linear solve a step".into());
     } else {
-        let nonlinear = names(&|law| !law.closure.is_linear());
+        let nonlinear = names(&|law| !law.is_linear());
         if nonlinear.is_empty() {
             lines.push("no fracture is nonlinear: one linear solve a step".into());
         } else {
@@ -215,6 +215,7 @@ pub fn not_converged(
             "the tests do not hold after {count} iterations; the closure error is largest{}",
             at(record.worst_facet_point)
         ),
+        Outcome::Loose => "the loads push rock that nothing holds any more".to_owned(),
         Outcome::NotFinite(point) => format!(
             "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
             count + 1,
@@ -222,7 +223,16 @@ pub fn not_converged(
         ),
         Outcome::Linear(failure) => linear_failure(problem, system, failure),
     };
-    format!("step {number} ({step}): {why}")
+    let walked = (record.walked > 0.0).then(|| {
+        let percent = 100.0 * record.walked;
+        format!("; {percent:.1} % of the way from the step before could be walked")
+    });
+    let loose = record.loose.iter().map(|block| {
+        let (place, problem, remedy) = (&block.place, &block.problem, &block.remedy);
+        format!("; {place}: {problem}: {remedy}")
+    });
+    let rest: String = walked.into_iter().chain(loose).collect();
+    format!("step {number} ({step}): {why}{rest}")
 }
 
 fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {

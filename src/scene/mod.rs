@@ -3,23 +3,25 @@
 mod bind;
 mod cases;
 mod conditions;
+mod fracture;
 mod history;
 mod load;
 
 use std::path::{Path, PathBuf};
 
-use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_core::Rock;
 use lie_mesh::Defect;
-use lie_solver::{Fracture, InitialStress, LinearMethod, Profile};
+use lie_solver::{InitialStress, LinearMethod, Profile};
 
 pub use bind::{Binding, bind, surface_roles};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+pub(crate) use fracture::read_fracture;
 pub use history::{History, StepEnd, Timetable};
 pub(crate) use load::Clock;
 
 use crate::reader::{Accept, Section, Source};
 use conditions::{read_body, read_boundary, read_fixed_point};
-use load::{Scaled, read_history, read_timetable};
+use load::read_timetable;
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -286,76 +288,6 @@ fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
         poisson_ratio: poisson_ratio?,
         density: density.unwrap_or(0.0),
     })
-}
-
-/// Reads what a scene says about a fracture.
-pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
-    for (key, example) in [
-        ("aperture", "1e-4"),
-        ("normal_stiffness", "1e11"),
-        ("shear_stiffness", "1e10"),
-    ] {
-        section.require(key, example);
-    }
-    let aperture = section.number("aperture", Accept::Positive);
-    let normal_stiffness = section.number("normal_stiffness", Accept::NotNegative);
-    let shear_stiffness = section.number("shear_stiffness", Accept::NotNegative);
-    let cutoff = section.number("cutoff_aperture", Accept::Positive);
-    let fluid_pressure = section.number("fluid_pressure", Accept::Finite);
-    let scaled = Scaled {
-        is_there: section.has("fluid_pressure"),
-        what: "a fluid_pressure",
-    };
-    let history = read_history(section, clock, scaled);
-    if let (Some(aperture), Some(cutoff)) = (aperture, cutoff)
-        && cutoff > aperture
-    {
-        section.refuse(
-            "cutoff_aperture",
-            format!("cutoff_aperture {cutoff} is above the aperture {aperture}"),
-            "the cutoff must lie between 0 and the aperture; leave it out for the exact law",
-        );
-    }
-    let kind = match section.text("closure") {
-        Some("logarithmic") => ClosureKind::Logarithmic { cutoff },
-        Some("linear") | None => linear_closure(section, cutoff),
-        Some(other) => {
-            let known = ["linear", "logarithmic"];
-            let remedy = lie_mesh::nearest(other, known.into_iter())
-                .map_or("write \"linear\" or \"logarithmic\"".into(), |near| {
-                    format!("did you mean \"{near}\"? (known: linear, logarithmic)")
-                });
-            section.refuse(
-                "closure",
-                format!("unknown closure law \"{other}\""),
-                remedy,
-            );
-            return None;
-        }
-    };
-    let fracture = Fracture {
-        law: FractureLaw {
-            closure: Closure {
-                aperture: aperture?,
-                normal_stiffness: normal_stiffness?,
-                kind,
-            },
-            shear_stiffness: shear_stiffness?,
-        },
-        fluid_pressure: fluid_pressure.unwrap_or(0.0),
-    };
-    Some(FractureEntry { fracture, history })
-}
-
-fn linear_closure(section: &Section<'_, '_>, cutoff: Option<f64>) -> ClosureKind {
-    if cutoff.is_some() {
-        section.refuse(
-            "cutoff_aperture",
-            "a linear closure has no cutoff".into(),
-            "remove cutoff_aperture or write closure = \"logarithmic\"",
-        );
-    }
-    ClosureKind::Linear
 }
 
 fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {

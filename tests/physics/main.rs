@@ -6,8 +6,10 @@
 
 mod closed_forms;
 mod conditions;
+mod contact;
 mod dice;
 mod families;
+mod friction;
 mod geometries;
 mod junctions;
 mod linear_solvers;

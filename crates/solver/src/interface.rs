@@ -9,7 +9,7 @@
 
 use glam::{DMat3, DVec3};
 use lie_core::enrichment::coefficient;
-use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, facet_points};
+use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Springs, Walls, facet_points};
 use lie_mesh::cell_volume;
 use rayon::prelude::*;
 
@@ -35,11 +35,26 @@ pub struct FacetPoint {
     /// Upper bound of the stiffness of the rock next to it, about `E/h` (Pa/m): constrained modulus
     /// over the height of the cells on both sides, in series.
     pub spring: f64,
-    /// Jump (m) at which the law carries the initial stress. The law always sees
-    /// `initial_jump + jump`.
-    pub initial_jump: DVec3,
-    /// Aperture (m) that goes with it.
-    pub initial_aperture: f64,
+    /// The walls carrying the initial stress. The law always sees the jump beyond that.
+    pub initial: Walls,
+}
+
+/// Stiffness of the rock along a facet, as a share of that across.
+const SHEAR_SHARE: f64 = 0.3;
+
+impl FacetPoint {
+    /// Stiffness of the rock beside it.
+    pub fn springs(&self) -> Springs {
+        Springs {
+            normal: self.spring,
+            shear: SHEAR_SHARE * self.spring,
+        }
+    }
+
+    /// Jump (m) at which the law carries the initial stress.
+    pub fn initial_jump(&self) -> DVec3 {
+        self.initial.separation.opening * self.normal + self.initial.slip
+    }
 }
 
 /// One term of the jump of a facet point.
@@ -114,6 +129,9 @@ impl Interface {
             interface.terms.extend(drawn.terms);
             interface.term_offset.push(interface.terms.len());
         }
+        if problem.facet_quadrature == FacetQuadrature::Nodal {
+            share_springs(problem, points, &mut interface.points);
+        }
         interface.connect();
         interface
     }
@@ -144,8 +162,7 @@ impl Interface {
     pub(crate) fn carry_initial_stress(&mut self, problem: &Problem, laws: &[FractureLaw]) {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
-            (point.initial_jump, point.initial_aperture) =
-                initial_jump(problem, law, point.position, point.normal);
+            point.initial = initial_walls(problem, law, point.position, point.normal);
         }
     }
 
@@ -245,6 +262,35 @@ impl Interface {
     }
 }
 
+/// Gives the facet points between the same two walls one spring, their mean by area. Where walls in
+/// contact or stuck are as stiff as their springs say, springs that differ would share a uniform
+/// traction unevenly among the facets around a node.
+fn share_springs(problem: &Problem, points: &Points, facet_points: &mut [FacetPoint]) {
+    let facets = &problem.mesh.facets;
+    let slots = std::iter::zip(&facets.plus_slots, &facets.minus_slots);
+    let wall = |slot: u32| points.of_cell_node[slot as usize];
+    let walls = slots.map(|(&plus, &minus)| (wall(plus), wall(minus)));
+    let mut order: Vec<((u32, u32), usize)> = walls.zip(0..facet_points.len()).collect();
+    order.sort_unstable();
+    for group in order.chunk_by(|a, b| a.0 == b.0) {
+        let (mut area, mut weighed, mut sum) = (0.0, 0.0, 0.0);
+        for &(_, index) in group {
+            let point = &facet_points[index];
+            area += point.area;
+            weighed += point.area * point.spring;
+            sum += point.spring;
+        }
+        let mean = if area > 0.0 {
+            weighed / area
+        } else {
+            sum / group.len() as f64
+        };
+        for &(_, index) in group {
+            facet_points[index].spring = mean;
+        }
+    }
+}
+
 /// A facet point with its terms, before they are numbered.
 struct Drawn {
     point: FacetPoint,
@@ -309,7 +355,6 @@ fn draw_point(
     let fracture = facets.fracture[facet];
     let normal = rule.area.normalize();
     let law = &problem.fractures[fracture as usize].law;
-    let (initial_jump, initial_aperture) = initial_jump(problem, law, rule.position, normal);
     let point = FacetPoint {
         facet: facet as u32,
         fracture,
@@ -317,8 +362,7 @@ fn draw_point(
         area: rule.area.length(),
         normal,
         spring,
-        initial_jump,
-        initial_aperture,
+        initial: initial_walls(problem, law, rule.position, normal),
     };
     let prescribed = (0..).zip(prescribed);
     Drawn {
@@ -366,20 +410,10 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
     1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
 }
 
-/// Jump and aperture at which the law carries the initial stress. A fracture without stiffness
-/// carries none, so it relaxes what the initial stress would need of it.
-fn initial_jump(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> (DVec3, f64) {
-    let Some(stress) = &problem.initial_stress else {
-        return (DVec3::ZERO, law.closure.aperture);
-    };
-    let traction = stress.at(at) * normal;
-    let across = traction.dot(normal);
-    let separation = law.closure.balanced(0.0, across);
-    let shear = traction - across * normal;
-    let slip = if law.shear_stiffness > 0.0 {
-        shear / law.shear_stiffness
-    } else {
-        DVec3::ZERO
-    };
-    (separation.opening * normal + slip, separation.aperture)
+/// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
+/// what the initial stress would need of it.
+fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> Walls {
+    let stress = problem.initial_stress;
+    let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
+    law.carrying(traction, normal)
 }

@@ -10,6 +10,7 @@ mod assembly;
 mod cell_forces;
 mod conjugate_gradients;
 mod folded;
+mod gmres;
 mod interface;
 mod linear;
 mod loads;
@@ -31,8 +32,9 @@ pub use conjugate_gradients::{
 };
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
-    Analysis, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod, LinearSolution,
-    NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Unknowns, Whole, Workload,
+    Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,
+    LinearSolution, NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
+    Whole, Workload,
 };
 pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;

@@ -8,6 +8,7 @@
 use std::collections::VecDeque;
 
 use glam::DVec3;
+use lie_core::{FractureLaw, Landing};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -54,7 +55,8 @@ impl Path {
     /// Continues the path through `state` to `load`, or close to it, if there is one and `load` is not
     /// too far.
     pub(super) fn continue_through(&self, system: &System<'_>, state: &mut State, load: &Load) {
-        let Some((own, weights)) = self.weights(&state.load, load) else {
+        let smooth = system.is_smooth();
+        let Some((own, weights)) = self.weights(&state.load, load).filter(|_| smooth) else {
             return;
         };
         let continued = self.continued(&state.load, load, own, &weights);
@@ -74,21 +76,15 @@ impl Path {
         state.load = continued;
         let after = interface.jumps(&state.unknowns, &state.load);
         for (index, point) in interface.points.iter().enumerate() {
-            let moved = (after[index] - before[index]).dot(point.normal);
-            let closure = &system.law(point).closure;
+            let moved = after[index] - before[index];
             let state = &mut state.facet_points[index];
-            let across = tractions[index].dot(point.normal);
-            let landed = state.separation.moved(state.mismatch + moved);
-            let separation = if closure.normal_stiffness == 0.0 {
-                landed
-            } else {
-                closure.balanced(0.0, across)
-            };
-            *state = FacetPointState {
-                separation,
-                mismatch: landed.beyond(separation),
-                shear: tractions[index] - across * point.normal,
-            };
+            follow(
+                system.law(point),
+                point.normal,
+                state,
+                moved,
+                tractions[index],
+            );
         }
     }
 
@@ -135,6 +131,36 @@ fn lagrange(points: &[f64], x: f64) -> Vec<f64> {
             .product()
     };
     (0..points.len()).map(weight).collect()
+}
+
+/// Takes a facet point to where its law carries `traction` (Pa), its walls having moved by `moved` (m).
+fn follow(
+    law: &FractureLaw,
+    normal: DVec3,
+    state: &mut FacetPointState,
+    moved: DVec3,
+    traction: DVec3,
+) {
+    let (opened, across) = (moved.dot(normal), traction.dot(normal));
+    let shear = traction - across * normal;
+    let former = state.walls.separation;
+    let landed = former.moved(state.mismatch.dot(normal) + opened);
+    let landing = Landing {
+        separation: if law.closure.normal_stiffness == 0.0 {
+            landed
+        } else {
+            law.closure.balanced(0.0, across)
+        },
+        slip: if law.shear_stiffness == 0.0 {
+            state.walls.slip + moved - opened * normal
+        } else {
+            shear / law.shear_stiffness
+        },
+        normal_traction: across,
+        shear,
+    };
+    state.walls = law.landed(&landing);
+    state.mismatch = landed.beyond(landing.separation) * normal;
 }
 
 #[cfg(test)]

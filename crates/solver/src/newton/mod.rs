@@ -14,6 +14,8 @@
 
 mod bookmark;
 mod extrapolation;
+mod loose;
+mod march;
 mod record;
 mod walls;
 
@@ -22,11 +24,11 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::interface::Interface;
-use crate::linear::{LinearFailure, Plan, TangentSolver, Unknowns, Workload};
+use crate::linear::{AnyTangent, LinearFailure, Plan, Unknowns, Workload};
 use crate::schedule::Load;
 use crate::system::{Sizes, State, System, norm};
 use extrapolation::Path;
-use walls::Landing;
+use walls::Landed;
 
 pub use bookmark::Bookmark;
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
@@ -38,26 +40,30 @@ const LOOSEST_SOLVE: f64 = 1e-3;
 /// is rounding, and would be compared with nothing but itself.
 const REMEMBERED: f64 = 1e-3;
 
+/// Iterations before blocks that fly are looked for, those that they may fly, and the force out of
+/// balance, against the largest, that makes them.
+const PATIENCE: usize = 8;
+const FLIGHTS: usize = 3;
+const UNBALANCED: f64 = 1e-4;
+
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
 ///
 /// The same solver serves a system whose fracture laws are changed between two steps, because the
 /// rock, which is all that was prepared, stays.
 pub struct Newton {
     settings: NewtonSettings,
-    linear: Box<dyn TangentSolver>,
+    linear: AnyTangent,
     path: Path,
 }
 
 /// What a step works on.
 struct Trial {
     state: State,
-    landings: Vec<Landing>,
+    landed: Vec<Landed>,
     /// Forces by which the rock resists the unknowns (N).
     rock_forces: Vec<DVec3>,
-    /// Sizes of the state.
+    /// Sizes that its errors are measured against.
     sizes: Sizes,
-    /// What residuals are measured against: the largest of the forces that must balance (N).
-    force_scale: f64,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
 }
@@ -84,14 +90,15 @@ impl Newton {
         plan: Plan,
     ) -> Result<Self, LinearFailure> {
         Ok(Self {
-            linear: plan.prepare(system)?,
+            linear: AnyTangent::new(plan.prepare(system)?),
             path: Path::default(),
             settings,
         })
     }
 
     /// Solves one load step from `state` to `load`, calling `observe` after each iteration. `state` is
-    /// replaced if the step converges and kept if not.
+    /// replaced if the step converges and kept if not. A step that the laws make too difficult or too
+    /// coarse is divided, see [`march`].
     pub fn step(
         &mut self,
         system: &System<'_>,
@@ -100,29 +107,68 @@ impl Newton {
         mut observe: impl FnMut(usize, &Iteration),
     ) -> StepRecord {
         let start = Instant::now();
-        let mut trial = self.start(system, state, load);
         let mut record = StepRecord::new(load.clone());
-        while record.iterations.len() < self.settings.max_iterations {
-            match self.iterate(system, &mut trial, &mut record) {
-                Ok(iteration) => {
-                    record.iterations.push(iteration);
-                    observe(record.iterations.len(), &iteration);
-                    if self.is_converged(system, &iteration) {
-                        record.outcome = Outcome::Converged;
-                        self.path.remember(system, state);
-                        trial.state.reached = trial.sizes.or_share(1.0, trial.state.reached);
-                        *state = trial.state;
-                        break;
-                    }
-                }
-                Err(outcome) => {
-                    record.outcome = outcome;
-                    break;
-                }
-            }
-        }
+        record.outcome = self.march(system, state, load, &mut record, &mut observe);
         record.solve_seconds = start.elapsed().as_secs_f64() - record.factorise_seconds;
         record
+    }
+
+    /// Solves from one state to a load without dividing the way.
+    fn attempt(
+        &mut self,
+        system: &System<'_>,
+        state: &State,
+        load: &Load,
+        record: &mut StepRecord,
+        observe: &mut dyn FnMut(usize, &Iteration),
+    ) -> Result<State, Outcome> {
+        let mut trial = self.start(system, state, load);
+        record.loose.clear();
+        let outcome = self.settle(system, &mut trial, record, observe);
+        if outcome == Outcome::Converged {
+            let state = &mut trial.state;
+            walls::commit(system, state);
+            state.reached = trial.sizes.or_share(1.0, state.reached);
+            return Ok(trial.state);
+        }
+        if record.loose.is_empty() && !system.is_smooth() {
+            record.loose = loose::find(system, &trial.state);
+        }
+        Err(outcome)
+    }
+
+    /// Iterates until the tests hold, or it is clear that they will not.
+    fn settle(
+        &mut self,
+        system: &System<'_>,
+        trial: &mut Trial,
+        record: &mut StepRecord,
+        observe: &mut dyn FnMut(usize, &Iteration),
+    ) -> Outcome {
+        let mut flights = 0;
+        for count in 1..=self.settings.max_iterations {
+            let iteration = match self.iterate(system, trial, record) {
+                Ok(iteration) => iteration,
+                Err(outcome) => return outcome,
+            };
+            record.iterations.push(iteration);
+            observe(record.iterations.len(), &iteration);
+            if self.is_converged(system, &iteration) {
+                return Outcome::Converged;
+            }
+            if count >= PATIENCE && !system.is_smooth() && iteration.force_residual > UNBALANCED {
+                record.loose = loose::find(system, &trial.state);
+                flights = if record.loose.is_empty() {
+                    0
+                } else {
+                    flights + 1
+                };
+            }
+            if flights == FLIGHTS {
+                return Outcome::Loose;
+            }
+        }
+        Outcome::OutOfIterations
     }
 
     /// The first guess for a step.
@@ -135,9 +181,11 @@ impl Newton {
         let tractions = system.law_tractions(&guess);
         let force = system.force_scale(&rock_forces, &tractions, load);
         Trial {
-            landings: vec![Landing::default(); guess.facet_points.len()],
-            sizes: Sizes::default(),
-            force_scale: force.max(REMEMBERED * guess.reached.force),
+            landed: vec![Landed::default(); guess.facet_points.len()],
+            sizes: Sizes {
+                force: force.max(REMEMBERED * guess.reached.force),
+                ..guess.reached
+            },
             rock_forces,
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
@@ -163,7 +211,12 @@ impl Newton {
     ) -> Result<Iteration, Outcome> {
         let tangents = walls::tangents(system, &trial.state);
         let start = Instant::now();
-        let updated = self.linear.update(system, &tangents);
+        let updated = if system.is_smooth() {
+            self.linear.update(system, &tangents)
+        } else {
+            self.linear
+                .update(system, &walls::reined(system, &tangents))
+        };
         updated.map_err(Outcome::Linear)?;
         record.factorise_seconds += start.elapsed().as_secs_f64();
         let tractions = walls::linearised_tractions(system, &trial.state, &tangents);
@@ -189,8 +242,9 @@ impl Newton {
             system,
             self.settings.linearisation,
             &mut trial.state,
-            &mut trial.landings,
+            &mut trial.landed,
             &interface(system).jumps(correction, &Load::NONE),
+            &tangents,
         );
         let mut iteration = assess(system, trial, correction, &errors, record)?;
         iteration.linear_iterations = solution.iterations;
@@ -199,15 +253,18 @@ impl Newton {
     }
 
     /// Error allowed in a linear solve, against its right-hand side: enough for what the
-    /// linearisation is worth, and for the test of the forces.
+    /// linearisation is worth, and for the test of the forces. A residual above rounding is always
+    /// reduced: tractions may still move where forces are in balance.
     fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
-        let size = norm(residual);
-        let wanted = trial.looseness * size.min(trial.force_scale);
-        let enough = 0.1 * self.settings.force * trial.force_scale;
-        if size > 0.0 {
-            wanted.max(enough) / size
-        } else {
+        let (size, scale) = (norm(residual), trial.sizes.force);
+        let wanted = trial.looseness * size.min(scale);
+        let enough = 0.1 * self.settings.force * scale;
+        let tolerance = wanted.max(enough);
+        let rounding = 1e-3 * self.settings.force * scale;
+        if size <= rounding {
             1.0
+        } else {
+            (tolerance / size).min(0.1)
         }
     }
 }
@@ -229,36 +286,36 @@ fn assess(
     if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
         return Err(Outcome::NotFinite(Some(broken)));
     }
-    let normal = interface(system).points.iter().zip(&tractions);
-    let largest_normal = normal
-        .map(|(point, traction)| traction.dot(point.normal).abs())
-        .fold(0.0, f64::max);
     let residual = norm(&system.residual(&trial.rock_forces, &tractions, &state.load));
     let change = system.displacements(correction, &Load::NONE);
-    let displacements = system.displacements(&state.unknowns, &state.load);
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     record.worst_facet_point = worst;
-    let separations = || state.facet_points.iter().map(|point| point.separation);
-    // A body that does not move may still hold joints closed by its initial stress.
-    let opening = separations()
-        .map(|separation| separation.opening.abs())
-        .fold(0.0, f64::max);
-    trial.sizes = Sizes {
-        force: system.force_scale(&trial.rock_forces, &tractions, &state.load),
-        displacement: largest(&displacements).max(opening),
-        traction: largest_normal,
-    };
-    let scale = trial.sizes.or_share(REMEMBERED, state.reached);
-    trial.force_scale = scale.force;
+    let apertures = state.facet_points.iter();
+    let apertures = apertures.map(|point| point.walls.separation.aperture);
+    let smallest_aperture = apertures.fold(f64::INFINITY, f64::min);
+    let sizes = sizes(system, trial, &tractions).or_share(REMEMBERED, state.reached);
+    trial.sizes = sizes;
     Ok(Iteration {
-        force_residual: ratio(residual, scale.force),
-        increment: ratio(largest(&change), scale.displacement),
-        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), scale.traction),
-        smallest_aperture: separations()
-            .map(|separation| separation.aperture)
-            .fold(f64::INFINITY, f64::min),
+        force_residual: ratio(residual, sizes.force),
+        increment: ratio(largest(&change), sizes.displacement),
+        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction),
+        smallest_aperture,
         linear_iterations: 0,
     })
+}
+
+/// How large the quantities of a state are.
+fn sizes(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Sizes {
+    let state = &trial.state;
+    let displacements = system.displacements(&state.unknowns, &state.load);
+    // A body that does not move may still hold joints closed by its initial stress.
+    let openings = state.facet_points.iter();
+    let openings = openings.map(|point| point.walls.separation.opening.abs());
+    Sizes {
+        force: system.force_scale(&trial.rock_forces, tractions, &state.load),
+        displacement: openings.fold(largest(&displacements), f64::max),
+        traction: largest(tractions),
+    }
 }
 
 fn largest(vectors: &[DVec3]) -> f64 {

@@ -1,5 +1,7 @@
 //! Settings of a nonlinear solve, and its record.
 
+use lie_mesh::Defect;
+
 use crate::linear::{LinearFailure, LinearMethod};
 use crate::schedule::Load;
 
@@ -27,6 +29,9 @@ pub struct NewtonSettings {
     pub closure: f64,
     /// Iterations after which a step has failed.
     pub max_iterations: usize,
+    /// Largest difference, against the largest jump, between a path in one step and in two, where
+    /// the laws depend on the path.
+    pub path: f64,
     /// How linear systems are solved; chosen by predicted cost if not given.
     pub linear: Option<LinearMethod>,
 }
@@ -38,7 +43,8 @@ impl Default for NewtonSettings {
             force: 1e-9,
             increment: 1e-5,
             closure: 1e-9,
-            max_iterations: 50,
+            max_iterations: 25,
+            path: 1e-3,
             linear: None,
         }
     }
@@ -67,6 +73,8 @@ pub enum Outcome {
     Converged,
     /// The iterations ran out.
     OutOfIterations,
+    /// Loads push blocks that nothing holds any more, see [`StepRecord::loose`].
+    Loose,
     /// An iterate is not a number or not finite; the facet point where it showed, if there.
     NotFinite(Option<usize>),
     /// The linear system could not be solved.
@@ -78,10 +86,16 @@ pub enum Outcome {
 pub struct StepRecord {
     /// Load at its end.
     pub load: Load,
-    /// Every iteration, in order.
+    /// Every iteration, in order, of all parts that the step was divided into.
     pub iterations: Vec<Iteration>,
+    /// Iterations of each part that converged.
+    pub parts: Vec<usize>,
+    /// Share of the way from the load before that was walked.
+    pub walked: f64,
     /// How it ended.
     pub outcome: Outcome,
+    /// Blocks that nothing held when it failed, each with its free motions.
+    pub loose: Vec<Defect>,
     /// The facet point with the largest closure error at the end.
     pub worst_facet_point: Option<usize>,
     /// Time spent in factorisations (s).
@@ -95,6 +109,9 @@ impl StepRecord {
         Self {
             load,
             iterations: Vec::new(),
+            parts: Vec::new(),
+            walked: 0.0,
+            loose: Vec::new(),
             outcome: Outcome::OutOfIterations,
             worst_facet_point: None,
             factorise_seconds: 0.0,
