@@ -136,9 +136,11 @@ fn is_result(name: &str) -> bool {
     let unfinished = name
         .strip_prefix('.')
         .and_then(|name| name.strip_suffix(".tmp"));
+    let of_gmsh = [".tmp.msh", ".msh41.msh"].iter();
+    let is_mesh = name.starts_with('.') && of_gmsh.into_iter().any(|end| name.ends_with(end));
     let name = unfinished.unwrap_or(name);
     let is_summary = unfinished.is_some() && name == "summary.json";
-    is_summary || name == checkpoint::NAME || is_step(name)
+    is_mesh || is_summary || name == checkpoint::NAME || is_step(name)
 }
 
 /// Whether [`Output::write_step`] writes files of this name.

@@ -256,7 +256,9 @@ fn without_a_checkpoint_a_run_begins() {
 fn a_new_run_removes_the_checkpoint() {
     let workshop = stuck();
     let checkpoint = workshop.path("out/resume.bin");
-    fs::write(workshop.path("out/.rock_0003.vtu.tmp"), "half").expect("written");
+    for unfinished in [".rock_0003.vtu.tmp", ".resume.bin.tmp", ".mesh.77.tmp.msh"] {
+        fs::write(workshop.path("out").join(unfinished), "half").expect("written");
+    }
     let text = fs::read_to_string(workshop.scene()).expect("the scene");
     let text = text.replace("steps = [1e-9, 1e-8, 1.0]", "steps = [1.0]");
     fs::write(workshop.scene(), text).expect("written");
