@@ -174,6 +174,16 @@ impl JumpBlock {
         self.largest_eigenvalue *= WIDENING;
     }
 
+    /// The largest eigenvalue as it was found or widened, and the factor on the next one.
+    pub(super) fn spectrum(&self) -> (f64, f64) {
+        (self.largest_eigenvalue, self.margin)
+    }
+
+    /// Takes over what [`Self::spectrum`] told.
+    pub(super) fn take_spectrum(&mut self, (largest_eigenvalue, margin): (f64, f64)) {
+        (self.largest_eigenvalue, self.margin) = (largest_eigenvalue, margin);
+    }
+
     /// The diagonal block of a node, factorised.
     fn factorise(&self, own: Range<usize>) -> Result<NodeFactor, LinearFailure> {
         let count = own.len();

@@ -12,6 +12,7 @@
 //! small a `k` comes down from the open side step by step. A fixed `E/h` fails for joints that are
 //! soft against their elements.
 
+mod bookmark;
 mod extrapolation;
 mod loose;
 mod march;
@@ -29,6 +30,7 @@ use crate::system::{Sizes, State, System, norm};
 use extrapolation::Path;
 use walls::Landed;
 
+pub use bookmark::Bookmark;
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
