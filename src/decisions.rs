@@ -25,7 +25,7 @@ pub fn unused_surfaces(inside: &[&str], outside: &[&str]) -> Vec<String> {
 }
 
 /// How much model a problem needs.
-pub fn of_problem(problem: &Problem) -> Vec<String> {
+pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
     let mut lines = Vec::new();
     let names = |holds: &dyn Fn(&lie_core::FractureLaw) -> bool| -> String {
         let pairs = problem.mesh.fractures.iter().zip(&problem.fractures);
@@ -60,7 +60,7 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
     }
     let rubbing = names(&lie_core::FractureLaw::is_path_dependent);
     if !rubbing.is_empty() {
-        let accuracy = NewtonSettings::default().path;
+        let accuracy = settings.path;
         lines.push(format!(
             "{rubbing} can slide or break: the way of the loads matters, steps are divided until jumps agree to {accuracy} of the largest"
         ));

@@ -16,7 +16,7 @@ use crate::output::Output;
 use crate::prepare::{self, MeshFile};
 use crate::report::{Failure, Report};
 use crate::resume::Former;
-use crate::scene::{MeshSource, Scene, bind};
+use crate::scene::{MeshSource, Scene, SolverEntry, bind};
 use crate::summary::{self, StepMeasures, StepSummary, Summary};
 
 /// A run under way.
@@ -127,9 +127,10 @@ impl<'a> Run<'a> {
         let system = self.assemble(problem)?;
         let plan = self.plan(&system, former.as_ref())?;
         self.summary.decisions.push(self.choice.1.clone());
-        self.summary
-            .decisions
-            .extend(decisions::of_problem(problem));
+        self.summary.decisions.extend(decisions::of_problem(
+            problem,
+            &newton_settings(&self.scene.solver),
+        ));
         for decision in &self.summary.decisions {
             self.report.entry("decided", decision);
         }
@@ -246,8 +247,9 @@ impl<'a> Run<'a> {
     /// Prepares what the linear solver needs once a run.
     fn set_up(&mut self, system: &System<'_>, plan: Plan) -> Result<Newton, Failure> {
         let name = plan.method.name();
+        let settings = newton_settings(&self.scene.solver);
         let (newton, took) = self.report.stage("preparing the solver", |_| {
-            Newton::planned(system, NewtonSettings::default(), plan)
+            Newton::planned(system, settings, plan)
         });
         self.summary.seconds.factorise += took.as_secs_f64();
         let text = timed(&format!("{name} solver, once for the run"), took);
@@ -360,4 +362,12 @@ fn solved<T>(result: Result<T, LinearFailure>, system: &System<'_>) -> Result<T,
 
 fn timed(text: &str, took: Duration) -> String {
     format!("{text} ({:.2} s)", took.as_secs_f64())
+}
+
+fn newton_settings(asked: &SolverEntry) -> NewtonSettings {
+    let settings = NewtonSettings::default();
+    NewtonSettings {
+        path: asked.path_accuracy.unwrap_or(settings.path),
+        ..settings
+    }
 }

@@ -99,7 +99,7 @@ fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>)
             section.refuse(
                 key,
                 format!("a {closure} closure has no {key}"),
-                format!("remove it or write closure = \"{to}\""),
+                format!("remove {key} or write closure = \"{to}\""),
             );
         }
     };

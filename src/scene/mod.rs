@@ -57,6 +57,9 @@ pub struct SolverEntry {
     pub linear: Option<LinearMethod>,
     /// Memory it may take (bytes); what the machine has free if not given.
     pub memory_limit: Option<f64>,
+    /// Largest difference between a load step in one part and in two, against the largest jump, where
+    /// the way of the loads matters; 1e-3 if not given.
+    pub path_accuracy: Option<f64>,
 }
 
 /// A scene, all values in SI units.
@@ -333,6 +336,7 @@ fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
     let entry = SolverEntry {
         linear,
         memory_limit: section.number("memory_limit", Accept::Positive),
+        path_accuracy: section.number("path_accuracy", Accept::Between(0.0, 1.0)),
     };
     section.finish();
     entry

@@ -275,6 +275,72 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "largest closure of a logarithmic law",
+        scene: &[(
+            "aperture = 1e-4",
+            "aperture = 1e-4\nclosure = \"logarithmic\"\nmax_closure = 1e-5",
+        )],
+        says: &[
+            "scene.toml:13: a logarithmic closure has no max_closure",
+            "closure = \"hyperbolic\"",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "contact with a stiffness",
+        scene: &[(
+            "aperture = 1e-4",
+            "aperture = 1e-4\nclosure = \"contact\"\nfriction_angle = 30",
+        )],
+        says: &[
+            "scene.toml:15: contact has no normal_stiffness",
+            "choose another closure",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "cohesion without friction",
+        scene: &[("aperture = 1e-4", "aperture = 1e-4\ncohesion = 1e6")],
+        says: &[
+            "scene.toml:12: cohesion is given, but no friction_angle",
+            "friction_angle = 30",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "more dilation than friction",
+        scene: &[(
+            "aperture = 1e-4",
+            "aperture = 1e-4\nfriction_angle = 20\ndilation_angle = 30",
+        )],
+        says: &[
+            "scene.toml:13: a dilation_angle of 30 is above the friction_angle of 20",
+            "sliding would give energy",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "strength without energy",
+        scene: &[("aperture = 1e-4", "aperture = 1e-4\ntensile_strength = 1e6")],
+        says: &[
+            "scene.toml:12: tensile_strength is given, but not fracture_energy",
+            "fracture_energy = 100",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "a bond too brittle for its stiffness",
+        scene: &[(
+            "aperture = 1e-4",
+            "aperture = 1e-4\ntensile_strength = 1e9\nfracture_energy = 1e-6",
+        )],
+        says: &[
+            "scene.toml:13: 0.000001 J/m^2 is not more than the",
+            "above tensile_strength^2 / (2 normal_stiffness)",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "cutoff of a linear law",
         scene: &[("aperture = 1e-4", "aperture = 1e-4\ncutoff_aperture = 1e-6")],
         says: &[
