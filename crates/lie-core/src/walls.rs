@@ -299,7 +299,12 @@ impl FractureLaw {
         normal: DVec3,
         rigid: f64,
     ) -> Tangent {
-        let direction = walls.slip.normalize_or_zero();
+        // Right after a commit walls without elastic slip have none, but still know where they slid.
+        let direction = if walls.slip == DVec3::ZERO {
+            walls.shear.normalize_or_zero()
+        } else {
+            walls.slip.normalize_or_zero()
+        };
         let slope = self.slope(walls, memory, rigid);
         let compliance = self.shear_stiffness.recip();
         let (_, bond) = self.bond(walls, memory);

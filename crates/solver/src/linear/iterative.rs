@@ -55,7 +55,7 @@ impl Iterative {
         let multigrid = multigrid.map_err(|failure| explain(&failure, &rock))?;
         Ok(Self {
             workspace: multigrid.workspace(),
-            jumps: JumpBlock::of(system, &rock),
+            jumps: JumpBlock::of(system, &rock)?,
             stiffness: None,
             multigrid,
             rock,
