@@ -135,9 +135,11 @@ fn kill_and_compare(linear: &str, seed: u64) {
             let flags: &[&str] = if attempt == 0 { &[] } else { &["--resume"] };
             let child = start(&workshop, &out, flags);
             std::thread::sleep(random.below(took));
-            killed += usize::from(kill(child));
+            let hit = kill(child);
             assert_valid(&workshop.path(&out));
-            continued += usize::from(workshop.path(&out).join("resume.bin").exists());
+            let goes_on = workshop.path(&out).join("resume.bin").exists();
+            killed += usize::from(hit);
+            continued += usize::from(hit && goes_on);
         }
         let found = outcome(&workshop.solve(&out, &["--resume"]));
         assert_eq!(found.1, expected.1, "{linear}, run {number}");
