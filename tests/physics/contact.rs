@@ -157,6 +157,36 @@ fn a_block_that_floats_settles_if_the_loads_allow_it() {
     }
 }
 
+/// The block rests on the lower joint by its weight alone, the upper one open by anything from less
+/// than what the weight closes to many apertures, its shear stiffness half let go or gone.
+#[test]
+fn a_block_rests_on_its_weight_under_any_lift() {
+    for exponent in -9..=-1 {
+        let mut problem = hung(cut_off(), -9.81);
+        problem.fractures[0].law.shear_stiffness = 20e9;
+        let lift = Support::Displacement([FREE, FREE, Some(10_f64.powi(exponent))]);
+        let top = scenes::boundary(&problem, "top");
+        problem
+            .conditions
+            .retain(|condition| condition.boundary != top);
+        scenes::support(&mut problem, "top", lift);
+        let discretisation = Discretisation::of(&problem).expect("supported");
+        let interface = discretisation.interface;
+        for (record, solution) in walk(&problem, &[0.5, 1.0, 0.1]) {
+            let count = record.iterations.len();
+            assert!(record.converged() && count <= 12, "1e{exponent}: {count}");
+            let load = record.load.factors[0];
+            let points = interface.points.iter().zip(&solution.facet_points);
+            let lower = points.filter(|(point, _)| point.position.z < 1.5);
+            let carried: f64 = lower
+                .map(|(point, found)| point.area * found.normal_traction)
+                .sum();
+            let error = (carried / (-2700.0 * 9.81 * load) - 1.0).abs();
+            assert!(error < 1e-8, "1e{exponent}, {load}: {error}");
+        }
+    }
+}
+
 /// The top block is pulled up and nothing holds it: there is no solution, and the message says why.
 #[test]
 fn a_block_that_is_pulled_off_is_named() {

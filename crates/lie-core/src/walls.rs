@@ -130,18 +130,25 @@ impl FractureLaw {
 
     fn balance_elastic(&self, landing: &Landing, springs: Springs, memory: &Memory) -> Walls {
         let load = landing.normal_traction + springs.normal * landing.separation.opening;
-        let balance = self
+        let slip = landing.slip;
+        let stiffness = self.shear_stiffness * (1.0 - self.damage(memory));
+        let energy = 0.5 * stiffness * slip.length_squared();
+        let thrust = |separation: Separation| self.hold(separation).slope * energy;
+        let mut balance = self
             .closure
             .balanced_after(springs.normal, load, memory.largest_opening);
-        let slip = landing.slip;
-        let hold = self.hold(balance.separation);
-        let stiffness = self.shear_stiffness * (1.0 - self.damage(memory));
-        let thrust = 0.5 * hold.slope * stiffness * slip.length_squared();
+        // Where the fracture lets go of its shear, what pushes its walls apart is part of the balance.
+        if thrust(balance.separation) < 0.0 {
+            let from = balance.separation;
+            let reach = self.closure.aperture - from.opening;
+            let excess = |way: f64| springs.normal * way + thrust(from.moved(way));
+            balance.separation = from.moved(root(excess, reach));
+        }
         Walls {
             separation: balance.separation,
             slip,
-            normal_traction: balance.traction + thrust,
-            shear: hold.share * stiffness * slip,
+            normal_traction: balance.traction + thrust(balance.separation),
+            shear: self.hold(balance.separation).share * stiffness * slip,
             ..Walls::default()
         }
     }

@@ -133,6 +133,9 @@ pub struct System<'a> {
     generation: u32,
 }
 
+/// Share of the forces of prescribed displacements that counts even if they cancel: rounding.
+const CANCELLING: f64 = 1e-3;
+
 impl<'a> System<'a> {
     /// Assembles rock and loads.
     pub fn assemble(problem: &'a Problem, discretisation: Discretisation) -> Self {
@@ -314,13 +317,21 @@ impl<'a> System<'a> {
         self.discretisation
             .interface
             .add_forces(tractions, 1.0, &mut fractures);
-        let cases = self.loads.cases.iter().zip(&load.factors);
-        let of_cases =
-            cases.map(|(case, f)| f.abs() * norm(&case.applied).max(norm(&case.prescribed)));
+        let cases = || self.loads.cases.iter().zip(&load.factors);
+        let of_cases = cases().map(|(case, f)| f.abs() * norm(&case.applied));
+        // Moving a body as a whole asks for large forces that cancel: what counts is what is left.
+        let mut internal = rock_forces.to_vec();
+        let mut prescribed = 0.0_f64;
+        for (case, f) in cases() {
+            prescribed = prescribed.max(f.abs() * norm(&case.prescribed));
+            let pairs = internal.par_iter_mut().zip(&case.prescribed);
+            pairs.for_each(|(force, prescribed)| *force -= *f * *prescribed);
+        }
         let others = [
             norm(&self.loads.initial),
-            norm(rock_forces),
+            norm(&internal),
             norm(&fractures),
+            CANCELLING * prescribed,
         ];
         of_cases.chain(others).fold(0.0, f64::max)
     }

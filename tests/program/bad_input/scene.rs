@@ -293,7 +293,7 @@ pub(super) const CASES: &[Case] = &[
             "aperture = 1e-4\nclosure = \"contact\"\nfriction_angle = 30",
         )],
         says: &[
-            "scene.toml:15: contact has no normal_stiffness",
+            "scene.toml:14: contact has no normal_stiffness",
             "choose another closure",
         ],
         ..SOUND
