@@ -347,7 +347,6 @@ fn unfactorised(own: &OwnedBlockRows) -> Result<Cholesky, LinearFailure> {
     let neighbours = |row: usize| rows.row(row).map(|(column, _)| column);
     let count = own.row_offset.len() - 1;
     let order = nested_dissection(count, neighbours)?;
-    let order = order.into_iter().map(|index| index as usize).collect();
     let analysis = Analysis::of(&own.row_offset, &own.columns, order)?;
     Ok(Cholesky::new(analysis, rows))
 }
