@@ -105,7 +105,7 @@ impl Newton {
 
     /// Solves one load step from `state` to `load`, calling `observe` after each iteration. `state` is
     /// replaced if the step converges and kept if not. A step that the laws make too difficult or too
-    /// coarse is divided, see [`march`].
+    /// coarse is divided.
     pub fn step(
         &mut self,
         system: &System<'_>,
