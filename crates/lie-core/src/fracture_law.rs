@@ -19,7 +19,7 @@ pub struct Friction {
 ///
 /// `t = sigma_n(b) n + K_s w_s`, with the potential `Psi(b) + K_s |w_s|^2 / 2`, as long as it does
 /// not slide. A fracture without friction whose tension is cut off lets go of its shear as it opens,
-/// see [`FractureLaw::hold`].
+/// see `FractureLaw::hold`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FractureLaw {
     /// Normal part.
@@ -101,7 +101,7 @@ impl FractureLaw {
         self.at(self.closure.opened(opening), slip, normal)
     }
 
-    /// Elastic response at a separation and `slip` (m): with `g` of [`FractureLaw::hold`],
+    /// Elastic response at a separation and `slip` (m): with the share `g` of the shear stiffness that an open fracture keeps,
     /// `Psi(b) + g(w_n) K_s |w_s|^2 / 2`, its gradient and its second derivative.
     pub fn at(&self, separation: Separation, slip: DVec3, normal: DVec3) -> Response {
         let across = self.closure.at(separation);
