@@ -85,7 +85,8 @@ impl Axis {
         if low > high {
             (low, high) = (0.0, 1.0);
         }
-        if self.scale == Scale::Linear && low > 0.0 && low < 0.5 * high {
+        // Lengths of positive numbers compare only from zero on.
+        if self.scale == Scale::Linear && low > 0.0 {
             low = 0.0;
         }
         // A chart of one value still has a width.
