@@ -50,9 +50,14 @@ pub fn tractions(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> V
     scenes::support(&mut problem, "front", Support::Symmetry);
     let solution = scenes::solve(&problem);
     let interface = Discretisation::of(&problem).expect("supported").interface;
-    let points = std::iter::zip(&interface.points, &solution.facet_points);
-    let ahead = points.filter(|(point, _)| point.fracture == 1);
+    let nodes = &problem.mesh.facets.elements.nodes;
+    // The position of a nodal point is the middle of its share; where it acts is the node.
+    let place = |index: usize| match (quadrature, nodes.get(index)) {
+        (FacetQuadrature::Nodal, Some(&node)) => problem.mesh.nodes[node as usize],
+        _ => interface.points[index].position,
+    };
+    let ahead = (0..interface.points.len()).filter(|&i| interface.points[i].fracture == 1);
     ahead
-        .map(|(point, result)| (point.position, result.normal_traction))
+        .map(|index| (place(index), solution.facet_points[index].normal_traction))
         .collect()
 }
