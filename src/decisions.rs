@@ -45,7 +45,7 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
     if problem.fractures.is_empty() {
         lines.push("no fracture: plain elasticity, one linear solve a step".into());
     } else {
-        let nonlinear = names(&|law| !law.closure.is_linear());
+        let nonlinear = names(&|law| !law.is_linear());
         if nonlinear.is_empty() {
             lines.push("no fracture is nonlinear: one linear solve a step".into());
         } else {

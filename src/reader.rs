@@ -19,6 +19,8 @@ pub(crate) enum Accept {
     NotNegative,
     /// Above the first bound and below the second.
     Between(f64, f64),
+    /// From the first bound to the second.
+    Within(f64, f64),
 }
 
 impl Accept {
@@ -28,6 +30,7 @@ impl Accept {
             Accept::Positive => value > 0.0,
             Accept::NotNegative => value >= 0.0,
             Accept::Between(low, high) => low < value && value < high,
+            Accept::Within(low, high) => low <= value && value <= high,
         };
         if value.is_finite() && fits {
             return None;
@@ -36,7 +39,9 @@ impl Accept {
             Accept::Finite => "must be a finite number".into(),
             Accept::Positive => "must be a finite number greater than 0".into(),
             Accept::NotNegative => "must be a finite number, 0 or greater".into(),
-            Accept::Between(low, high) => format!("must lie between {low} and {high}"),
+            Accept::Between(low, high) | Accept::Within(low, high) => {
+                format!("must lie between {low} and {high}")
+            }
         })
     }
 }

@@ -51,14 +51,10 @@ pub fn mesh(draft: Draft, planes: &[Plane]) -> Mesh {
 /// The block, pressed from above until its level fractures have closed to a tenth.
 pub fn problem(cubes: usize, planes: &[Plane]) -> Problem {
     let mesh = mesh(draft(cubes, planes), planes);
-    let law = FractureLaw {
-        closure: Closure {
-            aperture: 1e-4,
-            normal_stiffness: 50e9,
-            kind: ClosureKind::Logarithmic { cutoff: None },
-        },
-        shear_stiffness: 20e9,
-    };
+    let law = FractureLaw::elastic(
+        Closure::new(1e-4, 50e9, ClosureKind::Logarithmic { cutoff: None }),
+        20e9,
+    );
     let condition = |boundary: usize| Condition {
         boundary,
         load: (boundary == 3).then_some(SurfaceLoad::Traction(DVec3::new(0.0, 0.0, -28.4e6))),

@@ -52,6 +52,8 @@ fn warning(finding: &WallFinding) -> Option<String> {
 fn meeting(closure: &Closure) -> (&'static str, Option<f64>) {
     let scale = closure.normal_stiffness * closure.aperture;
     match closure.kind {
+        ClosureKind::Contact => ("contact", None),
+        ClosureKind::Hyperbolic { .. } => ("hyperbolic", None),
         _ if scale == 0.0 => ("free crack", Some(0.0)),
         ClosureKind::Linear => ("linear", Some(scale)),
         ClosureKind::Logarithmic { cutoff: None } => ("logarithmic", None),
@@ -162,11 +164,7 @@ mod tests {
 
     #[test]
     fn walls_meet_at_the_cutoff_where_the_law_says() {
-        let closure = |kind| Closure {
-            aperture: 1e-4,
-            normal_stiffness: 5e10,
-            kind,
-        };
+        let closure = |kind| Closure::new(1e-4, 5e10, kind);
         for kind in [
             ClosureKind::Linear,
             ClosureKind::Logarithmic { cutoff: Some(1e-5) },

@@ -1,15 +1,17 @@
 //! The scene file: what a user may say, before it meets a mesh.
 
 mod bind;
+mod fracture;
 
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+use lie_core::Rock;
 use lie_mesh::Defect;
 use lie_solver::{Fracture, InitialStress, LinearMethod, Profile, Support, SurfaceLoad};
 
 pub use bind::{Binding, bind, surface_roles};
+pub(crate) use fracture::read_fracture;
 
 use crate::reader::{Accept, Section, Source};
 
@@ -273,70 +275,6 @@ fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
         poisson_ratio: poisson_ratio?,
         density: density.unwrap_or(0.0),
     })
-}
-
-/// Reads what a scene says about a fracture.
-pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
-    for (key, example) in [
-        ("aperture", "1e-4"),
-        ("normal_stiffness", "1e11"),
-        ("shear_stiffness", "1e10"),
-    ] {
-        section.require(key, example);
-    }
-    let aperture = section.number("aperture", Accept::Positive);
-    let normal_stiffness = section.number("normal_stiffness", Accept::NotNegative);
-    let shear_stiffness = section.number("shear_stiffness", Accept::NotNegative);
-    let cutoff = section.number("cutoff_aperture", Accept::Positive);
-    let fluid_pressure = section.number("fluid_pressure", Accept::Finite);
-    if let (Some(aperture), Some(cutoff)) = (aperture, cutoff)
-        && cutoff > aperture
-    {
-        section.refuse(
-            "cutoff_aperture",
-            format!("cutoff_aperture {cutoff} is above the aperture {aperture}"),
-            "the cutoff must lie between 0 and the aperture; leave it out for the exact law",
-        );
-    }
-    let kind = match section.text("closure") {
-        Some("logarithmic") => ClosureKind::Logarithmic { cutoff },
-        Some("linear") | None => linear_closure(section, cutoff),
-        Some(other) => {
-            let known = ["linear", "logarithmic"];
-            let remedy = lie_mesh::nearest(other, known.into_iter())
-                .map_or("write \"linear\" or \"logarithmic\"".into(), |near| {
-                    format!("did you mean \"{near}\"? (known: linear, logarithmic)")
-                });
-            section.refuse(
-                "closure",
-                format!("unknown closure law \"{other}\""),
-                remedy,
-            );
-            return None;
-        }
-    };
-    Some(Fracture {
-        law: FractureLaw {
-            closure: Closure {
-                aperture: aperture?,
-                normal_stiffness: normal_stiffness?,
-                kind,
-            },
-            shear_stiffness: shear_stiffness?,
-        },
-        fluid_pressure: fluid_pressure.unwrap_or(0.0),
-    })
-}
-
-fn linear_closure(section: &Section<'_, '_>, cutoff: Option<f64>) -> ClosureKind {
-    if cutoff.is_some() {
-        section.refuse(
-            "cutoff_aperture",
-            "a linear closure has no cutoff".into(),
-            "remove cutoff_aperture or write closure = \"logarithmic\"",
-        );
-    }
-    ClosureKind::Linear
 }
 
 fn read_boundary(section: &Section<'_, '_>) -> Option<BoundaryEntry> {

@@ -39,14 +39,7 @@ fn log_law_table_by_simulation_of_a_column() {
 fn single_joint(normal: f64, shear: f64, kind: ClosureKind) -> (Problem, Solution) {
     let draft = scenes::geometry("inclined-joint", &[("dip", 50.0), ("h", 0.3)]);
     let fracture = Fracture {
-        law: FractureLaw {
-            closure: Closure {
-                aperture: 1e-5,
-                normal_stiffness: normal,
-                kind,
-            },
-            shear_stiffness: shear,
-        },
+        law: FractureLaw::elastic(Closure::new(1e-5, normal, kind), shear),
         fluid_pressure: 0.0,
     };
     let mut problem = scenes::problem(scenes::build(draft), fracture);

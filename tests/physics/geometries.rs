@@ -33,6 +33,7 @@ fn check_uniform(problem: &Problem, stress: DMat3) -> Solution {
         let opening = match law.closure.kind {
             ClosureKind::Linear => across / law.closure.normal_stiffness,
             ClosureKind::Logarithmic { .. } => 1e-4 * (closed_aperture(-across / 5e6) - 1.0),
+            other => panic!("no closed form for {other:?}"),
         };
         let slip = (stress * normal - across * normal) / law.shear_stiffness;
         for index in facets.elements.range(facet) {

@@ -7,6 +7,7 @@
 mod closed_forms;
 mod closing;
 mod conditions;
+mod contact;
 mod crack_front;
 mod dice;
 mod families;

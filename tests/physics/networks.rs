@@ -195,14 +195,10 @@ pub fn randomise(problem: &mut Problem, seed: u64) {
 
 fn random_fracture(dice: &mut Dice) -> Fracture {
     Fracture {
-        law: FractureLaw {
-            closure: Closure {
-                aperture: 1e-4,
-                normal_stiffness: 1e9 * 1e3_f64.powf(dice.unit()),
-                kind: ClosureKind::Linear,
-            },
-            shear_stiffness: 1e9 * 1e3_f64.powf(dice.unit()),
-        },
+        law: FractureLaw::elastic(
+            Closure::new(1e-4, 1e9 * 1e3_f64.powf(dice.unit()), ClosureKind::Linear),
+            1e9 * 1e3_f64.powf(dice.unit()),
+        ),
         fluid_pressure: dice.between(0.0, 2e6),
     }
 }

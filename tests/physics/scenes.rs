@@ -22,14 +22,7 @@ pub const ROCK: Rock = Rock {
 /// Joint of the benchmarks: K_n0 = 50 GPa/m, K_s = 20 GPa/m, b0 = 0.1 mm.
 pub fn joint(kind: ClosureKind) -> Fracture {
     Fracture {
-        law: FractureLaw {
-            closure: Closure {
-                aperture: 1e-4,
-                normal_stiffness: 50e9,
-                kind,
-            },
-            shear_stiffness: 20e9,
-        },
+        law: FractureLaw::elastic(Closure::new(1e-4, 50e9, kind), 20e9),
         fluid_pressure: 0.0,
     }
 }

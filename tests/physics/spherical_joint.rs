@@ -59,6 +59,7 @@ impl Exact {
         let law = |q: f64| match kind {
             ClosureKind::Linear => -q / 50e9,
             ClosureKind::Logarithmic { .. } => 1e-4 * (closed_aperture(q / 5e6) - 1.0),
+            other => panic!("no closed form for {other:?}"),
         };
         let (mut low, mut high) = (0.0, 10.0 * PRESSURE);
         for _ in 0..200 {

@@ -18,11 +18,7 @@
 //! ```
 //! use lie_core::{Closure, ClosureKind};
 //!
-//! let closure = Closure {
-//!     aperture: 1e-4,
-//!     normal_stiffness: 1e11,
-//!     kind: ClosureKind::Logarithmic { cutoff: None },
-//! };
+//! let closure = Closure::new(1e-4, 1e11, ClosureKind::Logarithmic { cutoff: None });
 //! let half_closed = closure.at_aperture(0.5e-4);
 //! assert!((half_closed.traction / -1e7 - 0.740227).abs() < 1e-6);
 //! ```
@@ -36,10 +32,12 @@ mod fracture_law;
 pub mod kernel;
 mod quadrature;
 mod rock;
+mod walls;
 
 pub use basis::Basis;
-pub use closure::{Closure, ClosureKind, NormalResponse, Separation};
+pub use closure::{Closure, ClosureKind, NormalBalance, NormalResponse, Separation, Tension};
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};
-pub use fracture_law::{FractureLaw, Response};
+pub use fracture_law::{FractureLaw, Friction, Response};
 pub use rock::{Rock, SymmetricStress};
+pub use walls::{Landing, Memory, Springs, Tangent, Walls};

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Entries that one task sums; fixed, so that no sum depends on the number of threads.
-const PER_TASK: usize = 4096;
+pub(crate) const PER_TASK: usize = 4096;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]

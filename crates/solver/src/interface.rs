@@ -8,7 +8,7 @@
 
 use glam::{DMat3, DVec3};
 use lie_core::enrichment::coefficient;
-use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, facet_points};
+use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Springs, Walls, facet_points};
 use lie_mesh::cell_volume;
 use rayon::prelude::*;
 
@@ -35,11 +35,26 @@ pub struct FacetPoint {
     pub spring: f64,
     /// Jump of the prescribed displacements at load factor 1 (m), `w_g`.
     pub prescribed: DVec3,
-    /// Jump (m) at which the law carries the initial stress. The law always sees
-    /// `initial_jump + jump`.
-    pub initial_jump: DVec3,
-    /// Aperture (m) that goes with it.
-    pub initial_aperture: f64,
+    /// The walls carrying the initial stress. The law always sees the jump beyond that.
+    pub initial: Walls,
+}
+
+/// Stiffness of the rock along a facet, as a share of that across.
+const SHEAR_SHARE: f64 = 0.3;
+
+impl FacetPoint {
+    /// Stiffness of the rock beside it.
+    pub fn springs(&self) -> Springs {
+        Springs {
+            normal: self.spring,
+            shear: SHEAR_SHARE * self.spring,
+        }
+    }
+
+    /// Jump (m) at which the law carries the initial stress.
+    pub fn initial_jump(&self) -> DVec3 {
+        self.initial.separation.opening * self.normal + self.initial.slip
+    }
 }
 
 /// One term of the jump of a facet point.
@@ -124,8 +139,7 @@ impl Interface {
     pub(crate) fn carry_initial_stress(&mut self, problem: &Problem, laws: &[FractureLaw]) {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
-            (point.initial_jump, point.initial_aperture) =
-                initial_jump(problem, law, point.position, point.normal);
+            point.initial = initial_walls(problem, law, point.position, point.normal);
         }
     }
 
@@ -272,7 +286,6 @@ fn draw_point(
     let fracture = facets.fracture[facet];
     let normal = rule.area.normalize();
     let law = &problem.fractures[fracture as usize].law;
-    let (initial_jump, initial_aperture) = initial_jump(problem, law, rule.position, normal);
     let point = FacetPoint {
         facet: facet as u32,
         fracture,
@@ -281,8 +294,7 @@ fn draw_point(
         normal,
         spring,
         prescribed,
-        initial_jump,
-        initial_aperture,
+        initial: initial_walls(problem, law, rule.position, normal),
     };
     Drawn { point, terms }
 }
@@ -323,20 +335,10 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
     1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
 }
 
-/// Jump and aperture at which the law carries the initial stress. A fracture without stiffness
-/// carries none, so it relaxes what the initial stress would need of it.
-fn initial_jump(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> (DVec3, f64) {
-    let Some(stress) = &problem.initial_stress else {
-        return (DVec3::ZERO, law.closure.aperture);
-    };
-    let traction = stress.at(at) * normal;
-    let across = traction.dot(normal);
-    let separation = law.closure.balanced(0.0, across);
-    let shear = traction - across * normal;
-    let slip = if law.shear_stiffness > 0.0 {
-        shear / law.shear_stiffness
-    } else {
-        DVec3::ZERO
-    };
-    (separation.opening * normal + slip, separation.aperture)
+/// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
+/// what the initial stress would need of it.
+fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> Walls {
+    let stress = problem.initial_stress;
+    let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
+    law.carrying(traction, normal)
 }

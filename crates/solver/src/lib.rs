@@ -10,6 +10,7 @@ mod assembly;
 mod cell_forces;
 mod conjugate_gradients;
 mod folded;
+mod gmres;
 mod interface;
 mod linear;
 mod loads;
@@ -30,8 +31,9 @@ pub use conjugate_gradients::{
 };
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
-    Analysis, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod, LinearSolution,
-    NodeOrder, Plan, Prediction, TangentSolver, Unknowns, Whole, Workload,
+    Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,
+    LinearSolution, NodeOrder, Plan, Prediction, TangentSolver, Tangents, Unknowns, Whole,
+    Workload,
 };
 pub use loads::Loads;
 pub use matrix::BlockMatrix;

@@ -1,7 +1,7 @@
 //! The discrete problem: unknowns, stiffness, loads, and what they make of a state.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FractureLaw, Response, Separation};
+use lie_core::{FractureLaw, Landing, Memory, Response, Walls};
 use lie_mesh::Defect;
 use rayon::prelude::*;
 
@@ -83,11 +83,11 @@ pub struct State {
 #[derive(Debug, Clone, Copy)]
 pub struct FacetPointState {
     /// Where the law is linearised, which is where the walls are once converged.
-    pub separation: Separation,
-    /// Opening of the walls beyond that (m); rounding once converged.
-    pub mismatch: f64,
-    /// Shear traction (Pa).
-    pub shear: DVec3,
+    pub walls: Walls,
+    /// Jump of the walls beyond that (m); rounding once converged.
+    pub mismatch: DVec3,
+    /// What former steps left behind.
+    pub memory: Memory,
 }
 
 /// The discrete problem, assembled.
@@ -145,23 +145,27 @@ impl<'a> System<'a> {
 
     /// Whether a step may need more than one linear solve.
     pub fn is_nonlinear(&self) -> bool {
-        self.laws.iter().any(|law| !law.closure.is_linear())
+        self.laws.iter().any(|law| !law.is_linear())
+    }
+
+    /// Whether the tangent changes gradually: no fracture slides, breaks or ends a contact.
+    pub fn is_smooth(&self) -> bool {
+        self.laws.iter().all(FractureLaw::is_smooth)
+    }
+
+    /// Whether a state depends on how its load was reached.
+    pub fn is_path_dependent(&self) -> bool {
+        self.laws.iter().any(FractureLaw::is_path_dependent)
     }
 
     /// The state before any load: no displacement, apertures and shear as the initial stress
     /// leaves them.
     pub fn initial_state(&self) -> State {
-        let facet_points = self.discretisation.interface.points.iter().map(|point| {
-            let law = self.law(point);
-            let opening = point.initial_jump.dot(point.normal);
-            FacetPointState {
-                separation: Separation {
-                    opening,
-                    aperture: point.initial_aperture,
-                },
-                mismatch: 0.0,
-                shear: law.shear_stiffness * (point.initial_jump - opening * point.normal),
-            }
+        let points = self.discretisation.interface.points.iter();
+        let facet_points = points.map(|point| FacetPointState {
+            walls: point.initial,
+            mismatch: DVec3::ZERO,
+            memory: Memory::default(),
         });
         State {
             load: 0.0,
@@ -183,12 +187,22 @@ impl<'a> System<'a> {
         let points = interface.points.iter().zip(jumps);
         for ((point, jump), state) in points.zip(&mut state.facet_points) {
             let law = self.law(point);
-            let seen = point.initial_jump + jump;
+            let seen = point.initial_jump() + jump;
             let opening = seen.dot(point.normal);
-            let aperture = state.separation.aperture;
-            state.separation = law.closure.opened(aperture - law.closure.aperture);
-            state.mismatch = opening - state.separation.opening;
-            state.shear = law.shear_stiffness * (seen - opening * point.normal);
+            let aperture = state.walls.separation.aperture;
+            let landing = Landing {
+                separation: law.closure.opened(aperture - law.closure.aperture),
+                slip: seen - opening * point.normal,
+                normal_traction: state.walls.normal_traction,
+                shear: state.walls.shear,
+            };
+            state.walls = if law.is_smooth() {
+                law.landed(&landing)
+            } else {
+                law.balance(&landing, point.springs(), &state.memory)
+            };
+            let beyond = opening - state.walls.separation.opening;
+            state.mismatch = beyond * point.normal + landing.slip - state.walls.slip;
         }
     }
 
@@ -197,18 +211,12 @@ impl<'a> System<'a> {
         &self.laws[point.fracture as usize]
     }
 
-    /// Traction of the law of a facet point in its state (Pa).
-    pub fn law_traction(&self, point: &FacetPoint, state: &FacetPointState) -> DVec3 {
-        let across = self.law(point).closure.at(state.separation).traction;
-        across * point.normal + state.shear
-    }
-
     /// Tractions of the laws of all facet points in a state (Pa).
     pub fn law_tractions(&self, state: &State) -> Vec<DVec3> {
         let points = self.discretisation.interface.points.par_iter();
         points
             .zip(&state.facet_points)
-            .map(|(point, state)| self.law_traction(point, state))
+            .map(|(point, state)| state.walls.traction(point.normal))
             .collect()
     }
 
@@ -219,7 +227,7 @@ impl<'a> System<'a> {
         let points = interface.points.par_iter().zip(jumps);
         points
             .map(|(point, jump)| {
-                let seen = point.initial_jump + jump;
+                let seen = point.initial_jump() + jump;
                 self.law(point).response(seen, point.normal)
             })
             .collect()

@@ -124,10 +124,7 @@ impl TangentSolver for Iterative {
         let size = norm(&residual);
         let wanted = tolerance * norm(right) / size;
         let mut correction = vec![DVec3::ZERO; right.len()];
-        let mut parts = Parts {
-            rock: vec![DVec3::ZERO; self.rock.len()],
-            correction: vec![DVec3::ZERO; self.rock.len()],
-        };
+        let mut parts = Parts::new(self.rock.len());
         let mut iterations = 0;
         for attempt in 0..=MOST_WIDENINGS {
             let report = conjugate_gradients(
@@ -168,6 +165,22 @@ impl TangentSolver for Iterative {
             iterations,
         })
     }
+
+    fn precondition(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+    ) -> Result<Vec<DVec3>, LinearFailure> {
+        let mut parts = Parts::new(self.rock.len());
+        let mut correction = vec![DVec3::ZERO; right.len()];
+        precondition(
+            (&self.multigrid, &mut self.workspace),
+            (&self.rock, &self.jumps, system.rock_rows()),
+            &mut parts,
+            (right, &mut correction),
+        );
+        Ok(correction)
+    }
 }
 
 /// Jumps alone, node by node, as long as that helps much; with the forces that remain.
@@ -207,6 +220,15 @@ fn first_guess(
 struct Parts {
     rock: Vec<DVec3>,
     correction: Vec<DVec3>,
+}
+
+impl Parts {
+    fn new(length: usize) -> Self {
+        Self {
+            rock: vec![DVec3::ZERO; length],
+            correction: vec![DVec3::ZERO; length],
+        }
+    }
 }
 
 /// One symmetric step: jumps, rock, jumps.

@@ -9,6 +9,7 @@ mod jump_problem;
 mod ordering;
 mod plan;
 mod substitution;
+mod tangent;
 mod whole;
 
 use glam::{DMat3, DVec3};
@@ -21,9 +22,13 @@ pub use condensed::Condensed;
 pub use iterative::Iterative;
 pub use ordering::NodeOrder;
 pub use plan::{LinearMethod, Plan, Prediction, Unknowns, Workload};
+pub use tangent::AnyTangent;
 pub use whole::Whole;
 
 pub(crate) use cholesky::parallelism;
+
+/// Tolerance of an iteration that only serves as a preconditioner.
+const PRECONDITIONER: f64 = 1e-2;
 
 /// Why a linear system could not be solved.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -49,6 +54,25 @@ pub struct LinearSolution {
     pub iterations: usize,
 }
 
+/// Tangents of the facet points (Pa/m).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tangents {
+    /// `dt/dw`.
+    pub exact: Vec<DMat3>,
+    /// Symmetric positive semidefinite tangents close to them, unless they are that themselves.
+    pub positive: Option<Vec<DMat3>>,
+}
+
+impl From<Vec<DMat3>> for Tangents {
+    /// Tangents that are symmetric and positive semidefinite.
+    fn from(exact: Vec<DMat3>) -> Self {
+        Self {
+            exact,
+            positive: None,
+        }
+    }
+}
+
 /// Solves with the tangent of a system, `rock + fractures`.
 pub trait TangentSolver: Send + Sync {
     /// Takes over the tangents of the facet points (Pa/m).
@@ -67,4 +91,16 @@ pub trait TangentSolver: Send + Sync {
         right: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure>;
+
+    /// An approximate solution for the forces `right` (N), in one go.
+    ///
+    /// # Errors
+    /// If the solver fails.
+    fn precondition(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+    ) -> Result<Vec<DVec3>, LinearFailure> {
+        Ok(self.solve(system, right, PRECONDITIONER)?.unknowns)
+    }
 }

@@ -104,7 +104,7 @@ impl Workload {
         let mut laws = problem.fractures.iter().map(|fracture| fracture.law);
         Self {
             steps: problem.steps.len(),
-            is_nonlinear: laws.any(|law| !law.closure.is_linear()),
+            is_nonlinear: laws.any(|law| !law.is_linear()),
         }
     }
 

@@ -7,6 +7,7 @@
 use std::collections::VecDeque;
 
 use glam::DVec3;
+use lie_core::{FractureLaw, Landing};
 use rayon::prelude::*;
 
 use crate::system::{FacetPointState, State, System};
@@ -40,10 +41,17 @@ impl Path {
         });
     }
 
-    /// Continues the path through `state` to `load`, if there is one and `load` is not too far.
-    pub(super) fn continue_through(&self, system: &System<'_>, state: &mut State, load: f64) {
-        let Some((own, weights)) = self.weights(state.load, load) else {
-            return;
+    /// Continues the path through `state` to `load`, if there is one and `load` is not too far. Tells
+    /// whether it did.
+    pub(super) fn continue_through(
+        &self,
+        system: &System<'_>,
+        state: &mut State,
+        load: f64,
+    ) -> bool {
+        let smooth = system.is_smooth();
+        let Some((own, weights)) = self.weights(state.load, load).filter(|_| smooth) else {
+            return false;
         };
         let formers = || self.0.iter().zip(&weights);
         let tractions: Vec<DVec3> = system
@@ -61,22 +69,17 @@ impl Path {
         state.load = load;
         let after = interface.jumps(&state.unknowns, load);
         for (index, point) in interface.points.iter().enumerate() {
-            let moved = (after[index] - before[index]).dot(point.normal);
-            let closure = &system.law(point).closure;
+            let moved = after[index] - before[index];
             let state = &mut state.facet_points[index];
-            let across = tractions[index].dot(point.normal);
-            let landed = state.separation.moved(state.mismatch + moved);
-            let separation = if closure.normal_stiffness == 0.0 {
-                landed
-            } else {
-                closure.balanced(0.0, across)
-            };
-            *state = FacetPointState {
-                separation,
-                mismatch: landed.beyond(separation),
-                shear: tractions[index] - across * point.normal,
-            };
+            follow(
+                system.law(point),
+                point.normal,
+                state,
+                moved,
+                tractions[index],
+            );
         }
+        true
     }
 
     /// Lagrange's weights of the present state and of the former ones, of as many as are close
@@ -99,6 +102,36 @@ impl Path {
             (size <= WEIGHTIEST).then(|| (weights[0], weights[1..].to_vec()))
         })
     }
+}
+
+/// Takes a facet point to where its law carries `traction` (Pa), its walls having moved by `moved` (m).
+fn follow(
+    law: &FractureLaw,
+    normal: DVec3,
+    state: &mut FacetPointState,
+    moved: DVec3,
+    traction: DVec3,
+) {
+    let (opened, across) = (moved.dot(normal), traction.dot(normal));
+    let shear = traction - across * normal;
+    let former = state.walls.separation;
+    let landed = former.moved(state.mismatch.dot(normal) + opened);
+    let landing = Landing {
+        separation: if law.closure.normal_stiffness == 0.0 {
+            landed
+        } else {
+            law.closure.balanced(0.0, across)
+        },
+        slip: if law.shear_stiffness == 0.0 {
+            state.walls.slip + moved - opened * normal
+        } else {
+            shear / law.shear_stiffness
+        },
+        normal_traction: across,
+        shear,
+    };
+    state.walls = law.landed(&landing);
+    state.mismatch = landed.beyond(landing.separation) * normal;
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@
 //! soft against their elements.
 
 mod extrapolation;
+mod march;
 mod record;
 mod walls;
 
@@ -21,10 +22,10 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::interface::Interface;
-use crate::linear::{LinearFailure, Plan, TangentSolver, Unknowns, Workload};
+use crate::linear::{AnyTangent, LinearFailure, Plan, Unknowns, Workload};
 use crate::system::{State, System, norm};
 use extrapolation::Path;
-use walls::Landing;
+use walls::Landed;
 
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 
@@ -37,20 +38,63 @@ const LOOSEST_SOLVE: f64 = 1e-3;
 /// rock, which is all that was prepared, stays.
 pub struct Newton {
     settings: NewtonSettings,
-    linear: Box<dyn TangentSolver>,
+    linear: AnyTangent,
     path: Path,
 }
 
 /// What a step works on.
 struct Trial {
     state: State,
-    landings: Vec<Landing>,
+    landed: Vec<Landed>,
     /// Forces by which the rock resists the unknowns (N).
     rock_forces: Vec<DVec3>,
-    /// Largest of the forces that must balance (N).
-    force_scale: f64,
+    /// What is large in this state.
+    scales: Scales,
+    /// What was large in the state that the step started from.
+    floor: Scales,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
+}
+
+/// What the measures of an iteration are compared with.
+#[derive(Debug, Clone, Copy, Default)]
+struct Scales {
+    /// Largest of the forces that must balance (N).
+    force: f64,
+    /// Largest displacement or opening (m).
+    motion: f64,
+    /// Largest normal traction (Pa).
+    traction: f64,
+}
+
+/// How much of the sizes at the start of a step still counts at its end. A step that takes all load away
+/// leaves rounding of what there was, which is neither zero nor small against zero.
+const REMEMBERED: f64 = 1e-4;
+
+impl Scales {
+    fn of(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Self {
+        let state = &trial.state;
+        let normal = interface(system).points.iter().zip(tractions);
+        let displacements = system.displacements(&state.unknowns, state.load);
+        // A body that does not move may still hold joints closed by its initial stress.
+        let openings = state.facet_points.iter();
+        let opening = openings.map(|point| point.walls.separation.opening.abs());
+        Self {
+            force: system.force_scale(&trial.rock_forces, tractions, state.load),
+            motion: opening.fold(largest(&displacements), f64::max),
+            traction: normal
+                .map(|(point, traction)| traction.dot(point.normal).abs())
+                .fold(0.0, f64::max),
+        }
+    }
+
+    fn at_least(self, floor: Self) -> Self {
+        Self {
+            force: self.force.max(REMEMBERED * floor.force),
+            motion: self.motion.max(REMEMBERED * floor.motion),
+            traction: self.traction.max(REMEMBERED * floor.traction),
+        }
+    }
 }
 
 impl Newton {
@@ -75,14 +119,15 @@ impl Newton {
         plan: Plan,
     ) -> Result<Self, LinearFailure> {
         Ok(Self {
-            linear: plan.prepare(system)?,
+            linear: AnyTangent::new(plan.prepare(system)?),
             path: Path::default(),
             settings,
         })
     }
 
     /// Solves one load step from `state`, calling `observe` after each iteration. `state` is
-    /// replaced if the step converges and kept if not.
+    /// replaced if the step converges and kept if not. A step that the laws make too difficult or too
+    /// coarse is divided, see [`march`].
     pub fn step(
         &mut self,
         system: &System<'_>,
@@ -91,49 +136,57 @@ impl Newton {
         mut observe: impl FnMut(usize, &Iteration),
     ) -> StepRecord {
         let start = Instant::now();
-        let mut trial = self.start(system, state, load);
         let mut record = StepRecord::new(load);
-        while record.iterations.len() < self.settings.max_iterations {
-            match self.iterate(system, &mut trial, &mut record) {
-                Ok(iteration) => {
-                    record.iterations.push(iteration);
-                    observe(record.iterations.len(), &iteration);
-                    if self.is_converged(system, &iteration) {
-                        record.outcome = Outcome::Converged;
-                        self.path.remember(system, state);
-                        *state = trial.state;
-                        break;
-                    }
-                }
-                Err(outcome) => {
-                    record.outcome = outcome;
-                    break;
-                }
-            }
-        }
+        record.outcome = self.march(system, state, load, &mut record, &mut observe);
         record.solve_seconds = start.elapsed().as_secs_f64() - record.factorise_seconds;
         record
     }
 
+    /// Solves from one state to a load without dividing the way.
+    fn attempt(
+        &mut self,
+        system: &System<'_>,
+        state: &State,
+        load: f64,
+        record: &mut StepRecord,
+        observe: &mut dyn FnMut(usize, &Iteration),
+    ) -> Result<State, Outcome> {
+        let mut trial = self.start(system, state, load);
+        for _ in 0..self.settings.max_iterations {
+            let iteration = self.iterate(system, &mut trial, record)?;
+            record.iterations.push(iteration);
+            observe(record.iterations.len(), &iteration);
+            if self.is_converged(system, &iteration) {
+                walls::commit(system, &mut trial.state);
+                return Ok(trial.state);
+            }
+        }
+        Err(Outcome::OutOfIterations)
+    }
+
     /// The first guess for a step.
     fn start(&self, system: &System<'_>, state: &State, load: f64) -> Trial {
-        let mut guess = state.clone();
-        system.adapt(&mut guess);
-        self.path.continue_through(system, &mut guess, load);
-        walls::move_supports(system, &mut guess, load);
-        let rock_forces = system.rock_forces(&guess.unknowns);
-        let tractions = system.law_tractions(&guess);
-        Trial {
-            landings: vec![Landing::default(); guess.facet_points.len()],
-            force_scale: system.force_scale(&rock_forces, &tractions, load),
-            rock_forces,
+        let mut trial = Trial {
+            landed: vec![Landed::default(); state.facet_points.len()],
+            rock_forces: system.rock_forces(&state.unknowns),
+            scales: Scales::default(),
+            floor: Scales::default(),
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
             } else {
                 0.1 * self.settings.force
             },
-            state: guess,
+            state: state.clone(),
+        };
+        trial.floor = Scales::of(system, &trial, &system.law_tractions(state));
+        system.adapt(&mut trial.state);
+        if self.path.continue_through(system, &mut trial.state, load) {
+            trial.rock_forces = system.rock_forces(&trial.state.unknowns);
         }
+        walls::move_supports(system, &mut trial.state, load);
+        let tractions = system.law_tractions(&trial.state);
+        trial.scales = Scales::of(system, &trial, &tractions).at_least(trial.floor);
+        trial
     }
 
     fn is_converged(&self, system: &System<'_>, iteration: &Iteration) -> bool {
@@ -151,7 +204,12 @@ impl Newton {
     ) -> Result<Iteration, Outcome> {
         let tangents = walls::tangents(system, &trial.state);
         let start = Instant::now();
-        let updated = self.linear.update(system, &tangents);
+        let updated = if system.is_smooth() {
+            self.linear.update(system, &tangents)
+        } else {
+            self.linear
+                .update(system, &walls::reined(system, &tangents))
+        };
         updated.map_err(Outcome::Linear)?;
         record.factorise_seconds += start.elapsed().as_secs_f64();
         let tractions = walls::linearised_tractions(system, &trial.state, &tangents);
@@ -177,8 +235,9 @@ impl Newton {
             system,
             self.settings.linearisation,
             &mut trial.state,
-            &mut trial.landings,
+            &mut trial.landed,
             &interface(system).jumps(correction, 0.0),
+            &tangents,
         );
         let mut iteration = assess(system, trial, correction, &errors, record)?;
         iteration.linear_iterations = solution.iterations;
@@ -190,8 +249,8 @@ impl Newton {
     /// linearisation is worth, and for the test of the forces.
     fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
         let size = norm(residual);
-        let wanted = trial.looseness * size.min(trial.force_scale);
-        let enough = 0.1 * self.settings.force * trial.force_scale;
+        let wanted = trial.looseness * size.min(trial.scales.force);
+        let enough = 0.1 * self.settings.force * trial.scales.force;
         if size > 0.0 {
             wanted.max(enough) / size
         } else {
@@ -217,28 +276,20 @@ fn assess(
     if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
         return Err(Outcome::NotFinite(Some(broken)));
     }
-    let normal = interface(system).points.iter().zip(&tractions);
-    let largest_normal = normal
-        .map(|(point, traction)| traction.dot(point.normal).abs())
-        .fold(0.0, f64::max);
     let residual = norm(&system.residual(&trial.rock_forces, &tractions, state.load));
-    trial.force_scale = system.force_scale(&trial.rock_forces, &tractions, state.load);
     let change = system.displacements(correction, 0.0);
-    let displacements = system.displacements(&state.unknowns, state.load);
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     record.worst_facet_point = worst;
-    let separations = || state.facet_points.iter().map(|point| point.separation);
-    // A body that does not move may still hold joints closed by its initial stress.
-    let opening = separations()
-        .map(|separation| separation.opening.abs())
-        .fold(0.0, f64::max);
+    let apertures = state.facet_points.iter();
+    let apertures = apertures.map(|point| point.walls.separation.aperture);
+    let smallest_aperture = apertures.fold(f64::INFINITY, f64::min);
+    let scales = Scales::of(system, trial, &tractions).at_least(trial.floor);
+    trial.scales = scales;
     Ok(Iteration {
-        force_residual: ratio(residual, trial.force_scale),
-        increment: ratio(largest(&change), largest(&displacements).max(opening)),
-        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), largest_normal),
-        smallest_aperture: separations()
-            .map(|separation| separation.aperture)
-            .fold(f64::INFINITY, f64::min),
+        force_residual: ratio(residual, scales.force),
+        increment: ratio(largest(&change), scales.motion),
+        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), scales.traction),
+        smallest_aperture,
         linear_iterations: 0,
     })
 }

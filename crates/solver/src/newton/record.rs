@@ -26,6 +26,9 @@ pub struct NewtonSettings {
     pub closure: f64,
     /// Iterations after which a step has failed.
     pub max_iterations: usize,
+    /// Largest difference, against the largest jump, between a path in one step and in two, where
+    /// the laws depend on the path.
+    pub path: f64,
     /// How linear systems are solved; chosen by predicted cost if not given.
     pub linear: Option<LinearMethod>,
 }
@@ -38,6 +41,7 @@ impl Default for NewtonSettings {
             increment: 1e-5,
             closure: 1e-9,
             max_iterations: 50,
+            path: 1e-3,
             linear: None,
         }
     }
@@ -77,8 +81,10 @@ pub enum Outcome {
 pub struct StepRecord {
     /// Factor on the loads.
     pub load: f64,
-    /// Every iteration, in order.
+    /// Every iteration, in order, of all parts that the step was divided into.
     pub iterations: Vec<Iteration>,
+    /// Iterations of each part that converged.
+    pub parts: Vec<usize>,
     /// How it ended.
     pub outcome: Outcome,
     /// The facet point with the largest closure error at the end.
@@ -94,6 +100,7 @@ impl StepRecord {
         Self {
             load,
             iterations: Vec::new(),
+            parts: Vec::new(),
             outcome: Outcome::OutOfIterations,
             worst_facet_point: None,
             factorise_seconds: 0.0,

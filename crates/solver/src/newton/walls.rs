@@ -1,29 +1,37 @@
 //! The facet points of a step: where each is linearised, and how it follows the linear solves.
 
 use glam::{DMat3, DVec3};
-use lie_core::Separation;
+use lie_core::{FractureLaw, Landing, Separation, Springs, Tangent};
 use rayon::prelude::*;
 
 use super::Linearisation;
 use crate::interface::FacetPoint;
+use crate::linear::Tangents;
 use crate::system::{FacetPointState, State, System};
+
+/// Stiffness that stands for walls in contact, against that of the rock beside them. Their tractions
+/// follow by increments, so it decides how fast they settle and not where.
+const RIGID: f64 = 1e6;
+/// Stiffness against sudden moves of walls that nothing holds, against that of the rock beside them.
+/// It enters the matrix only and no balance.
+const REINS: f64 = 1e-6;
 
 /// Where the last linear solve of a step put a facet point.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Landing {
+pub(super) struct Landed {
     /// Separation of the walls; none before the first solve.
     separation: Option<Separation>,
     /// Normal traction on the tangent plane (Pa).
     traction: f64,
 }
 
-impl Landing {
+impl Landed {
     /// Stiffness of the surrounding rock as two landings tell it, `-dt/dw`; 0 where they tell
     /// nothing.
-    fn spring_to(&self, landed: Separation, traction: f64) -> f64 {
-        let spring = self
-            .separation
-            .map(|before| (self.traction - traction) / landed.beyond(before));
+    fn spring_to(&self, landing: &Landing) -> f64 {
+        let spring = self.separation.map(|before| {
+            (self.traction - landing.normal_traction) / landing.separation.beyond(before)
+        });
         spring.filter(|spring| spring.is_finite()).unwrap_or(0.0)
     }
 }
@@ -34,38 +42,73 @@ pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: f64) {
     state.load = load;
     let points = &system.discretisation.interface.points;
     for (point, state) in points.iter().zip(&mut state.facet_points) {
-        let jump = step * point.prescribed;
-        let opening = jump.dot(point.normal);
-        state.mismatch += opening;
-        state.shear += system.law(point).shear_stiffness * (jump - opening * point.normal);
+        state.mismatch += step * point.prescribed;
     }
 }
 
-/// Slopes of the laws at the apertures of the state (Pa/m).
-pub(super) fn tangents(system: &System<'_>, state: &State) -> Vec<DMat3> {
+/// Makes a converged state the one that the next step starts from.
+pub(super) fn commit(system: &System<'_>, state: &mut State) {
+    let points = &system.discretisation.interface.points;
+    for (point, state) in points.iter().zip(&mut state.facet_points) {
+        let law = system.law(point);
+        law.commit(&mut state.walls, &mut state.memory);
+    }
+}
+
+/// Tangents of the laws at the state (Pa/m).
+pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
     let points = system.discretisation.interface.points.par_iter();
-    points
+    let all: Vec<Tangent> = points
         .zip(&state.facet_points)
-        .map(|(point, state)| {
-            let law = system.law(point);
-            law.at(state.separation, DVec3::ZERO, point.normal).tangent
-        })
-        .collect()
+        .map(|(point, state)| tangent(system.law(point), point, state))
+        .collect();
+    let exact: Vec<DMat3> = all.iter().map(|tangent| tangent.exact).collect();
+    if system.is_smooth() {
+        return exact.into();
+    }
+    let positive: Vec<DMat3> = all.iter().map(|tangent| tangent.positive).collect();
+    Tangents {
+        positive: (positive != exact).then_some(positive),
+        exact,
+    }
+}
+
+/// The tangents with reins on walls that may come loose.
+pub(super) fn reined(system: &System<'_>, tangents: &Tangents) -> Tangents {
+    let points = &system.discretisation.interface.points;
+    let reined = |tangents: &Vec<DMat3>| {
+        let pairs = tangents.iter().zip(points);
+        pairs
+            .map(|(tangent, point)| *tangent + REINS * point.spring * DMat3::IDENTITY)
+            .collect()
+    };
+    Tangents {
+        exact: reined(&tangents.exact),
+        positive: tangents.positive.as_ref().map(reined),
+    }
+}
+
+fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointState) -> Tangent {
+    law.tangent(
+        &state.walls,
+        &state.memory,
+        point.normal,
+        RIGID * point.spring,
+    )
 }
 
 /// Tractions on the tangent planes of the laws (Pa).
 pub(super) fn linearised_tractions(
     system: &System<'_>,
     state: &State,
-    tangents: &[DMat3],
+    tangents: &Tangents,
 ) -> Vec<DVec3> {
     let points = system.discretisation.interface.points.par_iter();
     points
         .zip(&state.facet_points)
-        .zip(tangents)
+        .zip(&tangents.exact)
         .map(|((point, state), tangent)| {
-            let beyond = *tangent * (state.mismatch * point.normal);
-            system.law_traction(point, state) + beyond
+            state.walls.traction(point.normal) + *tangent * state.mismatch
         })
         .collect()
 }
@@ -76,49 +119,81 @@ pub(super) fn follow(
     system: &System<'_>,
     linearisation: Linearisation,
     state: &mut State,
-    landings: &mut [Landing],
+    landed: &mut [Landed],
     changes: &[DVec3],
+    tangents: &Tangents,
 ) -> Vec<f64> {
     let points = system.discretisation.interface.points.par_iter();
     points
         .zip(changes)
-        .zip(state.facet_points.par_iter_mut().zip(landings))
-        .map(|((point, change), (state, landing))| {
-            follow_point(system, linearisation, point, *change, state, landing)
+        .zip(&tangents.exact)
+        .zip(state.facet_points.par_iter_mut().zip(landed))
+        .map(|(((point, change), tangent), (state, landed))| {
+            let landing = land(point, state, *tangent, *change);
+            follow_point(
+                system.law(point),
+                linearisation,
+                point,
+                &landing,
+                state,
+                landed,
+            )
         })
         .collect()
 }
 
+/// Where a change of the jump (m) takes a facet point on the tangent plane of its law.
+fn land(point: &FacetPoint, state: &FacetPointState, tangent: DMat3, change: DVec3) -> Landing {
+    let walls = &state.walls;
+    let beyond = state.mismatch + change;
+    let opening = beyond.dot(point.normal);
+    let traction = walls.traction(point.normal) + tangent * beyond;
+    let across = traction.dot(point.normal);
+    Landing {
+        separation: walls.separation.moved(opening),
+        slip: walls.slip + beyond - opening * point.normal,
+        normal_traction: across,
+        shear: traction - across * point.normal,
+    }
+}
+
 fn follow_point(
-    system: &System<'_>,
+    law: &FractureLaw,
     linearisation: Linearisation,
     point: &FacetPoint,
-    change: DVec3,
+    landing: &Landing,
     state: &mut FacetPointState,
-    landing: &mut Landing,
+    landed: &mut Landed,
 ) -> f64 {
-    let law = system.law(point);
-    let closure = &law.closure;
-    let opening = change.dot(point.normal);
-    state.shear += law.shear_stiffness * (change - opening * point.normal);
-    let here = closure.at(state.separation);
-    let beyond = state.mismatch + opening;
-    let traction = here.traction + here.tangent * beyond;
-    let landed = state.separation.moved(beyond);
-    let spring = landing.spring_to(landed, traction).clamp(0.0, point.spring);
-    *landing = Landing {
-        separation: Some(landed),
-        traction,
+    let secant = landed.spring_to(landing).clamp(0.0, point.spring);
+    *landed = Landed {
+        separation: Some(landing.separation),
+        traction: landing.normal_traction,
     };
-    let balances = linearisation == Linearisation::Balanced;
-    state.separation = if closure.is_linear() || !balances {
-        landed
+    let plain = linearisation == Linearisation::Landed && law.is_smooth();
+    state.walls = if law.is_linear() || plain {
+        law.landed(landing)
     } else {
-        closure.balanced(spring, traction + spring * landed.opening)
+        law.balance(landing, springs(law, point, landing, secant), &state.memory)
     };
-    state.mismatch = landed.beyond(state.separation);
-    let of_law = closure.at(state.separation).traction;
-    (traction - of_law)
-        .abs()
-        .max(point.spring * state.mismatch.abs())
+    let walls = &state.walls;
+    let opening = landing.separation.beyond(walls.separation);
+    state.mismatch = opening * point.normal + landing.slip - walls.slip;
+    let traction = landing.normal_traction * point.normal + landing.shear;
+    (traction - walls.traction(point.normal))
+        .length()
+        .max(point.spring * state.mismatch.length())
+}
+
+/// The secant serves where the law is smooth. Two landings on different sides of a kink tell nothing of
+/// the rock, so there it is the bound.
+fn springs(law: &FractureLaw, point: &FacetPoint, landing: &Landing, secant: f64) -> Springs {
+    let bound = point.springs();
+    let touching = law.closure.normal_stiffness.is_infinite();
+    let parted = landing.normal_traction + bound.normal * law.closure.gap(landing.separation) > 0.0;
+    let kinked = touching || (parted && !law.closure.is_smooth());
+    Springs {
+        normal: if kinked { bound.normal } else { secant },
+        ..bound
+    }
 }

@@ -1,0 +1,93 @@
+//! Any tangent of the fractures, on top of a solver for symmetric positive definite ones.
+
+use glam::DMat3;
+use glam::DVec3;
+
+use super::{LinearFailure, LinearSolution, TangentSolver, Tangents};
+use crate::conjugate_gradients::{ConjugateGradientOutcome, ConjugateGradientSettings};
+use crate::gmres::gmres;
+use crate::system::System;
+
+/// Iterations after which a linear solve has failed.
+const MAX_ITERATIONS: usize = 600;
+/// Residual, as a share of the right-hand side, that an iteration which gains nothing more may leave.
+const ROUNDED: f64 = 1e-3;
+
+/// Solves with the exact tangents: directly where they are symmetric and positive, and by GMRES,
+/// preconditioned by the solver for the positive ones, where they are not.
+pub struct AnyTangent {
+    inner: Box<dyn TangentSolver>,
+    /// Exact stiffness of the fractures, where it differs from what `inner` has.
+    exact: Option<Vec<DMat3>>,
+}
+
+impl AnyTangent {
+    /// On top of a prepared solver.
+    pub fn new(inner: Box<dyn TangentSolver>) -> Self {
+        Self { inner, exact: None }
+    }
+
+    /// Takes over the tangents of the facet points.
+    ///
+    /// # Errors
+    /// If the positive tangent is not definite or memory runs out.
+    pub fn update(
+        &mut self,
+        system: &System<'_>,
+        tangents: &Tangents,
+    ) -> Result<(), LinearFailure> {
+        let interface = &system.discretisation.interface;
+        self.exact = tangents
+            .positive
+            .is_some()
+            .then(|| interface.stiffness(&tangents.exact));
+        let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
+        self.inner.update(system, positive)
+    }
+
+    /// Solves for the forces `right` (N), to `tolerance` times their norm if it iterates.
+    ///
+    /// # Errors
+    /// If the iteration fails.
+    pub fn solve(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
+        let Some(exact) = &self.exact else {
+            return self.inner.solve(system, right, tolerance);
+        };
+        let rows = system.rock_rows();
+        let interface = &system.discretisation.interface;
+        let mut failure = None;
+        let mut unknowns = vec![DVec3::ZERO; right.len()];
+        let inner = &mut self.inner;
+        let report = gmres(
+            |vector, product| {
+                rows.multiply(vector, product);
+                interface.add_product(exact, vector, product);
+            },
+            |residual, correction| match inner.precondition(system, residual) {
+                Ok(approximation) => correction.copy_from_slice(&approximation),
+                Err(error) => failure = Some(error),
+            },
+            right,
+            &mut unknowns,
+            ConjugateGradientSettings {
+                tolerance,
+                max_iterations: MAX_ITERATIONS,
+            },
+        );
+        let last = report.residuals.last().copied().unwrap_or(f64::NAN);
+        match (failure, report.outcome) {
+            (Some(failure), _) => Err(failure),
+            (_, ConjugateGradientOutcome::NotFinite) => Err(LinearFailure::NotFinite),
+            _ if last <= tolerance.max(ROUNDED) => Ok(LinearSolution {
+                unknowns,
+                iterations: report.iterations,
+            }),
+            _ => Err(LinearFailure::Stalled(report.iterations)),
+        }
+    }
+}

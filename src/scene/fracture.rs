@@ -1,0 +1,215 @@
+//! What a scene may say of a fracture.
+
+use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
+use lie_solver::Fracture;
+
+use crate::reader::{Accept, Section};
+
+const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
+
+/// Reads a section on a fracture.
+pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
+    let closure = closure_name(section)?;
+    let contact = closure == "contact";
+    let rubs = section.has("friction_angle");
+    let needed = [
+        (true, "aperture", "1e-4"),
+        (!contact, "normal_stiffness", "1e11"),
+        (!contact && !rubs, "shear_stiffness", "1e10"),
+    ];
+    for (_, key, example) in needed.into_iter().filter(|(needed, ..)| *needed) {
+        section.require(key, example);
+    }
+    let positive = if contact {
+        Accept::NotNegative
+    } else {
+        Accept::Positive
+    };
+    let aperture = section.number("aperture", positive);
+    let normal_stiffness = section.number("normal_stiffness", Accept::NotNegative);
+    let kind = closure_kind(section, closure, aperture);
+    let tension = read_tension(section, normal_stiffness);
+    let friction = read_friction(section);
+    let shear_stiffness = read_shear_stiffness(section, contact);
+    let fluid_pressure = section.number("fluid_pressure", Accept::Finite);
+    if contact {
+        refuse_in_contact(section);
+    }
+    let closure = if contact {
+        Closure::contact(aperture?)
+    } else {
+        Closure {
+            aperture: aperture?,
+            normal_stiffness: normal_stiffness?,
+            kind,
+            tension,
+        }
+    };
+    Some(Fracture {
+        law: FractureLaw {
+            closure,
+            shear_stiffness: shear_stiffness?,
+            friction,
+        },
+        fluid_pressure: fluid_pressure.unwrap_or(0.0),
+    })
+}
+
+/// The name of the closure law, if it is a known one.
+fn closure_name(section: &Section<'_, '_>) -> Option<&'static str> {
+    let Some(name) = section.text("closure") else {
+        return Some("linear");
+    };
+    let found = CLOSURES.into_iter().find(|known| *known == name);
+    if found.is_none() {
+        let known = CLOSURES.join(", ");
+        let remedy = lie_mesh::nearest(name, CLOSURES.into_iter())
+            .map_or(format!("write one of {known}"), |near| {
+                format!("did you mean \"{near}\"? (known: {known})")
+            });
+        section.refuse("closure", format!("unknown closure law \"{name}\""), remedy);
+    }
+    found
+}
+
+fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>) -> ClosureKind {
+    let below = |key: &'static str| {
+        let value = section.number(key, Accept::Positive)?;
+        if let Some(aperture) = aperture.filter(|&aperture| value > aperture) {
+            section.refuse(
+                key,
+                format!("{key} {value} is above the aperture {aperture}"),
+                "it must lie between 0 and the aperture, or be left out",
+            );
+        }
+        Some(value)
+    };
+    let belongs = |key: &'static str, to: &'static str| {
+        if section.has(key) && closure != to {
+            section.refuse(
+                key,
+                format!("a {closure} closure has no {key}"),
+                format!("remove it or write closure = \"{to}\""),
+            );
+        }
+    };
+    belongs("cutoff_aperture", "logarithmic");
+    belongs("max_closure", "hyperbolic");
+    let (cutoff, max_closure) = (below("cutoff_aperture"), below("max_closure"));
+    match closure {
+        "logarithmic" => ClosureKind::Logarithmic { cutoff },
+        "hyperbolic" => ClosureKind::Hyperbolic {
+            max_closure: max_closure.or(aperture).unwrap_or(1.0),
+        },
+        "contact" => ClosureKind::Contact,
+        _ => ClosureKind::Linear,
+    }
+}
+
+fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>) -> Tension {
+    let cut = section.flag("tension_cutoff").unwrap_or(false);
+    let strength = section.number("tensile_strength", Accept::Positive);
+    let energy = section.number("fracture_energy", Accept::Positive);
+    if strength.is_some() != energy.is_some() {
+        let (given, missing) = match strength {
+            Some(_) => ("tensile_strength", "fracture_energy"),
+            None => ("fracture_energy", "tensile_strength"),
+        };
+        section.refuse(
+            given,
+            format!("{given} is given, but not {missing}"),
+            "a cohesive bond needs both: tensile_strength = 1e6 (Pa), fracture_energy = 100 (J/m^2)",
+        );
+    }
+    let (Some(strength), Some(energy)) = (strength, energy) else {
+        return if cut {
+            Tension::CutOff
+        } else {
+            Tension::Elastic
+        };
+    };
+    if cut {
+        section.refuse(
+            "tension_cutoff",
+            "a fracture with tensile strength has no tension_cutoff".into(),
+            "remove one of them: the strength ends the tension by itself",
+        );
+    }
+    let stored = stiffness.map_or(0.0, |stiffness| strength * strength / 2.0 / stiffness);
+    if energy <= stored {
+        section.refuse(
+            "fracture_energy",
+            format!("{energy} J/m^2 is not more than the {stored:.4e} J/m^2 stored at the strength"),
+            "raise fracture_energy or normal_stiffness: above tensile_strength^2 / (2 normal_stiffness)",
+        );
+    }
+    Tension::Cohesive { strength, energy }
+}
+
+fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
+    let angle = section.number("friction_angle", Accept::Within(0.0, 89.0));
+    let cohesion = section.number("cohesion", Accept::NotNegative);
+    let dilation = section.number("dilation_angle", Accept::Within(0.0, 89.0));
+    for key in ["cohesion", "dilation_angle"] {
+        if section.has(key) && !section.has("friction_angle") {
+            section.refuse(
+                key,
+                format!("{key} is given, but no friction_angle"),
+                "add friction_angle = 30 (degrees; 0 for cohesion alone)",
+            );
+        }
+    }
+    let tangent = |degrees: f64| degrees.to_radians().tan();
+    if let (Some(angle), Some(dilation)) = (angle, dilation)
+        && dilation > angle
+    {
+        section.refuse(
+            "dilation_angle",
+            format!("a dilation_angle of {dilation} is above the friction_angle of {angle}"),
+            "sliding would give energy; the dilation angle is at most the friction angle",
+        );
+    }
+    Some(Friction {
+        coefficient: tangent(angle?),
+        cohesion: cohesion.unwrap_or(0.0),
+        dilation: tangent(dilation.unwrap_or(0.0)),
+    })
+}
+
+/// Without one, friction holds the walls rigidly, and walls in contact without friction glide.
+fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64> {
+    let rubs = section.has("friction_angle");
+    let given = section.number("shear_stiffness", Accept::NotNegative);
+    if section.has("shear_stiffness") && rubs && given == Some(0.0) {
+        section.refuse(
+            "shear_stiffness",
+            "without shear stiffness there is nothing for friction to limit".into(),
+            "give a stiffness, or leave it out: then nothing moves before it slides",
+        );
+    }
+    if section.has("shear_stiffness") && contact && !rubs && given != Some(0.0) {
+        section.refuse(
+            "shear_stiffness",
+            "walls in contact without friction glide freely".into(),
+            "remove shear_stiffness, or add friction_angle",
+        );
+    }
+    match (section.has("shear_stiffness"), rubs, contact) {
+        (true, ..) => given,
+        (false, true, _) => Some(f64::INFINITY),
+        (false, false, true) => Some(0.0),
+        (false, false, false) => None,
+    }
+}
+
+fn refuse_in_contact(section: &Section<'_, '_>) {
+    for key in ["normal_stiffness", "tensile_strength"] {
+        if section.has(key) {
+            section.refuse(
+                key,
+                format!("contact has no {key}"),
+                "remove it, or choose another closure",
+            );
+        }
+    }
+}
