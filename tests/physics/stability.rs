@@ -1,7 +1,8 @@
 //! Short forms of the studies of the stability map: what docs/stability.md says must hold.
 
-use crate::studies::{Effort, Finding, Study, contrast, cutoff, cycles, front, increments};
-use crate::studies::{locking, slivers, steps, units};
+use crate::studies::{Effort, Finding, PROMISE, PROMISE_WITH_FRICTION, Study};
+use crate::studies::{contact, contrast, cutoff, cycles, front, hopeless, increments};
+use crate::studies::{locking, opening, sliding, slivers, steps, units};
 
 /// Runs a study; what it promises must hold, and its charts must be drawn.
 fn hold(study: &Study) -> Finding {
@@ -114,4 +115,56 @@ fn units_do_not_matter() {
 #[test]
 fn steps_do_not_matter() {
     hold(&steps::STUDY);
+}
+
+#[test]
+fn contact_needs_no_penalty() {
+    let finding = hold(&contact::STUDY);
+    let penetration = column(&finding, "penetration / displacement");
+    assert!(
+        penetration[0] > 0.1 && penetration[3] < 1e-12,
+        "{penetration:?}"
+    );
+}
+
+/// Of the laws of the map contact alone keeps the whole promise on the iterations.
+#[test]
+fn contact_opens_and_closes() {
+    let finding = (opening::STUDY.run)(Effort::Quick);
+    for head in [
+        "most Newton iterations of a step",
+        "most Newton iterations of a step, floating block",
+    ] {
+        let count = *column(&finding, head).last().expect("a row");
+        assert!(count <= PROMISE as f64, "{head}: {count}");
+    }
+    let error = *column(&finding, "error against the closed form")
+        .last()
+        .expect("a row");
+    assert!(error < 1e-9, "{error:e}");
+}
+
+/// A step of shear is divided into many parts, each of which keeps the promise.
+#[test]
+fn friction_converges_and_keeps_its_limit() {
+    let finding = (sliding::STUDY.run)(Effort::Quick);
+    let counts = column(&finding, "most Newton iterations of a step");
+    assert!(counts.iter().all(|count| count.is_finite()), "{counts:?}");
+    let parts = column(&finding, "most iterations of a part");
+    assert!(
+        parts
+            .iter()
+            .all(|count| *count <= PROMISE_WITH_FRICTION as f64),
+        "{parts:?}"
+    );
+    let beyond = column(&finding, "shear beyond the limit");
+    assert!(beyond.iter().all(|excess| *excess < 1e-9), "{beyond:?}");
+}
+
+#[test]
+fn a_block_pulled_off_its_joint_is_named() {
+    let finding = (hopeless::STUDY.run)(Effort::Quick);
+    let pulled = &finding.table.rows[0];
+    assert_eq!(pulled[1], "1", "{pulled:?}");
+    assert!(pulled[2].contains("`joint`"), "{pulled:?}");
 }

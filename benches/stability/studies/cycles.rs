@@ -16,7 +16,9 @@ pub const STUDY: Study = Study {
 };
 
 /// Load factors of a cycle.
-const CYCLE: [f64; 4] = [0.5, 1.0, 0.5, 0.0];
+const CYCLE: [f64; 4] = [0.0, 0.5, 1.0, 0.5];
+/// The state of the first cycle that each of a cycle must be.
+const SAME: [usize; 4] = [0, 1, 2, 1];
 /// Hysteresis that the map allows laws without friction.
 const NONE: f64 = 1e-10;
 
@@ -38,28 +40,24 @@ fn sizes(solution: &Solution) -> (f64, f64) {
     )
 }
 
-/// Hysteresis of each cycle: against the way up of the first one, and at no load against nothing.
-fn hysteresis(solutions: &[Solution]) -> Vec<f64> {
-    let (jump, traction) = sizes(&solutions[1]);
-    let apart = |a: &Solution, b: Option<&Solution>| {
-        let points = a.facet_points.iter().enumerate();
-        largest(points.map(|(i, point)| {
-            let other = b.map(|b| &b.facet_points[i]);
-            let jumps = point.jump - other.map(|other| other.jump).unwrap_or_default();
-            let tractions = point.traction - other.map(|other| other.traction).unwrap_or_default();
-            (jumps.length() / jump).max(tractions.length() / traction)
+/// Hysteresis of each cycle: its `i`-th state against state `first[i]` of the first cycle, of jumps and
+/// tractions, over the largest of the first cycle.
+pub fn hysteresis(solutions: &[Solution], first: &[usize]) -> Vec<f64> {
+    let sizes = || solutions[..first.len()].iter().map(sizes);
+    let jump = largest(sizes().map(|size| size.0));
+    let traction = largest(sizes().map(|size| size.1));
+    let apart = |a: &Solution, b: &Solution| {
+        let pairs = a.facet_points.iter().zip(&b.facet_points);
+        largest(pairs.map(|(a, b)| {
+            let jumps = a.jump.distance(b.jump) / jump;
+            jumps.max(a.traction.distance(b.traction) / traction)
         }))
     };
     let of_cycle = |cycle: &[Solution]| {
-        let up = [Some(0), Some(1), Some(0), None].map(|i| i.map(|i: usize| &solutions[i]));
-        largest(
-            cycle
-                .iter()
-                .zip(up)
-                .map(|(found, first)| apart(found, first)),
-        )
+        let pairs = cycle.iter().zip(first);
+        largest(pairs.map(|(found, &first)| apart(found, &solutions[first])))
     };
-    solutions.chunks(CYCLE.len()).map(of_cycle).collect()
+    solutions.chunks(first.len()).map(of_cycle).collect()
 }
 
 fn case(name: String, problem: &Problem, cycles: usize) -> Case {
@@ -69,7 +67,7 @@ fn case(name: String, problem: &Problem, cycles: usize) -> Case {
     Case {
         name,
         records,
-        hysteresis: hysteresis(&solutions),
+        hysteresis: hysteresis(&solutions, &SAME),
     }
 }
 

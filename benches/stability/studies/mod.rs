@@ -1,14 +1,19 @@
 //! The studies of the stability map, one file each: a parameter is swept over many decades, beside a
 //! method that breaks.
 //!
-//! A new study is a file here and an entry of [`ALL`]. Contact and friction belong into `contact`.
+//! A new study is a file here, an entry of [`ALL`] and a test in `tests/physics/stability.rs`.
 
+pub mod blocks;
+pub mod contact;
 pub mod contrast;
 pub mod cutoff;
 pub mod cycles;
 pub mod front;
+pub mod hopeless;
 pub mod increments;
 pub mod locking;
+pub mod opening;
+pub mod sliding;
 pub mod slivers;
 pub mod steps;
 pub mod units;
@@ -18,6 +23,8 @@ use lie_solver::StepRecord;
 
 /// Most Newton iterations of a load step without friction: the promise of the map.
 pub const PROMISE: usize = 12;
+/// The same with friction.
+pub const PROMISE_WITH_FRICTION: usize = 25;
 
 /// How much of a study to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,11 +48,15 @@ pub struct Study {
 }
 
 /// All studies, in the order of the map.
-pub const ALL: [Study; 9] = [
+pub const ALL: [Study; 13] = [
     cutoff::STUDY,
     contrast::STUDY,
     front::STUDY,
     increments::STUDY,
+    contact::STUDY,
+    opening::STUDY,
+    sliding::STUDY,
+    hopeless::STUDY,
     cycles::STUDY,
     locking::STUDY,
     slivers::STUDY,
@@ -106,6 +117,12 @@ pub fn most(counts: impl IntoIterator<Item = Option<usize>>) -> Option<usize> {
     counts.try_fold(0, |most, count| Some(most.max(count?)))
 }
 
+/// The step that failed, or took the most iterations.
+pub fn worst_step(records: &[StepRecord]) -> &StepRecord {
+    let rank = |record: &&StepRecord| (!record.converged(), record.iterations.len());
+    records.iter().max_by_key(rank).expect("steps")
+}
+
 /// A count for a chart: failures become crosses.
 pub fn height(count: Option<usize>) -> f64 {
     count.map_or(f64::NAN, |count| count as f64)
@@ -118,8 +135,17 @@ pub fn entry(count: Option<usize>) -> String {
 
 /// Notes a step that did not converge within the promise.
 pub fn hold_promise(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
+    hold(misses, case, record, PROMISE);
+}
+
+/// Notes a step with friction that did not converge within the promise.
+pub fn hold_promise_with_friction(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
+    hold(misses, case, record, PROMISE_WITH_FRICTION);
+}
+
+fn hold(misses: &mut Vec<String>, case: &str, record: &StepRecord, most: usize) {
     match count(record) {
-        Some(count) if count <= PROMISE => {}
+        Some(count) if count <= most => {}
         Some(count) => misses.push(format!("{case}: {count} Newton iterations")),
         None => misses.push(format!("{case}: {:?}", record.outcome)),
     }

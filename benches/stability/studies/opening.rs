@@ -1,0 +1,240 @@
+//! Opening and closing: joints without tension over cycles, and a block that nothing presses.
+
+use glam::DVec3;
+use kluft::chart::{Axis, Chart, Series};
+use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
+use lie_solver::{Discretisation, NewtonSettings, Problem, Solution, StepRecord};
+
+use super::blocks::{fracture, lifted, stack};
+use super::cycles::hysteresis;
+use super::{
+    Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most, worst_step,
+};
+use crate::oracles::closed_aperture;
+use crate::scenes::{self, EXACT, ROCK};
+
+pub const STUDY: Study = Study {
+    name: "opening",
+    title: "Opening and closing",
+    sweep: "20 cycles of opening and closing without tension; a block that floats",
+    run,
+};
+
+/// Load factors of a cycle of opening and closing.
+const CYCLE: [f64; 8] = [0.0, -0.5, -1.0, -0.5, 0.0, 0.5, 1.0, 0.5];
+/// The state of the first cycle that each of a cycle must be.
+const SAME: [usize; 8] = [0, 1, 2, 1, 0, 5, 6, 5];
+/// Hysteresis that the map allows laws without friction.
+const NONE: f64 = 1e-10;
+/// Error against closed forms: that of Newton's method.
+const EXACTLY: f64 = 1e-9;
+/// Movement of the top (m) at load factor 1.
+const LIFT: f64 = 1e-3;
+/// Stiffness and aperture of the joints (Pa/m, m).
+const JOINT: (f64, f64) = (50e9, 1e-4);
+
+fn laws() -> Vec<(&'static str, FractureLaw)> {
+    let cut = |kind| Closure {
+        tension: Tension::CutOff,
+        ..Closure::new(JOINT.1, JOINT.0, kind)
+    };
+    let hyperbolic = ClosureKind::Hyperbolic {
+        max_closure: JOINT.1,
+    };
+    vec![
+        (
+            "linear, no tension",
+            FractureLaw::elastic(cut(ClosureKind::Linear), 20e9),
+        ),
+        (
+            "logarithmic, no tension",
+            FractureLaw::elastic(cut(EXACT), 20e9),
+        ),
+        (
+            "hyperbolic, no tension",
+            FractureLaw::elastic(cut(hyperbolic), 20e9),
+        ),
+        ("contact", FractureLaw::elastic(Closure::contact(0.0), 0.0)),
+    ]
+}
+
+/// Two blocks; the top goes up and down.
+fn pair(law: FractureLaw) -> Problem {
+    let mut problem = stack(2, fracture(law));
+    scenes::support(&mut problem, "top", lifted(LIFT));
+    problem
+}
+
+/// Opening of the joint (m) when the top of the column is at `z`, and its traction (Pa): the joint in
+/// series with 2 m of rock.
+fn closed_form(closure: &Closure, z: f64) -> (f64, f64) {
+    if z >= 0.0 {
+        return (z, 0.0);
+    }
+    let rock = ROCK.young_modulus / 2.0;
+    let (stiffness, b0) = JOINT;
+    let opening = |sigma: f64| match closure.kind {
+        ClosureKind::Linear => sigma / stiffness,
+        ClosureKind::Logarithmic { .. } => b0 * (closed_aperture(-sigma / stiffness / b0) - 1.0),
+        ClosureKind::Hyperbolic { max_closure } => sigma / (stiffness - sigma / max_closure),
+        ClosureKind::Contact => 0.0,
+    };
+    let (mut low, mut high) = (rock * z, 0.0);
+    for _ in 0..200 {
+        let sigma = 0.5 * (low + high);
+        if opening(sigma) + sigma / rock < z {
+            low = sigma;
+        } else {
+            high = sigma;
+        }
+    }
+    let sigma = 0.5 * (low + high);
+    (opening(sigma), sigma)
+}
+
+/// Largest error of opening and traction against the closed form, over the largest of the cycle.
+fn error(closure: &Closure, load: f64, solution: &Solution) -> f64 {
+    let (opening, traction) = closed_form(closure, load * LIFT);
+    let strongest = closed_form(closure, -LIFT).1;
+    largest(solution.facet_points.iter().map(|point| {
+        let apart = (point.opening - opening).abs() / LIFT;
+        apart.max(((point.normal_traction - traction) / strongest).abs())
+    }))
+}
+
+/// One law over all cycles.
+struct Case {
+    name: &'static str,
+    records: Vec<StepRecord>,
+    error: f64,
+    hysteresis: Vec<f64>,
+}
+
+fn case(name: &'static str, law: FractureLaw, cycles: usize) -> Case {
+    let problem = pair(law);
+    let loads = (0..cycles).flat_map(|_| CYCLE);
+    let path = scenes::solve_path(&problem, NewtonSettings::default(), loads.clone());
+    let (records, solutions): (Vec<_>, Vec<_>) = path.into_iter().unzip();
+    let errors = loads.zip(&solutions);
+    Case {
+        name,
+        records,
+        error: largest(errors.map(|(load, found)| error(&law.closure, load, found))),
+        hysteresis: hysteresis(&solutions, &SAME),
+    }
+}
+
+/// Three blocks of which the top one is lifted away from the second, which only its weight holds: the
+/// records, and the error of the weight that the lower joint carries.
+fn floating(law: FractureLaw, cycles: usize) -> (Vec<StepRecord>, f64) {
+    let mut problem = stack(3, fracture(law));
+    scenes::support(&mut problem, "top", lifted(LIFT));
+    problem.rocks[0].density = 2700.0;
+    problem.gravity = DVec3::new(0.0, 0.0, -9.81);
+    let loads: Vec<f64> = (0..cycles).flat_map(|_| [0.5, 1.0, 0.5, 0.1]).collect();
+    let path = scenes::solve_path(&problem, NewtonSettings::default(), loads.iter().copied());
+    let interface = Discretisation::of(&problem).expect("supported").interface;
+    let (mut records, mut errors) = (Vec::new(), Vec::new());
+    for (load, (record, solution)) in loads.into_iter().zip(path) {
+        let points = interface.points.iter().zip(&solution.facet_points);
+        let lower = points.filter(|(point, _)| point.position.z < 1.5);
+        let carried: f64 = lower
+            .map(|(point, found)| point.area * found.normal_traction)
+            .sum();
+        errors.push((carried / (-2700.0 * 9.81 * load) - 1.0).abs());
+        records.push(record);
+    }
+    (records, largest(errors))
+}
+
+fn run(effort: Effort) -> Finding {
+    let cycles = if effort == Effort::Quick { 2 } else { 20 };
+    let mut misses = Vec::new();
+    let mut table = Table::new(&[
+        "law",
+        "cycles",
+        "error against the closed form",
+        "hysteresis",
+        "most Newton iterations of a step",
+        "error of the floating block's weight",
+        "most Newton iterations of a step, floating block",
+    ]);
+    let mut cases = Vec::new();
+    let mut worst_weight = 0.0_f64;
+    for (name, law) in laws() {
+        let case = case(name, law, cycles);
+        let (records, weight) = floating(law, cycles);
+        let steps = [(&case.records, ""), (&records, ", floating block")];
+        for (records, place) in steps {
+            let worst = worst_step(records);
+            let place = format!("{name}{place}, factor {}", worst.load);
+            hold_promise(&mut misses, &place, worst);
+        }
+        let hysteresis = largest(case.hysteresis.iter().copied());
+        for (what, value, bound) in [
+            ("closed form", case.error, EXACTLY),
+            ("hysteresis", hysteresis, NONE),
+            ("weight of the floating block", weight, EXACTLY),
+        ] {
+            if value.is_nan() || value > bound {
+                misses.push(format!("{name}: {what}: {value:.1e}"));
+            }
+        }
+        worst_weight = largest([worst_weight, weight]);
+        table.push([
+            name.to_owned(),
+            cycles.to_string(),
+            format!("{:.2e}", case.error),
+            format!("{hysteresis:.2e}"),
+            entry(most(case.records.iter().map(count))),
+            format!("{weight:.2e}"),
+            entry(most(records.iter().map(count))),
+        ]);
+        cases.push(case);
+    }
+    let newton = entry(most(
+        cases.iter().flat_map(|case| case.records.iter().map(count)),
+    ));
+    let error = largest(cases.iter().map(|case| case.error));
+    let hysteresis = largest(
+        cases
+            .iter()
+            .flat_map(|case| case.hysteresis.iter().copied()),
+    );
+    let series = |case: &Case| {
+        let points = case.records.chunks(CYCLE.len()).enumerate();
+        let of_cycle = |(cycle, records): (usize, &[StepRecord])| {
+            (cycle as f64 + 1.0, height(most(records.iter().map(count))))
+        };
+        Series::line(case.name, points.map(of_cycle).collect())
+    };
+    Finding {
+        breaks: "a law with tension where there is none: the joint would pull the blocks back"
+            .to_owned(),
+        ours: format!(
+            "closed forms to {error:.0e}, hysteresis {hysteresis:.0e}; at most {newton} iterations a step"
+        ),
+        paragraph: format!(
+            "Contact that opens and closes makes methods cycle between two states. Two blocks are pressed together and \
+             pulled apart by 1 mm, {cycles} times, with `tension_cutoff` (linear, logarithmic, hyperbolic) and with \
+             `contact`: openings and tractions follow the closed form (a joint in series with 2 m of rock; none once \
+             open) to {error:.0e}, cycles repeat to {hysteresis:.0e}, steps take at most {newton} iterations. A block \
+             between two joints of which the upper is open floats on the lower by its weight alone, which the joint \
+             carries to {worst_weight:.0e}."
+        ),
+        charts: vec![(
+            "opening",
+            Chart {
+                series: cases.iter().map(series).collect(),
+                failure: "no convergence".into(),
+                ..Chart::new(
+                    "Opening and closing: most iterations of a step",
+                    Axis::linear("cycle"),
+                    Axis::linear("Newton iterations"),
+                )
+            },
+        )],
+        table,
+        misses,
+    }
+}
