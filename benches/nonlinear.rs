@@ -8,7 +8,7 @@ mod block;
 use std::time::Instant;
 
 use lie_core::FractureLaw;
-use lie_solver::{Discretisation, LinearMethod, Newton, NewtonSettings, System};
+use lie_solver::{Discretisation, LinearMethod, Load, Newton, NewtonSettings, System};
 
 /// Seconds that `work` takes, and what it gives.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
@@ -31,7 +31,7 @@ fn run(system: &System<'_>, method: Option<LinearMethod>, steps: usize) -> (usiz
     let mut counts = (0, 0);
     for step in 1..=steps {
         let load = step as f64 / steps as f64;
-        let record = newton.step(system, &mut state, load, |_, _| {});
+        let record = newton.step(system, &mut state, &Load::proportional(load), |_, _| {});
         assert!(record.converged(), "{record:?}");
         counts.0 += record.iterations.len();
         counts.1 += record.linear_iterations();
@@ -52,7 +52,7 @@ fn sweep(system: &mut System<'_>, method: Option<LinearMethod>, count: usize) ->
             law.closure.normal_stiffness *= factor;
         }
         system.set_laws(stiffened);
-        let record = newton.step(system, &mut state, 1.0, |_, _| {});
+        let record = newton.step(system, &mut state, &Load::proportional(1.0), |_, _| {});
         assert!(record.converged(), "{record:?}");
         counts.0 += record.iterations.len();
         counts.1 += record.linear_iterations();

@@ -13,7 +13,8 @@ use std::time::Instant;
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use lie_solver::{
-    Discretisation, LinearMethod, Newton, NewtonSettings, Pattern, Plan, System, Unknowns, Workload,
+    Discretisation, LinearMethod, Load, Newton, NewtonSettings, Pattern, Plan, System, Unknowns,
+    Workload,
 };
 use rayon::prelude::*;
 
@@ -48,7 +49,14 @@ fn stages(criterion: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::new("one load step", cubes), |bencher| {
             let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
-            bencher.iter(|| newton.step(&system, &mut system.initial_state(), 1.0, |_, _| {}));
+            bencher.iter(|| {
+                newton.step(
+                    &system,
+                    &mut system.initial_state(),
+                    &Load::proportional(1.0),
+                    |_, _| {},
+                )
+            });
         });
     }
     group.finish();

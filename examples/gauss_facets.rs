@@ -50,8 +50,8 @@ fn solve(problem: &Problem, system: &System<'_>) -> Result<Solution, Box<dyn Err
     let mut newton =
         Newton::new(system, NewtonSettings::default()).map_err(|failure| format!("{failure:?}"))?;
     let mut state = system.initial_state();
-    for &load in &problem.steps {
-        let record = newton.step(system, &mut state, load, |_, _| ());
+    for step in &problem.schedule.steps {
+        let record = newton.step(system, &mut state, &step.load, |_, _| ());
         if !record.converged() {
             return Err("no convergence".into());
         }

@@ -2,7 +2,8 @@
 
 use lie_mesh::Defect;
 use lie_solver::{
-    LinearFailure, LinearMethod, Outcome, Plan, Prediction, Problem, StepRecord, Support, System,
+    LinearFailure, LinearMethod, Outcome, Plan, Prediction, Problem, Schedule, Step, StepRecord,
+    Support, System,
 };
 
 use crate::scene::SolverEntry;
@@ -57,7 +58,7 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
     if nothing_acts(problem) {
         lines.push("nothing acts: no load, no pressure, no prescribed displacement".into());
     }
-    if problem.steps.len() > 1 {
+    if problem.schedule.steps.len() > 1 {
         let why = "no law has friction: the end state does not depend on the load steps";
         lines.push(why.into());
     }
@@ -173,13 +174,31 @@ pub fn warnings(fractures: &[(String, FractureSummary)]) -> Vec<String> {
         .collect()
 }
 
+/// A load step in words: its phase, its time and its factors, as far as the user gave them.
+pub fn of_step(schedule: &Schedule, step: &Step) -> String {
+    let phase = step.phase.iter().map(|phase| format!("phase {phase}"));
+    let time = schedule
+        .is_timed
+        .then(|| format!("time {}", step.load.time));
+    let factors = match step.load.single_factor() {
+        Some(factor) => format!("load {factor}"),
+        None => {
+            let factors: Vec<String> = step.load.factors.iter().map(f64::to_string).collect();
+            format!("loads {}", factors.join(" "))
+        }
+    };
+    let parts: Vec<String> = phase.chain(time).chain([factors]).collect();
+    parts.join(", ")
+}
+
 /// Why a load step did not converge, and where.
 pub fn not_converged(
     problem: &Problem,
     system: &System<'_>,
-    step: usize,
+    number: usize,
     record: &StepRecord,
 ) -> String {
+    let step = of_step(&problem.schedule, &problem.schedule.steps[number - 1]);
     let count = record.iterations.len();
     let at = |point: Option<usize>| {
         point.map_or(String::new(), |point| {
@@ -199,7 +218,7 @@ pub fn not_converged(
         ),
         Outcome::Linear(failure) => linear_failure(problem, system, failure),
     };
-    format!("step {step} (load {}): {why}", record.load)
+    format!("step {number} ({step}): {why}")
 }
 
 fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {

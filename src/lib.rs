@@ -18,8 +18,8 @@ use std::time::{Duration, Instant};
 use lie_io::load_msh;
 use lie_mesh::{Draft, Faces, Mesh};
 use lie_solver::{
-    Discretisation, Newton, NewtonSettings, Plan, Problem, State, StepRecord, System, Workload,
-    solution,
+    Discretisation, Load, Newton, NewtonSettings, Plan, Problem, State, StepRecord, System,
+    Workload, solution,
 };
 
 pub use inspect::{InspectOptions, inspect};
@@ -27,10 +27,10 @@ pub use lie_network::{Domain, Grouping};
 pub use network::{NetworkOptions, make_network};
 pub use report::{Failure, Verbosity, print_failure};
 pub use scene::{
-    Binding, BoundaryEntry, FixedPointEntry, MeshSource, Named, Scene, SolverEntry, bind,
-    surface_roles,
+    Binding, BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, History, MeshSource, Named,
+    Scene, SolverEntry, StepEnd, Timetable, bind, surface_roles,
 };
-pub use summary::{FractureSummary, Spread, Summary};
+pub use summary::{FractureSummary, Spread, StepSummary, Summary};
 
 use output::Output;
 use report::Report;
@@ -158,12 +158,14 @@ fn solve(
     output.remove_former().map_err(|defect| vec![defect])?;
     let mut newton = set_up(&system, plan, report, summary)?;
     let mut state = system.initial_state();
-    for (number, &load) in problem.steps.iter().enumerate() {
-        report.step(number + 1, problem.steps.len(), load);
-        let record = solve_step(&system, &mut newton, &mut state, load, report);
+    let schedule = &problem.schedule;
+    for (number, step) in schedule.steps.iter().enumerate() {
+        let what = decisions::of_step(schedule, step);
+        report.step(number + 1, schedule.steps.len(), &what);
+        let record = solve_step(&system, &mut newton, &mut state, &step.load, report);
         summary.seconds.factorise += record.factorise_seconds;
         summary.seconds.solve += record.solve_seconds;
-        summary.steps.push((&record).into());
+        summary.steps.push(StepSummary::of(step, &record));
         if !record.converged() {
             let why = decisions::not_converged(problem, &system, number + 1, &record);
             return Err(Failure::NotConverged(why));
@@ -266,7 +268,7 @@ fn write_step(
         let solution = solution(system, state);
         let interface = &system.discretisation.interface;
         summary.fractures = summary::fractures(system.problem, interface, &solution);
-        output.write_step(system, &solution)
+        output.write_step(system, &solution, state.load.time)
     });
     summary.seconds.write += took.as_secs_f64();
     Ok(written.map_err(|defect| vec![defect])?)
@@ -276,7 +278,7 @@ fn solve_step(
     system: &System<'_>,
     newton: &mut Newton,
     state: &mut State,
-    load: f64,
+    load: &Load,
     report: &mut Report,
 ) -> StepRecord {
     let (record, _) = report.stage("factorising and solving", |report| {

@@ -69,11 +69,16 @@ impl Output {
         })
     }
 
-    /// Writes one load step; ParaView's time is its number.
+    /// Writes one load step with its time for ParaView.
     ///
     /// # Errors
     /// If a file cannot be written.
-    pub fn write_step(&mut self, system: &System<'_>, solution: &Solution) -> Result<(), Defect> {
+    pub fn write_step(
+        &mut self,
+        system: &System<'_>,
+        solution: &Solution,
+        time: f64,
+    ) -> Result<(), Defect> {
         let number = self.rock.len() + 1;
         let (rock, fractures) = (
             format!("rock_{number:04}.vtu"),
@@ -81,8 +86,8 @@ impl Output {
         );
         write_vtu(&self.path(&rock), &rock_grid(system, solution))?;
         write_vtu(&self.path(&fractures), &fracture_grid(system, solution))?;
-        self.rock.push((number as f64, rock));
-        self.fractures.push((number as f64, fractures));
+        self.rock.push((time, rock));
+        self.fractures.push((time, fractures));
         write_pvd(&self.path("rock.pvd"), &self.rock)?;
         write_pvd(&self.path("fractures.pvd"), &self.fractures)
     }

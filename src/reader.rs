@@ -289,9 +289,24 @@ impl<'a, 'i> Section<'a, 'i> {
 
     /// Points in brackets.
     pub(crate) fn vectors(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
+        let example = "points in brackets, e.g. [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+        self.tuples(key, ("points", example))
+    }
+
+    /// Pairs of a time and a factor in brackets.
+    pub(crate) fn time_factors(&self, key: &'static str) -> Option<Vec<[f64; 2]>> {
+        let example = "[time, factor] in brackets, e.g. [[0, 0], [1, 1]]";
+        self.tuples(key, ("times with factors", example))
+    }
+
+    /// Lists of as many numbers, in brackets; what they are called, and an example.
+    fn tuples<const N: usize>(
+        &self,
+        key: &'static str,
+        (what, wanted): (&str, &str),
+    ) -> Option<Vec<[f64; N]>> {
         let value = self.get(key)?;
-        let wanted = "points in brackets, e.g. [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
-        let point = |entry: &Spanned<DeValue<'i>>| -> Option<[f64; 3]> {
+        let point = |entry: &Spanned<DeValue<'i>>| -> Option<[f64; N]> {
             let numbers = entry.get_ref().as_array()?.iter();
             let numbers = numbers.map(|number| self.as_number(key, number, Accept::Finite));
             numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
@@ -303,7 +318,7 @@ impl<'a, 'i> Section<'a, 'i> {
         if !matches!(points, Some(Some(_))) {
             self.refuse(
                 key,
-                format!("`{key}` in {} is no list of points", self.title),
+                format!("`{key}` in {} is no list of {what}", self.title),
                 format!("write {wanted}"),
             );
         }
@@ -351,23 +366,33 @@ impl<'a, 'i> Section<'a, 'i> {
         children
     }
 
+    /// Head of a section `[[key]]`.
+    fn listed_title(&self, key: &str) -> String {
+        let within = self.title.trim_start_matches('[').trim_end_matches(']');
+        match within {
+            "" => format!("[[{key}]]"),
+            within => format!("[[{within}.{key}]]"),
+        }
+    }
+
     /// All sections `[[key]]`.
     pub(crate) fn listed_sections(&self, key: &'static str) -> Vec<Section<'a, 'i>> {
         let Some(value) = self.get(key) else {
             return Vec::new();
         };
+        let head = self.listed_title(key);
         let Some(array) = value.get_ref().as_array() else {
-            self.wrong_type(key, value, &format!("[[{key}]] in double brackets"));
+            self.wrong_type(key, value, &format!("{head} in double brackets"));
             return Vec::new();
         };
         let mut sections = Vec::new();
         for (number, entry) in array.iter().enumerate() {
             match entry.get_ref().as_table() {
                 Some(table) => {
-                    let title = format!("[[{key}]] number {}", number + 1);
+                    let title = format!("{head} number {}", number + 1);
                     sections.push(Section::new(self.source, table, title, entry.span()));
                 }
-                None => self.wrong_type(key, entry, &format!("[[{key}]] in double brackets")),
+                None => self.wrong_type(key, entry, &format!("{head} in double brackets")),
             }
         }
         sections

@@ -120,8 +120,8 @@ impl Report {
     }
 
     /// Prints the head of an iteration table.
-    pub fn step(&self, number: usize, count: usize, load: f64) {
-        self.line(&format!("\nstep {number} of {count}, load {load}"));
+    pub fn step(&self, number: usize, count: usize, what: &str) {
+        self.line(&format!("\nstep {number} of {count}, {what}"));
         self.line(
             "  iteration  force balance      increment  closure error  smallest aperture [m]",
         );

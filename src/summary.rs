@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lie_io::write_atomically;
 use lie_mesh::Defect;
-use lie_solver::{FacetState, Interface, Problem, Solution, StepRecord};
+use lie_solver::{FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::Serialize;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
@@ -66,8 +66,14 @@ pub struct UnknownSummary {
 /// Numbers of one load step.
 #[derive(Debug, Clone, Serialize)]
 pub struct StepSummary {
-    /// Factor on the loads.
-    pub load: f64,
+    /// Factor on the loads, if there is one load case only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
+    /// Time at its end; the number of the step if the scene has no times.
+    pub time: f64,
+    /// Its phase, if the scene names phases.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
     /// Newton iterations, each with one linear solve.
     pub newton_iterations: usize,
     /// Iterations of an iterative linear solver; 0 with a direct one.
@@ -82,12 +88,15 @@ pub struct StepSummary {
     pub converged: bool,
 }
 
-impl From<&StepRecord> for StepSummary {
-    fn from(record: &StepRecord) -> Self {
+impl StepSummary {
+    /// Sums up the record of a step.
+    pub fn of(step: &Step, record: &StepRecord) -> Self {
         let last = record.iterations.last();
         let measure = |of: fn(&lie_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
         Self {
-            load: record.load,
+            load: step.load.single_factor(),
+            time: step.load.time,
+            phase: step.phase.clone(),
             newton_iterations: record.iterations.len(),
             linear_iterations: record.linear_iterations(),
             force_residual: measure(|last| last.force_residual),

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Draft, Mesh, SurfaceRole};
-use lie_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
+use lie_solver::{Condition, Fracture, Problem, Schedule, Support, SurfaceLoad};
 
 /// A fracture on faces of the cubes: whether a point is on it.
 pub type Plane = fn([f64; 3]) -> bool;
@@ -78,7 +78,7 @@ pub fn problem(cubes: usize, planes: &[Plane]) -> Problem {
         fixed_points: Vec::new(),
         gravity: DVec3::ZERO,
         initial_stress: None,
-        steps: vec![1.0],
+        schedule: Schedule::proportional(vec![1.0]),
         facet_quadrature: FacetQuadrature::Nodal,
         mesh,
     }

@@ -13,8 +13,10 @@ pub fn judge(problem: &Problem, survey: &Survey, inspection: &mut Inspection) {
     let outside = compression(problem);
     for (index, fracture) in problem.fractures.iter().enumerate() {
         let closure = &fracture.law.closure;
-        let factor = largest_factor(problem);
-        let suction = factor.map_or(0.0, |f| (-f * fracture.fluid_pressure).max(0.0));
+        let factor = problem
+            .schedule
+            .largest_factor(problem.schedule.cases.of_fracture(index));
+        let suction = (-factor * fracture.fluid_pressure).max(0.0);
         let expected = outside.map(|outside| outside + suction);
         let (law, limit) = meeting(closure);
         let overlap = match (limit, expected) {
@@ -70,18 +72,20 @@ fn meeting(closure: &Closure) -> (&'static str, Option<f64>) {
 /// fractures: the sum of the largest of each. None if displacements are prescribed. Corners, tips
 /// and fractures can concentrate it further.
 fn compression(problem: &Problem) -> Option<f64> {
-    let factor = largest_factor(problem)?;
-    if factor != 0.0 && prescribes_displacement(problem) {
+    let schedule = &problem.schedule;
+    if prescribes_displacement(problem) {
         return None;
     }
-    let surface = problem.conditions.iter().map(|condition| {
-        let steps = problem.steps.iter();
-        let of_steps = steps.map(|&factor| pressed(problem, condition, factor));
+    let conditions = problem.conditions.iter().enumerate();
+    let surface = conditions.map(|(index, condition)| {
+        let case = schedule.cases.of_condition(index);
+        let factors = schedule.steps.iter().map(|step| step.load.factor(case));
+        let of_steps = factors.map(|factor| pressed(problem, condition, factor));
         of_steps.fold(0.0, f64::max)
     });
     let (low, high) = problem.mesh.bounds();
     let density = problem.rocks.iter().map(|rock| rock.density);
-    let gravity = factor * problem.gravity.abs();
+    let gravity = schedule.largest_factor(schedule.cases.gravity) * problem.gravity.abs();
     let weight = density.fold(0.0, f64::max) * gravity.dot(high - low);
     let initial = problem.initial_stress.map_or(0.0, |stress| {
         let ends = [low, high].map(|at| -smallest_principal(&stress.at(at)));
@@ -90,22 +94,24 @@ fn compression(problem: &Problem) -> Option<f64> {
     Some(surface.fold(0.0, f64::max) + weight + initial)
 }
 
-fn largest_factor(problem: &Problem) -> Option<f64> {
-    let sizes = problem.steps.iter().map(|factor| factor.abs());
-    sizes.max_by(f64::total_cmp)
-}
-
 fn prescribes_displacement(problem: &Problem) -> bool {
-    let moves = |components: &[Option<f64>; 3]| components.iter().flatten().any(|d| *d != 0.0);
-    let conditions = problem.conditions.iter();
-    let of_conditions = conditions.filter_map(|condition| match condition.support {
-        Some(Support::Displacement(components)) => Some(components),
+    let schedule = &problem.schedule;
+    let moves = |(case, components): (usize, [Option<f64>; 3])| {
+        schedule.largest_factor(case) != 0.0 && components.iter().flatten().any(|d| *d != 0.0)
+    };
+    let conditions = problem.conditions.iter().enumerate();
+    let of_conditions = conditions.filter_map(|(index, condition)| match condition.support {
+        Some(Support::Displacement(components)) => {
+            Some((schedule.cases.of_condition(index), components))
+        }
         _ => None,
     });
-    let fixed = problem.fixed_points.iter().map(|point| point.displacement);
-    of_conditions
-        .chain(fixed)
-        .any(|components| moves(&components))
+    let fixed = problem.fixed_points.iter().enumerate();
+    let fixed = fixed.map(|(index, point)| {
+        let case = schedule.cases.of_fixed_point(index);
+        (case, point.displacement)
+    });
+    of_conditions.chain(fixed).any(moves)
 }
 
 /// Largest compression (Pa) beside a loaded face: for a traction with normal part `s` and

@@ -169,7 +169,7 @@ fn read_description(
     wish: &Wish,
     defects: &mut Vec<Defect>,
 ) -> Option<Input> {
-    check_conditions(source, root);
+    let clock = check_conditions(source, root);
     let domain = read_domain(root, wish.domain);
     let sizes = read_sizes(root, wish);
     let seed = read_seed(root).unwrap_or(0);
@@ -177,7 +177,7 @@ fn read_description(
     let mut sets = Vec::new();
     let mut given = Vec::new();
     for (name, section) in root.named_sections("fracture_set") {
-        let read = read_set(source, section, name, folder, seed, domain);
+        let read = read_set((source, clock), section, name, folder, seed, domain);
         match read {
             Ok(Some((set, mut fractures))) => {
                 sets.push(set);

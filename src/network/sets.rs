@@ -10,7 +10,7 @@ use lie_network::{
 use super::input::{one_of, read_orientation, read_seed, read_sides, read_text};
 use super::scene::{Passage, passage};
 use crate::reader::{Accept, Section, Source};
-use crate::scene::read_fracture;
+use crate::scene::{Clock, read_fracture};
 
 /// Keys of a set that are not its material.
 const OWN: [&str; 9] = [
@@ -49,7 +49,7 @@ type SetAndFractures = Option<(Set, Vec<Given>)>;
 
 /// Reads a set and draws its fractures; defects of the list it names are the error.
 pub(super) fn read_set(
-    source: &Source<'_>,
+    (source, clock): (&Source<'_>, Clock),
     section: Section<'_, '_>,
     name: String,
     folder: &Path,
@@ -59,7 +59,7 @@ pub(super) fn read_set(
     if let Err((problem, remedy)) = check_name(&name) {
         source.report(&section.at, problem, remedy);
     }
-    read_fracture(&section);
+    read_fracture(&section, clock);
     let list = section.text("list").map(|list| folder.join(list));
     let is_random = ["p32", "count", "orientation", "size"]
         .into_iter()

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use lie_core::{FacetQuadrature, Rock};
 use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole, nearest};
-use lie_solver::{Condition, FixedPoint, Fracture, Problem};
+use lie_solver::{Condition, FixedPoint, Problem};
 
-use super::{Named, Scene};
+use super::cases::{Bound, schedule};
+use super::{FixedPointEntry, FractureEntry, Named, Scene};
 
 /// Name under which a section serves all groups without one of their own.
 const DEFAULT: &str = "default";
@@ -132,7 +133,7 @@ pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let mut decisions = Vec::new();
     let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
     let fractures = bind_fractures(scene, &mesh, &mut decisions);
-    if scene.gravity != DVec3::ZERO {
+    if scene.body.gravity != DVec3::ZERO {
         defects.extend(missing_densities(scene));
     }
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
@@ -141,22 +142,34 @@ pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     }
     let conditions = scene.boundaries.iter().filter_map(|entry| {
         let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
-        Some(Condition {
+        let condition = Condition {
             boundary,
             load: entry.value.load,
             support: entry.value.support,
-        })
+        };
+        Some((entry, condition))
     });
+    let (boundaries, conditions) = conditions.unzip();
+    let (fixed_entries, fixed_points) = fixed_points.into_iter().unzip();
+    let bound = Bound {
+        boundaries,
+        fixed_points: fixed_entries,
+        fractures,
+    };
     Ok(Binding {
         problem: Problem {
-            conditions: conditions.collect(),
+            conditions,
             rocks: scene.rocks.iter().map(|entry| entry.value).collect(),
             rock_of_cell,
-            fractures,
+            schedule: schedule(scene, &bound, &mut decisions),
+            fractures: bound
+                .fractures
+                .iter()
+                .map(|entry| entry.value.fracture)
+                .collect(),
             fixed_points,
-            gravity: scene.gravity,
+            gravity: scene.body.gravity,
             initial_stress: scene.initial_stress,
-            steps: scene.steps.clone(),
             facet_quadrature: FacetQuadrature::Nodal,
             mesh,
         },
@@ -219,23 +232,28 @@ fn rock_defect(
     }
 }
 
-fn bind_fractures(scene: &Scene, mesh: &Mesh, decisions: &mut Vec<String>) -> Vec<Fracture> {
+/// The entry of each fracture.
+fn bind_fractures<'a>(
+    scene: &'a Scene,
+    mesh: &Mesh,
+    decisions: &mut Vec<String>,
+) -> Vec<&'a Named<FractureEntry>> {
     let by_name = |name: &str| scene.fractures.iter().find(|entry| entry.name == name);
     let mut by_default = Vec::new();
-    let laws = mesh.fractures.iter().filter_map(|name| {
+    let entries = mesh.fractures.iter().filter_map(|name| {
         by_name(name).or_else(|| {
             by_default.push(name.as_str());
             by_name(DEFAULT)
         })
     });
-    let laws = laws.map(|entry| entry.value).collect();
+    let entries = entries.collect();
     if !by_default.is_empty() {
         decisions.push(format!(
             "[fracture.default] serves {}",
             by_default.join(", ")
         ));
     }
-    laws
+    entries
 }
 
 fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
@@ -252,12 +270,12 @@ fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
     })
 }
 
-fn bind_fixed_points(
-    scene: &Scene,
+fn bind_fixed_points<'a>(
+    scene: &'a Scene,
     mesh: &Mesh,
     decisions: &mut Vec<String>,
     defects: &mut Vec<Defect>,
-) -> Vec<FixedPoint> {
+) -> Vec<(&'a Named<FixedPointEntry>, FixedPoint)> {
     let mut bound = Vec::new();
     for entry in &scene.fixed_points {
         let at = entry.value.at;
@@ -281,11 +299,12 @@ fn bind_fixed_points(
                 entry.name, at.x, at.y, at.z, x.x, x.y, x.z
             ));
         }
-        bound.push(FixedPoint {
+        let point = FixedPoint {
             node: node as u32,
             displacement: entry.value.displacement,
             name: entry.name.clone(),
-        });
+        };
+        bound.push((entry, point));
     }
     bound
 }

@@ -3,12 +3,14 @@
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
 use lie_solver::Fracture;
 
+use super::FractureEntry;
+use super::load::{Clock, Scaled, read_history};
 use crate::reader::{Accept, Section};
 
 const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
 
 /// Reads a section on a fracture.
-pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
+pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
     let closure = closure_name(section)?;
     let contact = closure == "contact";
     let rubs = section.has("friction_angle");
@@ -32,6 +34,11 @@ pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
     let friction = read_friction(section);
     let shear_stiffness = read_shear_stiffness(section, contact);
     let fluid_pressure = section.number("fluid_pressure", Accept::Finite);
+    let scaled = Scaled {
+        is_there: section.has("fluid_pressure"),
+        what: "a fluid_pressure",
+    };
+    let history = read_history(section, clock, scaled);
     if contact {
         refuse_in_contact(section);
     }
@@ -45,14 +52,15 @@ pub(crate) fn read_fracture(section: &Section<'_, '_>) -> Option<Fracture> {
             tension,
         }
     };
-    Some(Fracture {
+    let fracture = Fracture {
         law: FractureLaw {
             closure,
             shear_stiffness: shear_stiffness?,
             friction,
         },
         fluid_pressure: fluid_pressure.unwrap_or(0.0),
-    })
+    };
+    Some(FractureEntry { fracture, history })
 }
 
 /// The name of the closure law, if it is a known one.

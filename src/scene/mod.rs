@@ -1,19 +1,27 @@
 //! The scene file: what a user may say, before it meets a mesh.
 
 mod bind;
+mod cases;
+mod conditions;
 mod fracture;
+mod history;
+mod load;
 
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
 use lie_core::Rock;
 use lie_mesh::Defect;
-use lie_solver::{Fracture, InitialStress, LinearMethod, Profile, Support, SurfaceLoad};
+use lie_solver::{InitialStress, LinearMethod, Profile};
 
 pub use bind::{Binding, bind, surface_roles};
+pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
 pub(crate) use fracture::read_fracture;
+pub use history::{History, StepEnd, Timetable};
+pub(crate) use load::Clock;
 
 use crate::reader::{Accept, Section, Source};
+use conditions::{read_body, read_boundary, read_fixed_point};
+use load::read_timetable;
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -42,24 +50,6 @@ pub enum MeshSource {
     File(PathBuf),
 }
 
-/// What acts on a part of the outer surface.
-#[derive(Debug, Clone, Copy)]
-pub struct BoundaryEntry {
-    /// Its load.
-    pub load: Option<SurfaceLoad>,
-    /// Its support.
-    pub support: Option<Support>,
-}
-
-/// A node held by itself.
-#[derive(Debug, Clone, Copy)]
-pub struct FixedPointEntry {
-    /// Where the node is (m).
-    pub at: DVec3,
-    /// Prescribed components (m).
-    pub displacement: [Option<f64>; 3],
-}
-
 /// What is asked of the linear solver.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SolverEntry {
@@ -79,17 +69,17 @@ pub struct Scene {
     /// Rocks by physical volume.
     pub rocks: Vec<Named<Rock>>,
     /// Fractures by physical surface.
-    pub fractures: Vec<Named<Fracture>>,
+    pub fractures: Vec<Named<FractureEntry>>,
     /// Conditions by physical surface.
     pub boundaries: Vec<Named<BoundaryEntry>>,
     /// Nodes held by themselves.
     pub fixed_points: Vec<Named<FixedPointEntry>>,
-    /// Acceleration of gravity (m/s^2).
-    pub gravity: DVec3,
+    /// What acts in all of the rock.
+    pub body: BodyEntry,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,
-    /// Load factors.
-    pub steps: Vec<f64>,
+    /// Load steps.
+    pub timetable: Timetable,
     /// What is asked of the linear solver.
     pub solver: SolverEntry,
 }
@@ -137,26 +127,33 @@ impl Scene {
 }
 
 /// Finds the defects of everything in a scene that speaks of neither mesh nor fractures; another
-/// file may hold those sections for a scene to be made from it.
-pub(crate) fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) {
+/// file may hold those sections for a scene to be made from it. Returns whether its load steps have
+/// times.
+pub(crate) fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Clock {
+    let (_, clock) = read_timetable(root);
     root.text("title");
     for (name, section) in root.named_sections("rock") {
         entry(source, name, section, read_rock);
     }
     for (name, section) in root.named_sections("boundary") {
-        entry(source, name, section, read_boundary);
+        entry(source, name, section, |section| {
+            read_boundary(section, clock)
+        });
     }
     for section in root.listed_sections("fixed_point") {
-        entry(source, String::new(), section, read_fixed_point);
+        entry(source, String::new(), section, |section| {
+            read_fixed_point(section, clock)
+        });
     }
-    read_gravity(root);
+    read_body(root, clock);
     root.section("initial_stress").map(read_initial_stress);
-    read_steps(root);
     read_solver(root);
+    clock
 }
 
 fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Option<Scene> {
     let named = |key: &'static str| root.named_sections(key).into_iter();
+    let (timetable, clock) = read_timetable(root);
     let title = root.text("title").unwrap_or("untitled").to_owned();
     root.require_section("mesh", "[mesh]");
     let mesh = root
@@ -165,23 +162,24 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     root.require_section("rock", "[rock.default]");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
-    let fractures = named("fracture").filter_map(|(name, s)| entry(source, name, s, read_fracture));
+    let fractures = named("fracture")
+        .filter_map(|(name, s)| entry(source, name, s, |s| read_fracture(s, clock)));
     let fractures = fractures.collect();
-    let boundaries =
-        named("boundary").filter_map(|(name, s)| entry(source, name, s, read_boundary));
+    let boundaries = named("boundary")
+        .filter_map(|(name, s)| entry(source, name, s, |s| read_boundary(s, clock)));
     let boundaries = boundaries.collect();
     let fixed_points = root
         .listed_sections("fixed_point")
         .into_iter()
         .filter_map(|section| {
             let name = section.title.clone();
-            entry(source, name, section, read_fixed_point)
+            entry(source, name, section, |s| read_fixed_point(s, clock))
         })
         .collect();
     Some(Scene {
-        gravity: read_gravity(root),
+        body: read_body(root, clock),
         initial_stress: root.section("initial_stress").map(read_initial_stress),
-        steps: read_steps(root),
+        timetable,
         solver: read_solver(root),
         title,
         rocks,
@@ -277,83 +275,6 @@ fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
     })
 }
 
-fn read_boundary(section: &Section<'_, '_>) -> Option<BoundaryEntry> {
-    let traction = section.vector("traction");
-    let pressure = section.number("pressure", Accept::Finite);
-    let symmetry = section.flag("symmetry");
-    let displacement = section.section("displacement").map(read_components);
-    let load = match (traction, pressure) {
-        (Some(traction), None) => Some(SurfaceLoad::Traction(traction.into())),
-        (None, Some(pressure)) => Some(SurfaceLoad::Pressure(pressure)),
-        (Some(_), Some(_)) => {
-            let remedy = "keep one; a pressure p is the traction -p along the outward normal";
-            section.refuse(
-                "pressure",
-                "both traction and pressure are given".into(),
-                remedy,
-            );
-            None
-        }
-        (None, None) => None,
-    };
-    let support = match (symmetry, displacement) {
-        (Some(true), None) => Some(Support::Symmetry),
-        (Some(true), Some(_)) => {
-            let remedy = "keep one; symmetry already holds the normal direction";
-            section.refuse(
-                "symmetry",
-                "both symmetry and displacement are given".into(),
-                remedy,
-            );
-            None
-        }
-        (_, components) => components.map(Support::Displacement),
-    };
-    let names = ["traction", "pressure", "symmetry", "displacement"];
-    if !names.into_iter().any(|name| section.has(name)) {
-        section.refuse(
-            "traction",
-            format!("{} says nothing", section.title),
-            "add traction, pressure, displacement or symmetry, or remove the section",
-        );
-    }
-    Some(BoundaryEntry { load, support })
-}
-
-fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
-    let components = ["x", "y", "z"].map(|axis| section.number(axis, Accept::Finite));
-    if !["x", "y", "z"].into_iter().any(|axis| section.has(axis)) {
-        section.refuse(
-            "x",
-            format!("{} names no component", section.title),
-            "name at least one: { x = 0.0, y = 0.0, z = 0.0 }",
-        );
-    }
-    section.finish();
-    components
-}
-
-fn read_fixed_point(section: &Section<'_, '_>) -> Option<FixedPointEntry> {
-    section.require("at", "[0.0, 0.0, 0.0]");
-    section.require("displacement", "{ x = 0.0 }");
-    let at = section.vector("at");
-    let displacement = section.section("displacement").map(read_components);
-    Some(FixedPointEntry {
-        at: at?.into(),
-        displacement: displacement?,
-    })
-}
-
-fn read_gravity(root: &Section<'_, '_>) -> DVec3 {
-    let Some(section) = root.section("body") else {
-        return DVec3::ZERO;
-    };
-    section.require("gravity", "[0, 0, -9.81]");
-    let gravity = section.vector("gravity");
-    section.finish();
-    gravity.unwrap_or_default().into()
-}
-
 fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {
     let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| read_profile(&section, name));
     section.finish();
@@ -379,23 +300,6 @@ fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Profile {
     };
     profile.finish();
     read
-}
-
-fn read_steps(root: &Section<'_, '_>) -> Vec<f64> {
-    let Some(section) = root.section("load") else {
-        return vec![1.0];
-    };
-    section.require("steps", "[0.5, 1.0]");
-    let steps = section.numbers("steps", Accept::Finite);
-    if steps.as_ref().is_some_and(Vec::is_empty) {
-        section.refuse(
-            "steps",
-            "there are no load steps".into(),
-            "write steps = [1.0]",
-        );
-    }
-    section.finish();
-    steps.unwrap_or_else(|| vec![1.0])
 }
 
 fn read_solver(root: &Section<'_, '_>) -> SolverEntry {

@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3};
 use lie_core::ClosureKind;
 use lie_mesh::structured::Patch;
 use lie_solver::{
-    Condition, Discretisation, InitialStress, Newton, NewtonSettings, Problem, Profile, Support,
-    SurfaceLoad, System, solution,
+    Condition, Discretisation, InitialStress, Load, Newton, NewtonSettings, Problem, Profile,
+    Support, SurfaceLoad, System, solution,
 };
 
 use crate::closing::column;
@@ -282,7 +282,7 @@ fn load_steps_end_where_one_step_does() {
         for load in steps {
             assert!(
                 newton
-                    .step(&system, &mut state, load, |_, _| {})
+                    .step(&system, &mut state, &Load::proportional(load), |_, _| {})
                     .converged()
             );
         }

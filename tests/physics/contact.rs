@@ -4,7 +4,7 @@ use glam::DVec3;
 use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
 use lie_mesh::structured::Patch;
 use lie_solver::{
-    Discretisation, Fracture, Newton, NewtonSettings, Problem, Solution, StepRecord, Support,
+    Discretisation, Fracture, Load, Newton, NewtonSettings, Problem, Solution, StepRecord, Support,
     System, solution,
 };
 
@@ -27,7 +27,7 @@ fn walk(problem: &Problem, loads: &[f64]) -> Vec<(StepRecord, Solution)> {
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
     let mut state = system.initial_state();
     let steps = loads.iter().map(|&load| {
-        let record = newton.step(&system, &mut state, load, |_, _| {});
+        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
         (record, solution(&system, &state))
     });
     steps.collect()
@@ -118,7 +118,7 @@ fn stack_with_floating_block() {
             for (record, solution) in walk(&problem, &[0.5, 1.0, -1.0, 0.0]) {
                 println!(
                     "{name} {}: {:?} {:?} {:?}",
-                    record.load,
+                    record.load.time,
                     record.outcome,
                     record.parts,
                     record.iterations.len()

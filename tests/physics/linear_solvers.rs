@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lie_mesh::structured::Patch;
 use lie_solver::{
-    Discretisation, LinearMethod, Newton, NewtonSettings, Problem, Solution, Support, System,
+    Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, Solution, Support, System,
     solution,
 };
 
@@ -26,7 +26,7 @@ fn solve(problem: &Problem, method: LinearMethod, steps: usize) -> (Solution, us
     let mut iterations = 0;
     for step in 1..=steps {
         let load = step as f64 / steps as f64;
-        let record = newton.step(&system, &mut state, load, |_, _| {});
+        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
         assert!(record.converged(), "{method}: {record:?}");
         iterations += record.iterations.len();
     }
@@ -121,12 +121,12 @@ fn one_set_up_serves_other_laws() {
             }
             system.set_laws(stiffer.fractures.iter().map(|f| f.law).collect());
             let mut state = system.initial_state();
-            let record = newton.step(&system, &mut state, 1.0, |_, _| {});
+            let record = newton.step(&system, &mut state, &Load::proportional(1.0), |_, _| {});
             assert!(record.converged(), "{method}, {factor}: {record:?}");
             let (alone, _) = solve(&stiffer, method, 1);
             let error = difference(&alone, &solution(&system, &state));
             assert!(error < 1e-6, "{method}, {factor}: {error:e}");
-            let record = newton.step(&system, &mut former, 1.0, |_, _| {});
+            let record = newton.step(&system, &mut former, &Load::proportional(1.0), |_, _| {});
             assert!(record.converged(), "{method}, {factor}: {record:?}");
             let error = difference(&alone, &solution(&system, &former));
             assert!(error < 1e-6, "{method}, {factor}, continued: {error:e}");
@@ -149,7 +149,12 @@ fn iterations_are_bounded_for_stiff_and_soft_fractures() {
         let system = System::assemble(&problem, discretisation);
         let iterative = settings(LinearMethod::Iterative);
         let mut newton = Newton::new(&system, iterative).expect("prepared");
-        let record = newton.step(&system, &mut system.initial_state(), 1.0, |_, _| {});
+        let record = newton.step(
+            &system,
+            &mut system.initial_state(),
+            &Load::proportional(1.0),
+            |_, _| {},
+        );
         assert!(record.converged(), "{factor}: {record:?}");
         counts.push(record.linear_iterations());
     }

@@ -9,7 +9,7 @@ use glam::DVec3;
 use lie_core::{kernel, rule};
 use lie_mesh::Shape;
 use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{Discretisation, Newton, NewtonSettings, Problem, Support, System};
+use lie_solver::{Discretisation, Load, Newton, NewtonSettings, Problem, Support, System};
 
 use crate::scenes::{self, ROCK, joint};
 
@@ -82,12 +82,16 @@ fn error(shape: Shape, cubes: usize) -> f64 {
         }
     }
     let supports = &system.discretisation.supports;
-    system.loads.applied = (0..forces.len())
+    system.loads.cases[0].applied = (0..forces.len())
         .map(|i| supports.project(i, forces[i]))
         .collect();
     let mut state = system.initial_state();
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
-    assert!(newton.step(&system, &mut state, 1.0, |_, _| {}).converged());
+    assert!(
+        newton
+            .step(&system, &mut state, &Load::proportional(1.0), |_, _| {})
+            .converged()
+    );
     let fine = match shape.corner_count() {
         4 => Shape::Tet10,
         5 => Shape::Pyramid14,

@@ -8,8 +8,8 @@ use lie_io::{Meshing, load_msh, mesh_geometry};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Draft, Faces, Mesh, SurfaceRole, TaggedElements};
 use lie_solver::{
-    Condition, Discretisation, FixedPoint, Fracture, Newton, NewtonSettings, Problem, Solution,
-    State, StepRecord, Support, SurfaceLoad, System, solution,
+    Condition, Discretisation, FixedPoint, Fracture, Load, Newton, NewtonSettings, Problem,
+    Schedule, Solution, State, StepRecord, Support, SurfaceLoad, System, solution,
 };
 
 /// Rock of the benchmarks: E = 25 GPa, nu = 0.25.
@@ -77,7 +77,7 @@ pub fn problem(mesh: Mesh, fracture: Fracture) -> Problem {
         fixed_points: Vec::new(),
         gravity: DVec3::ZERO,
         initial_stress: None,
-        steps: vec![1.0],
+        schedule: Schedule::proportional(vec![1.0]),
         facet_quadrature: FacetQuadrature::Nodal,
     }
 }
@@ -115,7 +115,7 @@ pub fn try_solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, So
     let system = System::assemble(problem, discretisation);
     let mut newton = Newton::new(&system, settings).expect("analysis");
     let mut state = system.initial_state();
-    let record = newton.step(&system, &mut state, 1.0, |_, _| {});
+    let record = newton.step(&system, &mut state, &Load::proportional(1.0), |_, _| {});
     let solution = solution(&system, &state);
     (record, solution, state)
 }

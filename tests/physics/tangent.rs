@@ -3,7 +3,9 @@
 use glam::DVec3;
 use lie_core::ClosureKind;
 use lie_mesh::structured::Patch;
-use lie_solver::{Analysis, Cholesky, Discretisation, NodeOrder, Problem, Support, System, norm};
+use lie_solver::{
+    Analysis, Cholesky, Discretisation, Load, NodeOrder, Problem, Support, System, norm,
+};
 
 use crate::scenes::{self, EXACT, joint};
 
@@ -42,9 +44,13 @@ fn noise(count: usize, mut seed: u64) -> Vec<DVec3> {
 }
 
 fn residual(system: &System<'_>, unknowns: &[DVec3]) -> Vec<DVec3> {
-    let responses = system.responses(unknowns, 1.0);
+    let responses = system.responses(unknowns, &Load::proportional(1.0));
     let tractions: Vec<DVec3> = responses.iter().map(|response| response.traction).collect();
-    system.residual(&system.rock_forces(unknowns), &tractions, 1.0)
+    system.residual(
+        &system.rock_forces(unknowns),
+        &tractions,
+        &Load::proportional(1.0),
+    )
 }
 
 #[test]
@@ -67,7 +73,7 @@ fn tangent_is_the_derivative_of_the_residual() {
             residual(&system, &moved(-1.0)),
         );
         let tangents: Vec<_> = system
-            .responses(&unknowns, 1.0)
+            .responses(&unknowns, &Load::proportional(1.0))
             .iter()
             .map(|response| response.tangent)
             .collect();

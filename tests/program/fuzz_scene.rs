@@ -4,12 +4,14 @@
 use std::panic::catch_unwind;
 use std::path::Path;
 
-use kluft::Scene;
+use kluft::{Scene, Timetable};
 
 use crate::harness::root;
 
 /// A scene with every key.
 const EVERY_KEY: &str = include_str!("every_key.toml");
+/// A scene with phases and histories, which exclude load factors.
+const TIMED: &str = include_str!("timed.toml");
 
 const WORDS: [&str; 40] = [
     "nan",
@@ -82,7 +84,7 @@ fn seeds() -> Vec<String> {
     let texts = scenes
         .iter()
         .map(|scene| std::fs::read_to_string(scene).expect("a scene"));
-    texts.chain([EVERY_KEY.to_owned()]).collect()
+    texts.chain([EVERY_KEY, TIMED].map(str::to_owned)).collect()
 }
 
 fn flip_bytes(text: &str, random: &mut Random) -> String {
@@ -185,8 +187,12 @@ fn parse(text: &str) -> Result<Scene, Vec<lie_mesh::Defect>> {
 fn judge(text: &str) -> bool {
     match parse(text) {
         Ok(scene) => {
-            assert!(scene.gravity.is_finite() && scene.steps.iter().all(|step| step.is_finite()));
-            assert!(!scene.steps.is_empty());
+            assert!(scene.body.gravity.is_finite());
+            let steps: Vec<f64> = match scene.timetable {
+                Timetable::Factors(factors) => factors,
+                Timetable::Times { ends, .. } => ends.iter().map(|end| end.time).collect(),
+            };
+            assert!(!steps.is_empty() && steps.iter().all(|step| step.is_finite()));
             true
         }
         Err(defects) => {

@@ -4,6 +4,7 @@ mod bad_input;
 mod fuzz_scene;
 mod harness;
 mod inspect;
+mod load_paths;
 mod network;
 mod network_seeds;
 mod read_back;

@@ -64,7 +64,7 @@ impl Hold {
         let z = if range > 0.0 {
             opening / range
         } else {
-            opening.signum().max(0.0)
+            f64::from(u8::from(opening > 0.0))
         };
         if z <= 0.0 {
             return Self::WHOLE;

@@ -14,7 +14,7 @@ use lie_mesh::{Mesh, SurfaceRole};
 use lie_solver::multigrid::{Multigrid, rigid_modes};
 use lie_solver::{
     Analysis, Cholesky, Condition, ConjugateGradientSettings, Discretisation, NodeOrder, Problem,
-    Support, System, conjugate_gradients,
+    Schedule, Support, System, conjugate_gradients,
 };
 
 /// Unknowns from which on the factor takes more than 16 GB; it is made only if asked for.
@@ -65,7 +65,7 @@ fn problem(cubes: usize) -> Problem {
         fixed_points: Vec::new(),
         gravity: DVec3::ZERO,
         initial_stress: None,
-        steps: vec![1.0],
+        schedule: Schedule::proportional(vec![1.0]),
         facet_quadrature: FacetQuadrature::Nodal,
         mesh,
     }

@@ -98,11 +98,11 @@ fn of_cells(
     forces
 }
 
-/// Forces (N) by which the rock resists the prescribed displacements alone: `f = K g`.
-pub(crate) fn prescribed(frame: Frame<'_>) -> Vec<DVec3> {
+/// Forces (N) by which the rock resists the prescribed displacements of a load case alone: `f = K g`.
+pub(crate) fn prescribed(frame: Frame<'_>, case: usize) -> Vec<DVec3> {
     let (problem, points) = (frame.problem, frame.points);
     let cells = &problem.mesh.cells;
-    let is_moved = |point: u32| frame.supports.prescribed(point as usize) != DVec3::ZERO;
+    let is_moved = |point: u32| frame.supports.prescribed(point as usize, case) != DVec3::ZERO;
     // Few cells have prescribed displacements: those along a part of the surface.
     let moved: Vec<usize> = (0..cells.len())
         .into_par_iter()
@@ -117,7 +117,7 @@ pub(crate) fn prescribed(frame: Frame<'_>) -> Vec<DVec3> {
         .par_iter()
         .map_init(
             || [DMat3::ZERO; MAX_NODES * MAX_NODES],
-            |matrix, &cell| prescribed_cell(frame, cell, matrix),
+            |matrix, &cell| prescribed_cell(frame, case, cell, matrix),
         )
         .collect();
     let mut sums = vec![DVec3::ZERO; points.len()];
@@ -130,7 +130,12 @@ pub(crate) fn prescribed(frame: Frame<'_>) -> Vec<DVec3> {
     sums
 }
 
-fn prescribed_cell(frame: Frame<'_>, cell: usize, matrix: &mut [DMat3]) -> [DVec3; MAX_NODES] {
+fn prescribed_cell(
+    frame: Frame<'_>,
+    case: usize,
+    cell: usize,
+    matrix: &mut [DMat3],
+) -> [DVec3; MAX_NODES] {
     let cells = &frame.problem.mesh.cells;
     let mut positions = [DVec3::ZERO; MAX_NODES];
     let positions = frame.positions(cell, &mut positions);
@@ -143,7 +148,7 @@ fn prescribed_cell(frame: Frame<'_>, cell: usize, matrix: &mut [DMat3]) -> [DVec
     for (force, row) in forces.iter_mut().zip(matrix.chunks(count)) {
         let held = points
             .iter()
-            .map(|&b| frame.supports.prescribed(b as usize));
+            .map(|&b| frame.supports.prescribed(b as usize, case));
         *force = row.iter().zip(held).map(|(block, u)| *block * u).sum();
     }
     forces

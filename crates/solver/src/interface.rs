@@ -1,7 +1,8 @@
 //! The fractures as the solver sees them: facet points, each with a jump and a law.
 //!
-//! The jump of a facet point is `w = sum_i J_i y_i + w_g`, over the unknowns `y_i` of its nodes, with
-//! `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))` and `w_g` from prescribed displacements.
+//! The jump of a facet point is `w = sum_i J_i y_i + sum_c f_c w_c`, over the unknowns `y_i` of its nodes,
+//! with `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))`, and over the load cases `c` with their
+//! factors `f_c` and the jumps `w_c` of their prescribed displacements.
 //! Facets are integrated at their nodes, so with few exceptions (see `lie_core::facet_points`) a
 //! facet point couples the unknowns of one node only. Without supports the coefficient of a
 //! continuous displacement is zero and left out: the fractures act on the jumps alone.
@@ -15,6 +16,7 @@ use rayon::prelude::*;
 use crate::pattern::Lists;
 use crate::points::Points;
 use crate::problem::Problem;
+use crate::schedule::Load;
 use crate::supports::Supports;
 
 /// One point of one facet.
@@ -33,8 +35,6 @@ pub struct FacetPoint {
     /// Upper bound of the stiffness of the rock next to it, about `E/h` (Pa/m): constrained modulus
     /// over the height of the cells on both sides, in series.
     pub spring: f64,
-    /// Jump of the prescribed displacements at load factor 1 (m), `w_g`.
-    pub prescribed: DVec3,
     /// The walls carrying the initial stress. The law always sees the jump beyond that.
     pub initial: Walls,
 }
@@ -65,6 +65,15 @@ struct Term {
     factor: DMat3,
 }
 
+/// What the prescribed displacements of a load case do to a facet point.
+#[derive(Debug, Clone, Copy)]
+struct PrescribedJump {
+    point: u32,
+    case: u32,
+    /// Jump at load factor 1 (m), `w_c`.
+    jump: DVec3,
+}
+
 /// All facet points and how the unknowns move them.
 #[derive(Debug, Clone)]
 pub struct Interface {
@@ -76,6 +85,8 @@ pub struct Interface {
     terms: Vec<Term>,
     /// Facet point of each term.
     point_of_term: Vec<u32>,
+    /// Jumps of prescribed displacements, where there are any, points ascending.
+    prescribed: Vec<PrescribedJump>,
     /// Unknowns that move facet points, ascending.
     pub unknowns: Vec<u32>,
     /// Terms of each of `unknowns`.
@@ -97,14 +108,23 @@ impl Interface {
             term_offset: vec![0],
             terms: Vec::new(),
             point_of_term: Vec::new(),
+            prescribed: Vec::new(),
             unknowns: Vec::new(),
             terms_of_unknown: Lists::default(),
             columns: Lists::default(),
         };
         for drawn in nodal.into_iter().chain(middle).flatten() {
+            let number = interface.points.len() as u32;
             interface
                 .point_of_term
-                .extend(drawn.terms.iter().map(|_| interface.points.len() as u32));
+                .extend(drawn.terms.iter().map(|_| number));
+            let prescribed = drawn.prescribed.into_iter();
+            let prescribed = prescribed.map(|(case, jump)| PrescribedJump {
+                point: number,
+                case,
+                jump,
+            });
+            interface.prescribed.extend(prescribed);
             interface.points.push(drawn.point);
             interface.terms.extend(drawn.terms);
             interface.term_offset.push(interface.terms.len());
@@ -152,16 +172,29 @@ impl Interface {
         self.terms_of(self.point_of_term[term as usize] as usize)
     }
 
-    /// Jumps `u(plus) - u(minus)` (m) at load factor `factor`.
-    pub fn jumps(&self, unknowns: &[DVec3], factor: f64) -> Vec<DVec3> {
-        (0..self.points.len())
+    /// Jumps `u(plus) - u(minus)` (m) under a load.
+    pub fn jumps(&self, unknowns: &[DVec3], load: &Load) -> Vec<DVec3> {
+        let mut jumps: Vec<DVec3> = (0..self.points.len())
             .into_par_iter()
             .map(|point| {
                 let terms = self.terms_of(point).iter();
-                let moved: DVec3 = terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum();
-                moved + factor * self.points[point].prescribed
+                terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum()
             })
-            .collect()
+            .collect();
+        for entry in &self.prescribed {
+            jumps[entry.point as usize] += load.factor(entry.case as usize) * entry.jump;
+        }
+        jumps
+    }
+
+    /// By how much the prescribed displacements change the jumps from one load to another (m).
+    pub(crate) fn prescribed_change(&self, from: &Load, to: &Load) -> Vec<DVec3> {
+        let mut changes = vec![DVec3::ZERO; self.points.len()];
+        for entry in &self.prescribed {
+            let case = entry.case as usize;
+            changes[entry.point as usize] += (to.factor(case) - from.factor(case)) * entry.jump;
+        }
+        changes
     }
 
     /// Adds `sign` times the forces (N) by which `tractions` (Pa) resist to the forces on all
@@ -230,6 +263,8 @@ impl Interface {
 struct Drawn {
     point: FacetPoint,
     terms: Vec<Term>,
+    /// Load case and jump (m) of prescribed displacements.
+    prescribed: Vec<(u32, DVec3)>,
 }
 
 /// The points of one facet: those at its nodes, and the others.
@@ -276,11 +311,13 @@ fn draw_point(
         &facets.minus_slots[slots],
     );
     let mut terms = Vec::new();
-    let mut prescribed = DVec3::ZERO;
+    let mut prescribed = vec![DVec3::ZERO; problem.schedule.case_count()];
     for &(local, value) in &rule.nodes {
         let (plus, minus) = (wall(plus, local), wall(minus, local));
-        let held = |point: u32| supports.prescribed(point as usize);
-        prescribed += value * (held(plus) - held(minus));
+        for (case, jump) in prescribed.iter_mut().enumerate() {
+            let held = |point: u32| supports.prescribed(point as usize, case);
+            *jump += value * (held(plus) - held(minus));
+        }
         terms.extend(jump_terms(points, supports, plus, minus, value));
     }
     let fracture = facets.fracture[facet];
@@ -293,10 +330,16 @@ fn draw_point(
         area: rule.area.length(),
         normal,
         spring,
-        prescribed,
         initial: initial_walls(problem, law, rule.position, normal),
     };
-    Drawn { point, terms }
+    let prescribed = (0..).zip(prescribed);
+    Drawn {
+        point,
+        terms,
+        prescribed: prescribed
+            .filter(|(_, jump)| *jump != DVec3::ZERO)
+            .collect(),
+    }
 }
 
 /// `J_i` for all unknowns of one node that have one.

@@ -21,6 +21,7 @@ mod pattern;
 mod points;
 mod problem;
 mod rigid_modes;
+mod schedule;
 mod solution;
 mod supports;
 mod system;
@@ -35,7 +36,7 @@ pub use linear::{
     LinearSolution, NodeOrder, Plan, Prediction, TangentSolver, Tangents, Unknowns, Whole,
     Workload,
 };
-pub use loads::Loads;
+pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;
 pub use newton::{Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
 pub use pattern::{Lists, Pattern};
@@ -43,6 +44,7 @@ pub use points::Points;
 pub use problem::{
     Condition, FixedPoint, Fracture, InitialStress, Problem, Profile, Support, SurfaceLoad,
 };
+pub use schedule::{Cases, Load, Schedule, Step};
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use supports::{Hold, Supports};
 pub use system::{Discretisation, FacetPointState, State, System, norm};

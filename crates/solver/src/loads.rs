@@ -9,37 +9,63 @@ use crate::cell_forces;
 use crate::interface::Interface;
 use crate::problem::SurfaceLoad;
 
+/// Forces of one load case on all unknowns at load factor 1 (N).
+#[derive(Debug, Clone)]
+pub struct CaseLoads {
+    /// Surface loads, gravity and fluid pressure.
+    pub applied: Vec<DVec3>,
+    /// What the prescribed displacements ask of the rock.
+    pub prescribed: Vec<DVec3>,
+}
+
 /// Forces on all unknowns (N).
 #[derive(Debug, Clone)]
 pub struct Loads {
-    /// Surface loads, gravity and fluid pressure at load factor 1.
-    pub applied: Vec<DVec3>,
-    /// What the prescribed displacements ask of the rock at load factor 1.
-    pub prescribed: Vec<DVec3>,
+    /// Those of each load case.
+    pub cases: Vec<CaseLoads>,
     /// What the initial stress of the rock does; never scaled.
     pub initial: Vec<DVec3>,
 }
 
 impl Loads {
     pub(crate) fn of(frame: Frame<'_>, interface: &Interface) -> Self {
-        let mut on_points = cell_forces::gravity(frame);
-        add_surface_loads(frame, &mut on_points);
-        let mut applied = on_unknowns(frame, &on_points);
-        // The fluid pushes the walls apart: it resists closing like a traction of -p n.
-        let push = interface.points.iter().map(|point| {
-            frame.problem.fractures[point.fracture as usize].fluid_pressure * point.normal
-        });
-        interface.add_forces(&push.collect::<Vec<_>>(), 1.0, &mut applied);
-        let negative = |forces: Vec<DVec3>| -> Vec<DVec3> {
-            let forces: Vec<DVec3> = forces.into_iter().map(|force| -force).collect();
-            on_unknowns(frame, &forces)
+        let of_case = |case| CaseLoads {
+            applied: applied(frame, interface, case),
+            prescribed: negative(frame, cell_forces::prescribed(frame, case)),
         };
+        let cases = 0..frame.problem.schedule.case_count();
         Self {
-            applied,
-            prescribed: negative(cell_forces::prescribed(frame)),
-            initial: negative(cell_forces::initial_stress(frame)),
+            cases: cases.map(of_case).collect(),
+            initial: negative(frame, cell_forces::initial_stress(frame)),
         }
     }
+}
+
+/// Surface loads, gravity and fluid pressure of a load case.
+fn applied(frame: Frame<'_>, interface: &Interface, case: usize) -> Vec<DVec3> {
+    let cases = &frame.problem.schedule.cases;
+    let mut on_points = match cases.gravity == case {
+        true => cell_forces::gravity(frame),
+        false => vec![DVec3::ZERO; frame.points.len()],
+    };
+    add_surface_loads(frame, case, &mut on_points);
+    let mut applied = on_unknowns(frame, &on_points);
+    // The fluid pushes the walls apart: it resists closing like a traction of -p n.
+    let push = interface.points.iter().map(|point| {
+        let fracture = point.fracture as usize;
+        match cases.of_fracture(fracture) == case {
+            true => frame.problem.fractures[fracture].fluid_pressure * point.normal,
+            false => DVec3::ZERO,
+        }
+    });
+    interface.add_forces(&push.collect::<Vec<_>>(), 1.0, &mut applied);
+    applied
+}
+
+/// Forces on the unknowns that balance `forces` on the points.
+fn negative(frame: Frame<'_>, forces: Vec<DVec3>) -> Vec<DVec3> {
+    let forces: Vec<DVec3> = forces.into_iter().map(|force| -force).collect();
+    on_unknowns(frame, &forces)
 }
 
 /// Forces on the unknowns from forces on the points: `T^T P f`.
@@ -55,9 +81,11 @@ fn on_unknowns(frame: Frame<'_>, forces: &[DVec3]) -> Vec<DVec3> {
         .collect()
 }
 
-fn add_surface_loads(frame: Frame<'_>, forces: &mut [DVec3]) {
+fn add_surface_loads(frame: Frame<'_>, case: usize, forces: &mut [DVec3]) {
     let mesh = &frame.problem.mesh;
-    for condition in &frame.problem.conditions {
+    let cases = &frame.problem.schedule.cases;
+    let conditions = frame.problem.conditions.iter().enumerate();
+    for (_, condition) in conditions.filter(|(index, _)| cases.of_condition(*index) == case) {
         let Some(load) = condition.load else {
             continue;
         };

@@ -4,6 +4,8 @@ use glam::{DMat3, DVec3};
 use lie_core::{FacetQuadrature, FractureLaw, Rock};
 use lie_mesh::Mesh;
 
+use crate::schedule::Schedule;
+
 /// A fracture's law and what fills it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fracture {
@@ -105,9 +107,8 @@ pub struct Problem {
     pub gravity: DVec3,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,
-    /// Factors on all loads (surface loads, gravity, fluid pressure) and prescribed displacements,
-    /// one a load step. The initial stress is a state and not a load: it is never scaled.
-    pub steps: Vec<f64>,
+    /// Load cases and load steps.
+    pub schedule: Schedule,
     /// How fractures are integrated over their facets.
     pub facet_quadrature: FacetQuadrature,
 }

@@ -53,14 +53,14 @@ pub struct Solution {
 
 /// Derives the fields of a state.
 pub fn solution(system: &System<'_>, state: &State) -> Solution {
-    let displacements = system.displacements(&state.unknowns, state.load);
+    let displacements = system.displacements(&state.unknowns, &state.load);
     let cell_count = system.problem.mesh.cells.len();
     let stresses = (0..cell_count)
         .into_par_iter()
         .map(|cell| cell_stress(system, &displacements, cell))
         .collect();
     let interface = &system.discretisation.interface;
-    let jumps = interface.jumps(&state.unknowns, state.load);
+    let jumps = interface.jumps(&state.unknowns, &state.load);
     let facet_points = (0..jumps.len())
         .into_par_iter()
         .map(|i| {

@@ -1,7 +1,8 @@
 //! Which points are held, in which directions, and where.
 //!
 //! A held point moves as `u = g + P v`: `P` projects on the directions left free and `g` is the
-//! prescribed displacement along the others. Every sector of a node has its own `P`, so two blocks
+//! prescribed displacement along the others, `g = sum_c f_c g_c` over the load cases `c` with their
+//! factors `f_c`. Every sector of a node has its own `P`, so two blocks
 //! that meet at an edge can be held differently, and a face that a fracture cuts is held on both
 //! sides.
 
@@ -12,6 +13,7 @@ use lie_mesh::{Defect, Mesh, facet_area_vector};
 
 use crate::points::Points;
 use crate::problem::{Problem, Support};
+use crate::schedule::Load;
 
 /// Directions closer than this to the span of others (sine of the angle) count as dependent.
 const DEPENDENT: f64 = 1e-4;
@@ -21,12 +23,12 @@ const SMOOTH_COSINE: f64 = 0.866;
 const CONTRADICTION: f64 = 1e-9;
 
 /// How a held point may move.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Hold {
     /// Projector on the free directions, `P`.
     pub free: DMat3,
-    /// Prescribed displacement at load factor 1, `g` (m).
-    pub prescribed: DVec3,
+    /// Prescribed displacement at load factor 1, `g_c` (m), of each load case that prescribes any but 0.
+    pub prescribed: Vec<(usize, DVec3)>,
 }
 
 /// The holds of all points.
@@ -41,7 +43,9 @@ pub struct Supports {
 /// One prescribed direction of a point, and who prescribes it.
 struct Demand<'a> {
     direction: DVec3,
+    /// Displacement along it (m) at load factor 1 of its case.
     value: f64,
+    case: usize,
     source: &'a str,
 }
 
@@ -56,10 +60,12 @@ impl Supports {
     pub fn of(problem: &Problem, points: &Points) -> Result<Self, Vec<Defect>> {
         let mesh = &problem.mesh;
         let mut demands: BTreeMap<u32, Vec<Demand<'_>>> = BTreeMap::new();
-        for condition in &problem.conditions {
+        let cases = &problem.schedule.cases;
+        for (index, condition) in problem.conditions.iter().enumerate() {
             match condition.support {
                 Some(Support::Displacement(components)) => {
-                    demand_components(mesh, points, condition.boundary, components, &mut demands);
+                    let wanted = (components, cases.of_condition(index));
+                    demand_components(mesh, points, condition.boundary, wanted, &mut demands);
                 }
                 Some(Support::Symmetry) => {
                     demand_symmetry(mesh, points, condition.boundary, &mut demands);
@@ -67,10 +73,11 @@ impl Supports {
                 None => {}
             }
         }
-        for fixed in &problem.fixed_points {
+        for (index, fixed) in problem.fixed_points.iter().enumerate() {
+            let wanted = (fixed.displacement, cases.of_fixed_point(index));
             for point in points.of_node(fixed.node as usize) {
                 let list = demands.entry(point as u32).or_default();
-                list.extend(components(fixed.displacement, &fixed.name));
+                list.extend(components(wanted, &fixed.name));
             }
         }
         Self::resolve(mesh, points, &demands)
@@ -123,25 +130,34 @@ impl Supports {
         self.hold(column).map_or(left, |hold| left * hold.free)
     }
 
-    /// Displacement of a point: `g + P v`, with prescribed values scaled by `factor`.
-    pub fn apply(&self, point: usize, displacement: DVec3, factor: f64) -> DVec3 {
+    /// Displacement of a point: `g + P v`, with `g` as `load` has it.
+    pub fn apply(&self, point: usize, displacement: DVec3, load: &Load) -> DVec3 {
         self.hold(point).map_or(displacement, |hold| {
-            hold.free * displacement + factor * hold.prescribed
+            let prescribed = hold.prescribed.iter();
+            let prescribed: DVec3 = prescribed.map(|(case, g)| load.factor(*case) * *g).sum();
+            hold.free * displacement + prescribed
         })
     }
 
-    /// Prescribed displacement of a point at load factor 1 (m); zero where nothing is prescribed.
-    pub fn prescribed(&self, point: usize) -> DVec3 {
-        self.hold(point).map_or(DVec3::ZERO, |hold| hold.prescribed)
+    /// Prescribed displacement of a point at load factor 1 of a case (m); zero where nothing is
+    /// prescribed.
+    pub fn prescribed(&self, point: usize, case: usize) -> DVec3 {
+        let prescribed = self.hold(point).map_or(&[][..], |hold| &hold.prescribed);
+        let own = prescribed.iter().find(|(of, _)| *of == case);
+        own.map_or(DVec3::ZERO, |(_, displacement)| *displacement)
     }
 }
 
-fn components(values: [Option<f64>; 3], source: &str) -> impl Iterator<Item = Demand<'_>> {
+/// Prescribed components (m), and the load case that scales them.
+type Wanted = ([Option<f64>; 3], usize);
+
+fn components((values, case): Wanted, source: &str) -> impl Iterator<Item = Demand<'_>> {
     let named = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().zip(values);
     named.filter_map(move |(direction, value)| {
         value.map(|value| Demand {
             direction,
             value,
+            case,
             source,
         })
     })
@@ -151,7 +167,7 @@ fn demand_components<'a>(
     mesh: &'a Mesh,
     points: &Points,
     boundary: usize,
-    values: [Option<f64>; 3],
+    wanted: Wanted,
     demands: &mut BTreeMap<u32, Vec<Demand<'a>>>,
 ) {
     let boundary = &mesh.boundaries[boundary];
@@ -164,7 +180,7 @@ fn demand_components<'a>(
     on_face.dedup();
     for point in on_face {
         let list = demands.entry(point).or_default();
-        list.extend(components(values, &boundary.name));
+        list.extend(components(wanted, &boundary.name));
     }
 }
 
@@ -196,16 +212,56 @@ fn demand_symmetry<'a>(
         list.extend(smooth.iter().map(|sum| Demand {
             direction: sum.normalize(),
             value: 0.0,
+            case: 0,
             source: &boundary.name,
         }));
     }
 }
 
-/// Orthogonalises the demands (Gram-Schmidt); fails with the two that contradict each other.
-fn hold<'a>(demands: &'a [Demand<'a>]) -> Result<(Hold, usize), (&'a Demand<'a>, &'a Demand<'a>)> {
+/// Two demands that contradict each other.
+type Contradiction<'a> = (&'a Demand<'a>, &'a Demand<'a>);
+
+/// Hold that meets all demands, and the number of directions it takes.
+fn hold<'a>(demands: &'a [Demand<'a>]) -> Result<(Hold, usize), Contradiction<'a>> {
+    let moving = demands.iter().filter(|demand| demand.value != 0.0);
+    let mut cases: Vec<usize> = moving.map(|demand| demand.case).collect();
+    cases.sort_unstable();
+    cases.dedup();
+    let mut hold = Hold {
+        free: DMat3::IDENTITY,
+        prescribed: Vec::new(),
+    };
+    let basis = orthogonal(demands, cases.first().copied().unwrap_or(0))?;
+    for (direction, _) in &basis {
+        hold.free -= DMat3::from_cols(
+            *direction * direction.x,
+            *direction * direction.y,
+            *direction * direction.z,
+        );
+    }
+    if basis.len() == 3 {
+        hold.free = DMat3::ZERO;
+    }
+    for case in cases {
+        let basis = orthogonal(demands, case)?.into_iter();
+        let prescribed = basis.map(|(direction, value)| value * direction).sum();
+        hold.prescribed.push((case, prescribed));
+    }
+    Ok((hold, basis.len()))
+}
+
+/// Orthogonalises the demands (Gram-Schmidt), with what they prescribe in one load case. The
+/// directions are the same for all cases.
+fn orthogonal<'a>(
+    demands: &'a [Demand<'a>],
+    case: usize,
+) -> Result<Vec<(DVec3, f64)>, Contradiction<'a>> {
     let mut basis: Vec<(DVec3, f64)> = Vec::new();
     for demand in demands {
-        let (mut direction, mut value) = (demand.direction, demand.value);
+        let (mut direction, mut value) = (demand.direction, 0.0);
+        if demand.case == case {
+            value = demand.value;
+        }
         for (held, at) in &basis {
             let share = demand.direction.dot(*held);
             direction -= share * *held;
@@ -221,22 +277,7 @@ fn hold<'a>(demands: &'a [Demand<'a>]) -> Result<(Hold, usize), (&'a Demand<'a>,
             return Err((other.unwrap_or(demand), demand));
         }
     }
-    let mut hold = Hold {
-        free: DMat3::IDENTITY,
-        prescribed: DVec3::ZERO,
-    };
-    for (direction, value) in &basis {
-        hold.free -= DMat3::from_cols(
-            *direction * direction.x,
-            *direction * direction.y,
-            *direction * direction.z,
-        );
-        hold.prescribed += *value * *direction;
-    }
-    if basis.len() == 3 {
-        hold.free = DMat3::ZERO;
-    }
-    Ok((hold, basis.len()))
+    Ok(basis)
 }
 
 fn largest(demands: &[Demand<'_>]) -> f64 {
@@ -253,6 +294,6 @@ fn contradiction(tag: u64, first: &Demand<'_>, second: &Demand<'_>) -> Defect {
             "`{}` and `{}` prescribe different displacements along ({:.3}, {:.3}, {:.3})",
             first.source, second.source, second.direction.x, second.direction.y, second.direction.z
         ),
-        "let only one of them name this component, or give both the same value",
+        "let only one of them name this component, or give both the same value and history",
     )
 }

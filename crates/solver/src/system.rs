@@ -15,6 +15,7 @@ use crate::pattern::Pattern;
 use crate::points::Points;
 use crate::problem::Problem;
 use crate::rigid_modes;
+use crate::schedule::Load;
 use crate::supports::Supports;
 
 /// Numbering and topology of a problem, before any value is computed.
@@ -69,14 +70,38 @@ impl Discretisation {
 /// its stiffness.
 #[derive(Debug, Clone)]
 pub struct State {
-    /// Load factor at which the state stands.
-    pub load: f64,
+    /// Load under which the state stands.
+    pub load: Load,
     /// Unknown 3-vectors (m).
     pub unknowns: Vec<DVec3>,
     /// State of each facet point.
     pub facet_points: Vec<FacetPointState>,
+    /// Largest sizes of the states on the way to it.
+    pub(crate) reached: Sizes,
     /// Which laws of the system it was reached with.
     generation: u32,
+}
+
+/// How large the quantities of a state are: what "small" is measured against.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Sizes {
+    /// Largest of the forces that must balance (N).
+    pub(crate) force: f64,
+    /// Largest displacement or opening (m).
+    pub(crate) displacement: f64,
+    /// Largest normal traction of a fracture (Pa).
+    pub(crate) traction: f64,
+}
+
+impl Sizes {
+    /// The larger of each, where the other counts with a `share`.
+    pub(crate) fn or_share(self, share: f64, other: Self) -> Self {
+        Self {
+            force: self.force.max(share * other.force),
+            displacement: self.displacement.max(share * other.displacement),
+            traction: self.traction.max(share * other.traction),
+        }
+    }
 }
 
 /// State of one facet point.
@@ -168,9 +193,10 @@ impl<'a> System<'a> {
             memory: Memory::default(),
         });
         State {
-            load: 0.0,
+            load: self.problem.schedule.start(),
             unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
             facet_points: facet_points.collect(),
+            reached: Sizes::default(),
             generation: self.generation,
         }
     }
@@ -183,7 +209,7 @@ impl<'a> System<'a> {
         }
         state.generation = self.generation;
         let interface = &self.discretisation.interface;
-        let jumps = interface.jumps(&state.unknowns, state.load);
+        let jumps = interface.jumps(&state.unknowns, &state.load);
         let points = interface.points.iter().zip(jumps);
         for ((point, jump), state) in points.zip(&mut state.facet_points) {
             let law = self.law(point);
@@ -221,9 +247,9 @@ impl<'a> System<'a> {
     }
 
     /// Responses of the laws to the jumps of `unknowns`.
-    pub fn responses(&self, unknowns: &[DVec3], factor: f64) -> Vec<Response> {
+    pub fn responses(&self, unknowns: &[DVec3], load: &Load) -> Vec<Response> {
         let interface = &self.discretisation.interface;
-        let jumps = interface.jumps(unknowns, factor);
+        let jumps = interface.jumps(unknowns, load);
         let points = interface.points.par_iter().zip(jumps);
         points
             .map(|(point, jump)| {
@@ -233,23 +259,26 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// Displacement of all points (m) at load factor `factor`.
-    pub fn displacements(&self, unknowns: &[DVec3], factor: f64) -> Vec<DVec3> {
+    /// Displacement of all points (m) under a load.
+    pub fn displacements(&self, unknowns: &[DVec3], load: &Load) -> Vec<DVec3> {
         let Discretisation {
             points, supports, ..
         } = &self.discretisation;
         (0..points.len())
             .into_par_iter()
-            .map(|point| supports.apply(point, points.displacement(unknowns, point), factor))
+            .map(|point| supports.apply(point, points.displacement(unknowns, point), load))
             .collect()
     }
 
     /// Forces of the loads on all unknowns (N).
-    pub fn load_forces(&self, factor: f64) -> Vec<DVec3> {
-        let loads = &self.loads;
-        (0..loads.applied.len())
-            .into_par_iter()
-            .map(|i| factor * (loads.applied[i] + loads.prescribed[i]) + loads.initial[i])
+    pub fn load_forces(&self, load: &Load) -> Vec<DVec3> {
+        let cases = || self.loads.cases.iter().zip(&load.factors);
+        let initial = self.loads.initial.par_iter().enumerate();
+        initial
+            .map(|(i, initial)| {
+                let forces = cases().map(|(case, f)| *f * (case.applied[i] + case.prescribed[i]));
+                forces.reduce(|a, b| a + b).unwrap_or_default() + *initial
+            })
             .collect()
     }
 
@@ -265,8 +294,8 @@ impl<'a> System<'a> {
 
     /// Out-of-balance forces `loads - rock - fractures` (N) for given forces of the rock and
     /// tractions of the fractures.
-    pub fn residual(&self, rock_forces: &[DVec3], tractions: &[DVec3], factor: f64) -> Vec<DVec3> {
-        let mut residual = self.load_forces(factor);
+    pub fn residual(&self, rock_forces: &[DVec3], tractions: &[DVec3], load: &Load) -> Vec<DVec3> {
+        let mut residual = self.load_forces(load);
         residual
             .par_iter_mut()
             .zip(rock_forces)
@@ -279,21 +308,20 @@ impl<'a> System<'a> {
 
     /// Largest of the forces that must balance (N), as Euclidean norms over all unknowns: the
     /// measure for "small" in a residual.
-    pub fn force_scale(&self, rock_forces: &[DVec3], tractions: &[DVec3], factor: f64) -> f64 {
-        let loads = &self.loads;
+    pub fn force_scale(&self, rock_forces: &[DVec3], tractions: &[DVec3], load: &Load) -> f64 {
         let mut fractures = vec![DVec3::ZERO; rock_forces.len()];
         self.discretisation
             .interface
             .add_forces(tractions, 1.0, &mut fractures);
-        [
-            factor.abs() * norm(&loads.applied),
-            factor.abs() * norm(&loads.prescribed),
-            norm(&loads.initial),
+        let cases = self.loads.cases.iter().zip(&load.factors);
+        let of_cases =
+            cases.map(|(case, f)| f.abs() * norm(&case.applied).max(norm(&case.prescribed)));
+        let others = [
+            norm(&self.loads.initial),
             norm(rock_forces),
             norm(&fractures),
-        ]
-        .into_iter()
-        .fold(0.0, f64::max)
+        ];
+        of_cases.chain(others).fold(0.0, f64::max)
     }
 
     /// `K + fractures`: the whole tangent for given tangents of the fractures.

@@ -3,6 +3,7 @@
 //! The cases start from a sound scene, `base.toml` on `base.msh`: two cells with a joint between.
 
 mod geometry;
+mod load;
 mod mesh;
 mod problem;
 mod scene;
@@ -163,9 +164,14 @@ fn judge_all(cases: &[Case]) {
 
 #[test]
 fn there_are_many_cases() {
-    let count = [scene::CASES, mesh::CASES, geometry::CASES, problem::CASES]
-        .concat()
-        .len();
+    let groups = [
+        scene::CASES,
+        load::CASES,
+        mesh::CASES,
+        geometry::CASES,
+        problem::CASES,
+    ];
+    let count = groups.concat().len();
     assert!(count >= 40, "{count} cases");
 }
 

@@ -43,7 +43,7 @@ pub(super) const CASES: &[Case] = &[
         scene: &[("[boundary.top]", "[boundary.top]\nqqq = 1")],
         says: &[
             "scene.toml:16: unknown key `qqq`",
-            "known keys: displacement, pressure, symmetry, traction",
+            "known keys: displacement, history, pressure, symmetry, traction",
         ],
         ..SOUND
     },
@@ -343,15 +343,6 @@ pub(super) const CASES: &[Case] = &[
         says: &[
             "scene.toml:15: [boundary.top] says nothing",
             "add traction, pressure, displacement or symmetry",
-        ],
-        ..SOUND
-    },
-    Case {
-        name: "no load steps",
-        scene: &[("[mesh]", "[load]\nsteps = []\n\n[mesh]")],
-        says: &[
-            "scene.toml:4: there are no load steps",
-            "write steps = [1.0]",
         ],
         ..SOUND
     },

@@ -103,7 +103,7 @@ impl Workload {
     pub fn of(problem: &Problem) -> Self {
         let mut laws = problem.fractures.iter().map(|fracture| fracture.law);
         Self {
-            steps: problem.steps.len(),
+            steps: problem.schedule.steps.len(),
             is_nonlinear: laws.any(|law| !law.is_linear()),
         }
     }

@@ -9,7 +9,7 @@ use super::*;
 use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
-use crate::{Condition, Discretisation, Problem, Support, System};
+use crate::{Condition, Discretisation, Problem, Schedule, Support, System};
 
 /// A box and what is special about it.
 struct Box {
@@ -78,7 +78,7 @@ impl Box {
             fixed_points: Vec::new(),
             gravity: DVec3::ZERO,
             initial_stress: None,
-            steps: vec![1.0],
+            schedule: Schedule::proportional(vec![1.0]),
             facet_quadrature: FacetQuadrature::Nodal,
             mesh,
         }

@@ -1,8 +1,9 @@
 //! A first guess for a load step: the path of the last states, continued.
 //!
-//! Displacements and tractions are continued alike, as polynomials of the load. Both enter the balance
-//! of forces linearly, so the guess is in balance; all that is wrong with it is how far the
-//! apertures are from the law.
+//! Displacements and tractions are continued alike, as polynomials of the load factor, or of time if
+//! there are several load cases. Both enter the balance of forces linearly, so the guess is in balance
+//! with the loads continued alike; all that is wrong with it is how far the apertures are from the law,
+//! and how far the loads are from their own continuation. A path is not continued around a corner.
 
 use std::collections::VecDeque;
 
@@ -10,6 +11,7 @@ use glam::DVec3;
 use lie_core::{FractureLaw, Landing};
 use rayon::prelude::*;
 
+use crate::schedule::Load;
 use crate::system::{FacetPointState, State, System};
 
 /// States that are kept: with the present one enough for a cubic.
@@ -17,6 +19,8 @@ const KEPT: usize = 3;
 /// Largest sum of the sizes of the weights; 15 for a cubic through equal steps. A longer way would
 /// magnify what the states have of error.
 const WEIGHTIEST: f64 = 15.0;
+/// Largest distance of the loads continued from those wanted, against the whole step.
+const CORNER: f64 = 0.5;
 
 /// Converged states, the latest first, beside the one that a step starts from.
 #[derive(Debug, Clone, Default)]
@@ -24,7 +28,7 @@ pub(super) struct Path(VecDeque<Former>);
 
 #[derive(Debug, Clone)]
 struct Former {
-    load: f64,
+    load: Load,
     unknowns: Vec<DVec3>,
     /// Tractions of the laws (Pa).
     tractions: Vec<DVec3>,
@@ -35,24 +39,20 @@ impl Path {
     pub(super) fn remember(&mut self, system: &System<'_>, state: &State) {
         self.0.truncate(KEPT - 1);
         self.0.push_front(Former {
-            load: state.load,
+            load: state.load.clone(),
             unknowns: state.unknowns.clone(),
             tractions: system.law_tractions(state),
         });
     }
 
-    /// Continues the path through `state` to `load`, if there is one and `load` is not too far. Tells
-    /// whether it did.
-    pub(super) fn continue_through(
-        &self,
-        system: &System<'_>,
-        state: &mut State,
-        load: f64,
-    ) -> bool {
+    /// Continues the path through `state` to `load`, or close to it, if there is one and `load` is not
+    /// too far.
+    pub(super) fn continue_through(&self, system: &System<'_>, state: &mut State, load: &Load) {
         let smooth = system.is_smooth();
-        let Some((own, weights)) = self.weights(state.load, load).filter(|_| smooth) else {
-            return false;
+        let Some((own, weights)) = self.weights(&state.load, load).filter(|_| smooth) else {
+            return;
         };
+        let continued = self.continued(&state.load, load, own, &weights);
         let formers = || self.0.iter().zip(&weights);
         let tractions: Vec<DVec3> = system
             .law_tractions(state)
@@ -61,13 +61,13 @@ impl Path {
             .map(|(i, now)| own * now + formers().map(|(f, w)| *w * f.tractions[i]).sum::<DVec3>())
             .collect();
         let interface = &system.discretisation.interface;
-        let before = interface.jumps(&state.unknowns, state.load);
+        let before = interface.jumps(&state.unknowns, &state.load);
         let unknowns = state.unknowns.par_iter_mut().enumerate();
         unknowns.for_each(|(i, now)| {
             *now = own * *now + formers().map(|(f, w)| *w * f.unknowns[i]).sum::<DVec3>();
         });
-        state.load = load;
-        let after = interface.jumps(&state.unknowns, load);
+        state.load = continued;
+        let after = interface.jumps(&state.unknowns, &state.load);
         for (index, point) in interface.points.iter().enumerate() {
             let moved = after[index] - before[index];
             let state = &mut state.facet_points[index];
@@ -79,29 +79,51 @@ impl Path {
                 tractions[index],
             );
         }
-        true
     }
 
     /// Lagrange's weights of the present state and of the former ones, of as many as are close
-    /// enough together; none if there is nothing to continue.
-    fn weights(&self, present: f64, load: f64) -> Option<(f64, Vec<f64>)> {
-        let loads: Vec<f64> = self.0.iter().map(|former| former.load).collect();
-        (1..=loads.len()).rev().find_map(|count| {
+    /// enough together and continue the loads as they are; none if there is nothing to continue.
+    fn weights(&self, present: &Load, load: &Load) -> Option<(f64, Vec<f64>)> {
+        (1..=self.0.len()).rev().find_map(|count| {
+            let formers = self.0.iter().take(count).map(|former| &former.load);
             let points: Vec<f64> = [present]
                 .into_iter()
-                .chain(loads[..count].iter().copied())
+                .chain(formers)
+                .map(Load::abscissa)
                 .collect();
-            let weight = |i: usize| -> f64 {
-                let others = (0..points.len()).filter(|&j| j != i);
-                others
-                    .map(|j| (load - points[j]) / (points[i] - points[j]))
-                    .product()
-            };
-            let weights: Vec<f64> = (0..points.len()).map(weight).collect();
+            let weights = lagrange(&points, load.abscissa());
+            // Two states at one point have infinite weights, or none that are numbers.
             let size: f64 = weights.iter().map(|weight| weight.abs()).sum();
-            (size <= WEIGHTIEST).then(|| (weights[0], weights[1..].to_vec()))
+            let (own, weights) = (weights[0], &weights[1..]);
+            let continues = || {
+                let continued = self.continued(present, load, own, weights);
+                continued.distance(load) <= CORNER * present.distance(load)
+            };
+            (size <= WEIGHTIEST && continues()).then(|| (own, weights.to_vec()))
         })
     }
+
+    /// The load that the path leads to on the way to `load`.
+    fn continued(&self, present: &Load, load: &Load, own: f64, weights: &[f64]) -> Load {
+        // A single factor is continued to itself; rounding would only spoil it.
+        if load.single_factor().is_some() {
+            return load.clone();
+        }
+        let formers = self.0.iter().zip(weights);
+        let terms = formers.map(|(former, weight)| (*weight, &former.load));
+        Load::combination([(own, present)].into_iter().chain(terms))
+    }
+}
+
+/// Weights at `x` of values at `points` (Lagrange).
+fn lagrange(points: &[f64], x: f64) -> Vec<f64> {
+    let weight = |i: usize| -> f64 {
+        let others = (0..points.len()).filter(|&j| j != i);
+        others
+            .map(|j| (x - points[j]) / (points[i] - points[j]))
+            .product()
+    };
+    (0..points.len()).map(weight).collect()
 }
 
 /// Takes a facet point to where its law carries `traction` (Pa), its walls having moved by `moved` (m).
@@ -138,18 +160,28 @@ fn follow(
 mod tests {
     use super::*;
 
-    fn path(loads: &[f64]) -> Path {
-        let former = |&load: &f64| Former {
+    fn path_of(loads: impl IntoIterator<Item = Load>) -> Path {
+        let former = |load| Former {
             load,
             unknowns: Vec::new(),
             tractions: Vec::new(),
         };
-        Path(loads.iter().map(former).collect())
+        Path(loads.into_iter().map(former).collect())
+    }
+
+    fn path(factors: &[f64]) -> Path {
+        path_of(factors.iter().map(|&factor| Load::proportional(factor)))
+    }
+
+    impl Path {
+        fn weights_at(&self, present: f64, load: f64) -> Option<(f64, Vec<f64>)> {
+            self.weights(&Load::proportional(present), &Load::proportional(load))
+        }
     }
 
     #[test]
     fn weights_continue_cubics_through_equal_steps() {
-        let (own, weights) = path(&[0.3, 0.2, 0.1]).weights(0.4, 0.5).expect("a path");
+        let (own, weights) = path(&[0.3, 0.2, 0.1]).weights_at(0.4, 0.5).expect("a path");
         for (weight, exact) in [own].iter().chain(&weights).zip([4.0, -6.0, 4.0, -1.0]) {
             assert!((weight - exact).abs() < 1e-12);
         }
@@ -157,16 +189,47 @@ mod tests {
 
     #[test]
     fn a_return_to_a_former_load_takes_its_state() {
-        let (own, weights) = path(&[0.5]).weights(1.0, 0.5).expect("a path");
+        let (own, weights) = path(&[0.5]).weights_at(1.0, 0.5).expect("a path");
         assert_eq!((own, weights), (0.0, vec![1.0]));
     }
 
     #[test]
     fn loads_that_repeat_or_lie_far_off_are_left_out() {
-        let (_, weights) = path(&[0.5, 1.0]).weights(1.0, 0.5).expect("a path");
+        let (_, weights) = path(&[0.5, 1.0]).weights_at(1.0, 0.5).expect("a path");
         assert_eq!(weights.len(), 1);
-        assert!(path(&[0.99]).weights(1.0, 2.0).is_none());
-        assert!(path(&[]).weights(1.0, 2.0).is_none());
-        assert!(path(&[1.0]).weights(1.0, 2.0).is_none());
+        assert!(path(&[0.99]).weights_at(1.0, 2.0).is_none());
+        assert!(path(&[]).weights_at(1.0, 2.0).is_none());
+        assert!(path(&[1.0]).weights_at(1.0, 2.0).is_none());
+    }
+
+    /// Times and factors of two load cases.
+    fn loads(of: &[[f64; 3]]) -> Vec<Load> {
+        let load = |&[time, a, b]: &[f64; 3]| Load {
+            time,
+            factors: vec![a, b],
+        };
+        of.iter().map(load).collect()
+    }
+
+    #[test]
+    fn several_cases_are_continued_in_time_and_not_around_corners() {
+        let straight = loads(&[[3.0, 3.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 1.0]]);
+        let further = loads(&[[4.0, 4.0, 1.0], [4.0, 3.0, 2.0], [4.0, 3.0, 1.0]]);
+        let path = path_of(straight[1..].to_vec());
+        let (own, weights) = path.weights(&straight[0], &further[0]).expect("a path");
+        assert_eq!((own, weights.clone()), (3.0, vec![-3.0, 1.0]));
+        let continued = path.continued(&straight[0], &further[0], own, &weights);
+        assert_eq!(continued, further[0]);
+        for corner in &further[1..] {
+            assert!(path.weights(&straight[0], corner).is_none());
+        }
+    }
+
+    #[test]
+    fn two_states_of_one_time_are_never_used_together() {
+        let same = loads(&[[1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]]);
+        let path = path_of(same[..1].to_vec());
+        assert!(path.weights(&same[1], &same[2]).is_none());
+        assert!(path.weights(&same[1], &same[1]).is_none());
     }
 }

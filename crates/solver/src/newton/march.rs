@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::{Iteration, Linearisation, Newton, Outcome, StepRecord, interface, largest};
+use crate::schedule::Load;
 use crate::system::{State, System};
 
 /// Smallest part of a load step that is tried.
@@ -28,7 +29,7 @@ impl Newton {
         &mut self,
         system: &System<'_>,
         state: &mut State,
-        load: f64,
+        load: &Load,
         record: &mut StepRecord,
         observe: &mut dyn FnMut(usize, &Iteration),
     ) -> Outcome {
@@ -41,20 +42,17 @@ impl Newton {
                 Err(outcome) => outcome,
             };
         }
-        let start = state.load;
+        let start = state.load.clone();
         let mut here = state.clone();
         let (mut walked, mut share) = (0.0, 1.0_f64);
         while walked < 1.0 {
             let end = f64::min(walked + share, 1.0);
-            let at = |way: f64| {
-                if way == 1.0 {
-                    load
-                } else {
-                    start + way * (load - start)
-                }
+            let at = |way: f64| match way {
+                1.0 => load.clone(),
+                _ => Load::between(&start, load, way),
             };
             let middle = at(0.5 * (walked + end));
-            match self.part(system, &here, [middle, at(end)], record, observe) {
+            match self.part(system, &here, [&middle, &at(end)], record, observe) {
                 Part::Walked(next, may_grow) => {
                     self.path.remember(system, &here);
                     (here, walked) = (next, end);
@@ -72,11 +70,11 @@ impl Newton {
         &mut self,
         system: &System<'_>,
         from: &State,
-        [middle, end]: [f64; 2],
+        [middle, end]: [&Load; 2],
         record: &mut StepRecord,
         observe: &mut dyn FnMut(usize, &Iteration),
     ) -> Part {
-        let mut walk = |from: &State, to: f64, record: &mut StepRecord| {
+        let mut walk = |from: &State, to: &Load, record: &mut StepRecord| {
             let before = record.iterations.len();
             let reached = self.attempt(system, from, to, record, observe);
             if reached.is_ok() {
@@ -122,7 +120,7 @@ fn difference(system: &System<'_>, a: &State, b: &State) -> f64 {
         .zip(&b.unknowns)
         .map(|(a, b)| *a - *b)
         .collect();
-    let apart = largest(&interface(system).jumps(&between, 0.0));
-    let size = largest(&interface(system).jumps(&b.unknowns, b.load));
+    let apart = largest(&interface(system).jumps(&between, &Load::NONE));
+    let size = largest(&interface(system).jumps(&b.unknowns, &b.load));
     super::ratio(apart, size)
 }

@@ -23,7 +23,8 @@ use glam::DVec3;
 
 use crate::interface::Interface;
 use crate::linear::{AnyTangent, LinearFailure, Plan, Unknowns, Workload};
-use crate::system::{State, System, norm};
+use crate::schedule::Load;
+use crate::system::{Sizes, State, System, norm};
 use extrapolation::Path;
 use walls::Landed;
 
@@ -31,6 +32,10 @@ pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
 const LOOSEST_SOLVE: f64 = 1e-3;
+
+/// Share of the largest sizes of a path that still counts once the loads are gone: what is left then
+/// is rounding, and would be compared with nothing but itself.
+const REMEMBERED: f64 = 1e-3;
 
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
 ///
@@ -48,53 +53,10 @@ struct Trial {
     landed: Vec<Landed>,
     /// Forces by which the rock resists the unknowns (N).
     rock_forces: Vec<DVec3>,
-    /// What is large in this state.
-    scales: Scales,
-    /// What was large in the state that the step started from.
-    floor: Scales,
+    /// Sizes that its errors are measured against.
+    sizes: Sizes,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
-}
-
-/// What the measures of an iteration are compared with.
-#[derive(Debug, Clone, Copy, Default)]
-struct Scales {
-    /// Largest of the forces that must balance (N).
-    force: f64,
-    /// Largest displacement or opening (m).
-    motion: f64,
-    /// Largest normal traction (Pa).
-    traction: f64,
-}
-
-/// How much of the sizes at the start of a step still counts at its end. A step that takes all load away
-/// leaves rounding of what there was, which is neither zero nor small against zero.
-const REMEMBERED: f64 = 1e-4;
-
-impl Scales {
-    fn of(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Self {
-        let state = &trial.state;
-        let normal = interface(system).points.iter().zip(tractions);
-        let displacements = system.displacements(&state.unknowns, state.load);
-        // A body that does not move may still hold joints closed by its initial stress.
-        let openings = state.facet_points.iter();
-        let opening = openings.map(|point| point.walls.separation.opening.abs());
-        Self {
-            force: system.force_scale(&trial.rock_forces, tractions, state.load),
-            motion: opening.fold(largest(&displacements), f64::max),
-            traction: normal
-                .map(|(point, traction)| traction.dot(point.normal).abs())
-                .fold(0.0, f64::max),
-        }
-    }
-
-    fn at_least(self, floor: Self) -> Self {
-        Self {
-            force: self.force.max(REMEMBERED * floor.force),
-            motion: self.motion.max(REMEMBERED * floor.motion),
-            traction: self.traction.max(REMEMBERED * floor.traction),
-        }
-    }
 }
 
 impl Newton {
@@ -125,18 +87,18 @@ impl Newton {
         })
     }
 
-    /// Solves one load step from `state`, calling `observe` after each iteration. `state` is
+    /// Solves one load step from `state` to `load`, calling `observe` after each iteration. `state` is
     /// replaced if the step converges and kept if not. A step that the laws make too difficult or too
     /// coarse is divided, see [`march`].
     pub fn step(
         &mut self,
         system: &System<'_>,
         state: &mut State,
-        load: f64,
+        load: &Load,
         mut observe: impl FnMut(usize, &Iteration),
     ) -> StepRecord {
         let start = Instant::now();
-        let mut record = StepRecord::new(load);
+        let mut record = StepRecord::new(load.clone());
         record.outcome = self.march(system, state, load, &mut record, &mut observe);
         record.solve_seconds = start.elapsed().as_secs_f64() - record.factorise_seconds;
         record
@@ -147,7 +109,7 @@ impl Newton {
         &mut self,
         system: &System<'_>,
         state: &State,
-        load: f64,
+        load: &Load,
         record: &mut StepRecord,
         observe: &mut dyn FnMut(usize, &Iteration),
     ) -> Result<State, Outcome> {
@@ -157,7 +119,9 @@ impl Newton {
             record.iterations.push(iteration);
             observe(record.iterations.len(), &iteration);
             if self.is_converged(system, &iteration) {
-                walls::commit(system, &mut trial.state);
+                let state = &mut trial.state;
+                walls::commit(system, state);
+                state.reached = trial.sizes.or_share(1.0, state.reached);
                 return Ok(trial.state);
             }
         }
@@ -165,28 +129,28 @@ impl Newton {
     }
 
     /// The first guess for a step.
-    fn start(&self, system: &System<'_>, state: &State, load: f64) -> Trial {
-        let mut trial = Trial {
-            landed: vec![Landed::default(); state.facet_points.len()],
-            rock_forces: system.rock_forces(&state.unknowns),
-            scales: Scales::default(),
-            floor: Scales::default(),
+    fn start(&self, system: &System<'_>, state: &State, load: &Load) -> Trial {
+        let mut guess = state.clone();
+        system.adapt(&mut guess);
+        self.path.continue_through(system, &mut guess, load);
+        walls::move_supports(system, &mut guess, load);
+        let rock_forces = system.rock_forces(&guess.unknowns);
+        let tractions = system.law_tractions(&guess);
+        let force = system.force_scale(&rock_forces, &tractions, load);
+        Trial {
+            landed: vec![Landed::default(); guess.facet_points.len()],
+            sizes: Sizes {
+                force: force.max(REMEMBERED * guess.reached.force),
+                ..guess.reached
+            },
+            rock_forces,
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
             } else {
                 0.1 * self.settings.force
             },
-            state: state.clone(),
-        };
-        trial.floor = Scales::of(system, &trial, &system.law_tractions(state));
-        system.adapt(&mut trial.state);
-        if self.path.continue_through(system, &mut trial.state, load) {
-            trial.rock_forces = system.rock_forces(&trial.state.unknowns);
+            state: guess,
         }
-        walls::move_supports(system, &mut trial.state, load);
-        let tractions = system.law_tractions(&trial.state);
-        trial.scales = Scales::of(system, &trial, &tractions).at_least(trial.floor);
-        trial
     }
 
     fn is_converged(&self, system: &System<'_>, iteration: &Iteration) -> bool {
@@ -213,7 +177,7 @@ impl Newton {
         updated.map_err(Outcome::Linear)?;
         record.factorise_seconds += start.elapsed().as_secs_f64();
         let tractions = walls::linearised_tractions(system, &trial.state, &tangents);
-        let residual = system.residual(&trial.rock_forces, &tractions, trial.state.load);
+        let residual = system.residual(&trial.rock_forces, &tractions, &trial.state.load);
         let solution = self
             .linear
             .solve(system, &residual, self.tolerance(trial, &residual));
@@ -236,7 +200,7 @@ impl Newton {
             self.settings.linearisation,
             &mut trial.state,
             &mut trial.landed,
-            &interface(system).jumps(correction, 0.0),
+            &interface(system).jumps(correction, &Load::NONE),
             &tangents,
         );
         let mut iteration = assess(system, trial, correction, &errors, record)?;
@@ -246,15 +210,18 @@ impl Newton {
     }
 
     /// Error allowed in a linear solve, against its right-hand side: enough for what the
-    /// linearisation is worth, and for the test of the forces.
+    /// linearisation is worth, and for the test of the forces. A residual above rounding is always
+    /// reduced: tractions may still move where forces are in balance.
     fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
-        let size = norm(residual);
-        let wanted = trial.looseness * size.min(trial.scales.force);
-        let enough = 0.1 * self.settings.force * trial.scales.force;
-        if size > 0.0 {
-            wanted.max(enough) / size
-        } else {
+        let (size, scale) = (norm(residual), trial.sizes.force);
+        let wanted = trial.looseness * size.min(scale);
+        let enough = 0.1 * self.settings.force * scale;
+        let tolerance = wanted.max(enough);
+        let rounding = 1e-3 * self.settings.force * scale;
+        if size <= rounding {
             1.0
+        } else {
+            (tolerance / size).min(0.1)
         }
     }
 }
@@ -276,22 +243,36 @@ fn assess(
     if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
         return Err(Outcome::NotFinite(Some(broken)));
     }
-    let residual = norm(&system.residual(&trial.rock_forces, &tractions, state.load));
-    let change = system.displacements(correction, 0.0);
+    let residual = norm(&system.residual(&trial.rock_forces, &tractions, &state.load));
+    let change = system.displacements(correction, &Load::NONE);
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     record.worst_facet_point = worst;
     let apertures = state.facet_points.iter();
     let apertures = apertures.map(|point| point.walls.separation.aperture);
     let smallest_aperture = apertures.fold(f64::INFINITY, f64::min);
-    let scales = Scales::of(system, trial, &tractions).at_least(trial.floor);
-    trial.scales = scales;
+    let sizes = sizes(system, trial, &tractions).or_share(REMEMBERED, state.reached);
+    trial.sizes = sizes;
     Ok(Iteration {
-        force_residual: ratio(residual, scales.force),
-        increment: ratio(largest(&change), scales.motion),
-        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), scales.traction),
+        force_residual: ratio(residual, sizes.force),
+        increment: ratio(largest(&change), sizes.displacement),
+        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction),
         smallest_aperture,
         linear_iterations: 0,
     })
+}
+
+/// How large the quantities of a state are.
+fn sizes(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Sizes {
+    let state = &trial.state;
+    let displacements = system.displacements(&state.unknowns, &state.load);
+    // A body that does not move may still hold joints closed by its initial stress.
+    let openings = state.facet_points.iter();
+    let openings = openings.map(|point| point.walls.separation.opening.abs());
+    Sizes {
+        force: system.force_scale(&trial.rock_forces, tractions, &state.load),
+        displacement: openings.fold(largest(&displacements), f64::max),
+        traction: largest(tractions),
+    }
 }
 
 fn largest(vectors: &[DVec3]) -> f64 {

@@ -1,6 +1,7 @@
 //! Settings of a nonlinear solve, and its record.
 
 use crate::linear::{LinearFailure, LinearMethod};
+use crate::schedule::Load;
 
 /// Where a facet point is linearised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,7 +41,7 @@ impl Default for NewtonSettings {
             force: 1e-9,
             increment: 1e-5,
             closure: 1e-9,
-            max_iterations: 50,
+            max_iterations: 25,
             path: 1e-3,
             linear: None,
         }
@@ -79,8 +80,8 @@ pub enum Outcome {
 /// Record of a load step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepRecord {
-    /// Factor on the loads.
-    pub load: f64,
+    /// Load at its end.
+    pub load: Load,
     /// Every iteration, in order, of all parts that the step was divided into.
     pub iterations: Vec<Iteration>,
     /// Iterations of each part that converged.
@@ -96,7 +97,7 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
-    pub(super) fn new(load: f64) -> Self {
+    pub(super) fn new(load: Load) -> Self {
         Self {
             load,
             iterations: Vec::new(),

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::Linearisation;
 use crate::interface::FacetPoint;
 use crate::linear::Tangents;
+use crate::schedule::Load;
 use crate::system::{FacetPointState, State, System};
 
 /// Stiffness that stands for walls in contact, against that of the rock beside them. Their tractions
@@ -36,13 +37,13 @@ impl Landed {
     }
 }
 
-/// Takes the state to another load factor: prescribed displacements move walls that are held.
-pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: f64) {
-    let step = load - state.load;
-    state.load = load;
-    let points = &system.discretisation.interface.points;
-    for (point, state) in points.iter().zip(&mut state.facet_points) {
-        state.mismatch += step * point.prescribed;
+/// Takes the state to another load: prescribed displacements move walls that are held.
+pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: &Load) {
+    let interface = &system.discretisation.interface;
+    let jumps = interface.prescribed_change(&state.load, load);
+    state.load.clone_from(load);
+    for (jump, state) in jumps.into_iter().zip(&mut state.facet_points) {
+        state.mismatch += jump;
     }
 }
 

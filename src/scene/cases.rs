@@ -1,0 +1,142 @@
+//! Conditions with the same history are one load case.
+
+use lie_solver::{Cases, Load, Schedule, Step, Support};
+
+use super::conditions::is_moved;
+use super::history::{History, StepEnd, Timetable};
+use super::{BoundaryEntry, FixedPointEntry, FractureEntry, Named, Scene};
+
+/// Times that differ by less than this share of the last one are the same.
+const SAME_TIME: f64 = 1e-9;
+
+/// The entries of a scene that became parts of the problem, in its order.
+pub(super) struct Bound<'a> {
+    pub(super) boundaries: Vec<&'a Named<BoundaryEntry>>,
+    pub(super) fractures: Vec<&'a Named<FractureEntry>>,
+    pub(super) fixed_points: Vec<&'a Named<FixedPointEntry>>,
+}
+
+/// The schedule of a scene; what the user should know of it goes to `decisions`.
+pub(super) fn schedule(scene: &Scene, bound: &Bound<'_>, decisions: &mut Vec<String>) -> Schedule {
+    let (ends, grown) = match &scene.timetable {
+        Timetable::Factors(factors) => return Schedule::proportional(factors.clone()),
+        Timetable::Times { ends, grown } => (ends, *grown),
+    };
+    let mut found = Found {
+        grown,
+        cases: Vec::new(),
+    };
+    let cases = found.collect(scene, bound);
+    found.tell(ends, decisions);
+    let step = |end: &StepEnd| Step {
+        load: Load {
+            time: end.time,
+            factors: found.factors(end.time),
+        },
+        phase: end.phase.clone(),
+    };
+    Schedule {
+        cases,
+        steps: ends.iter().map(step).collect(),
+        is_timed: true,
+    }
+}
+
+/// The load cases found so far.
+struct Found {
+    /// When a condition without a history has grown to its full size.
+    grown: f64,
+    /// History of each case, and the sections that belong to it.
+    cases: Vec<(History, Vec<String>)>,
+}
+
+impl Found {
+    fn collect(&mut self, scene: &Scene, bound: &Bound<'_>) -> Cases {
+        let conditions = bound.boundaries.iter().map(|entry| {
+            let value = &entry.value;
+            let moves = matches!(value.support, Some(Support::Displacement(d)) if is_moved(&d));
+            let name = format!("[boundary.{}]", entry.name);
+            self.case(value.load.is_some() || moves, &value.history, name)
+        });
+        let conditions = conditions.collect();
+        let fractures = bound.fractures.iter().map(|entry| {
+            let acts = entry.value.fracture.fluid_pressure != 0.0;
+            let name = format!("[fracture.{}]", entry.name);
+            self.case(acts, &entry.value.history, name)
+        });
+        let fractures = fractures.collect();
+        let fixed_points = bound.fixed_points.iter().map(|entry| {
+            let acts = is_moved(&entry.value.displacement);
+            self.case(acts, &entry.value.history, entry.name.clone())
+        });
+        Cases {
+            conditions,
+            fractures,
+            fixed_points: fixed_points.collect(),
+            gravity: {
+                let acts = scene.body.gravity != glam::DVec3::ZERO;
+                self.case(acts, &scene.body.history, "[body]".into())
+            },
+        }
+    }
+
+    /// Load case of a section; what does not act may be in any.
+    fn case(&mut self, acts: bool, history: &Option<History>, name: String) -> usize {
+        if !acts {
+            return 0;
+        }
+        let history = history.clone().unwrap_or_else(|| History::ramp(self.grown));
+        let known = self.cases.iter().position(|(other, _)| *other == history);
+        let case = known.unwrap_or(self.cases.len());
+        if known.is_none() {
+            self.cases.push((history, Vec::new()));
+        }
+        let names = &mut self.cases[case].1;
+        if !names.contains(&name) {
+            names.push(name);
+        }
+        case
+    }
+
+    /// Factors on the cases at a time; there is always one case.
+    fn factors(&self, time: f64) -> Vec<f64> {
+        match self.cases.is_empty() {
+            true => vec![History::ramp(self.grown).at(time)],
+            false => self
+                .cases
+                .iter()
+                .map(|(history, _)| history.at(time))
+                .collect(),
+        }
+    }
+
+    fn tell(&self, ends: &[StepEnd], decisions: &mut Vec<String>) {
+        if self.cases.len() > 1 {
+            let names: Vec<String> = self
+                .cases
+                .iter()
+                .map(|(_, names)| names.join(", "))
+                .collect();
+            decisions.push(format!(
+                "{} load cases, each with its own history: {}",
+                names.len(),
+                names.join("; ")
+            ));
+        }
+        let last = ends.last().map_or(0.0, |end| end.time);
+        let is_end = |time: f64| {
+            ends.iter()
+                .any(|end| (end.time - time).abs() <= SAME_TIME * last)
+        };
+        for (history, names) in &self.cases {
+            let times = history.points.iter().map(|[time, _]| *time);
+            let mut passed = times.filter(|time| *time > 0.0 && *time < last && !is_end(*time));
+            if let Some(time) = passed.next() {
+                decisions.push(format!(
+                    "the history of {} has a point at time {time}, where no load step ends: only factors at the ends of steps act",
+                    names.join(", ")
+                ));
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Conditions of a scene: what acts on faces, nodes and the whole rock.
+
+use glam::DVec3;
+use lie_solver::{Fracture, Support, SurfaceLoad};
+
+use super::history::History;
+use super::load::{Clock, Scaled, read_history};
+use crate::reader::{Accept, Section};
+
+/// What acts on a part of the outer surface.
+#[derive(Debug, Clone)]
+pub struct BoundaryEntry {
+    /// Its load.
+    pub load: Option<SurfaceLoad>,
+    /// Its support.
+    pub support: Option<Support>,
+    /// How both change with time.
+    pub history: Option<History>,
+}
+
+/// A fracture and the history of its fluid pressure.
+#[derive(Debug, Clone)]
+pub struct FractureEntry {
+    /// Its law and what fills it.
+    pub fracture: Fracture,
+    /// How the fluid pressure changes with time.
+    pub history: Option<History>,
+}
+
+/// What acts in all of the rock.
+#[derive(Debug, Clone, Default)]
+pub struct BodyEntry {
+    /// Acceleration of gravity (m/s^2).
+    pub gravity: DVec3,
+    /// How it changes with time.
+    pub history: Option<History>,
+}
+
+/// A node held by itself.
+#[derive(Debug, Clone)]
+pub struct FixedPointEntry {
+    /// Where the node is (m).
+    pub at: DVec3,
+    /// Prescribed components (m).
+    pub displacement: [Option<f64>; 3],
+    /// How they change with time.
+    pub history: Option<History>,
+}
+
+/// Reads what acts on a part of the outer surface.
+pub(super) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<BoundaryEntry> {
+    let traction = section.vector("traction");
+    let pressure = section.number("pressure", Accept::Finite);
+    let symmetry = section.flag("symmetry");
+    let displacement = section.section("displacement").map(read_components);
+    let load = match (traction, pressure) {
+        (Some(traction), None) => Some(SurfaceLoad::Traction(traction.into())),
+        (None, Some(pressure)) => Some(SurfaceLoad::Pressure(pressure)),
+        (Some(_), Some(_)) => {
+            let remedy = "keep one; a pressure p is the traction -p along the outward normal";
+            section.refuse(
+                "pressure",
+                "both traction and pressure are given".into(),
+                remedy,
+            );
+            None
+        }
+        (None, None) => None,
+    };
+    let support = match (symmetry, displacement) {
+        (Some(true), None) => Some(Support::Symmetry),
+        (Some(true), Some(_)) => {
+            let remedy = "keep one; symmetry already holds the normal direction";
+            section.refuse(
+                "symmetry",
+                "both symmetry and displacement are given".into(),
+                remedy,
+            );
+            None
+        }
+        (_, components) => components.map(Support::Displacement),
+    };
+    let names = ["traction", "pressure", "symmetry", "displacement"];
+    if !names.into_iter().any(|name| section.has(name)) {
+        section.refuse(
+            "traction",
+            format!("{} says nothing", section.title),
+            "add traction, pressure, displacement or symmetry, or remove the section",
+        );
+    }
+    let moves = matches!(support, Some(Support::Displacement(components)) if is_moved(&components));
+    let scaled = Scaled {
+        is_there: load.is_some() || moves,
+        what: "a traction, a pressure or a displacement other than 0",
+    };
+    Some(BoundaryEntry {
+        load,
+        support,
+        history: read_history(section, clock, scaled),
+    })
+}
+
+fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
+    let components = ["x", "y", "z"].map(|axis| section.number(axis, Accept::Finite));
+    if !["x", "y", "z"].into_iter().any(|axis| section.has(axis)) {
+        section.refuse(
+            "x",
+            format!("{} names no component", section.title),
+            "name at least one: { x = 0.0, y = 0.0, z = 0.0 }",
+        );
+    }
+    section.finish();
+    components
+}
+
+/// Reads a node held by itself.
+pub(super) fn read_fixed_point(section: &Section<'_, '_>, clock: Clock) -> Option<FixedPointEntry> {
+    section.require("at", "[0.0, 0.0, 0.0]");
+    section.require("displacement", "{ x = 0.0 }");
+    let at = section.vector("at");
+    let displacement = section.section("displacement").map(read_components);
+    let scaled = Scaled {
+        is_there: displacement.is_none_or(|components| is_moved(&components)),
+        what: "a displacement other than 0",
+    };
+    let history = read_history(section, clock, scaled);
+    Some(FixedPointEntry {
+        at: at?.into(),
+        displacement: displacement?,
+        history,
+    })
+}
+
+/// Reads what acts in all of the rock.
+pub(super) fn read_body(root: &Section<'_, '_>, clock: Clock) -> BodyEntry {
+    let Some(section) = root.section("body") else {
+        return BodyEntry::default();
+    };
+    section.require("gravity", "[0, 0, -9.81]");
+    let gravity = section.vector("gravity");
+    let scaled = Scaled {
+        is_there: true,
+        what: "gravity",
+    };
+    let history = read_history(&section, clock, scaled);
+    section.finish();
+    BodyEntry {
+        gravity: gravity.unwrap_or_default().into(),
+        history,
+    }
+}
+
+/// Whether any component is held elsewhere than where it is (m).
+pub(super) fn is_moved(components: &[Option<f64>; 3]) -> bool {
+    components.iter().flatten().any(|value| *value != 0.0)
+}

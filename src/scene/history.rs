@@ -1,0 +1,97 @@
+//! How a condition changes with time, and when load steps end.
+
+/// A factor as a function of time: linear between points, constant before the first and after the
+/// last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// Times, ascending, each with its factor; at least one.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl History {
+    /// Grows from 0 at time 0 to 1 at `end`, and stays.
+    pub fn ramp(end: f64) -> Self {
+        Self {
+            points: vec![[0.0, 0.0], [end, 1.0]],
+        }
+    }
+
+    /// The factor at a time.
+    pub fn at(&self, time: f64) -> f64 {
+        let next = self.points.partition_point(|[start, _]| *start < time);
+        match (
+            next.checked_sub(1).map(|i| self.points[i]),
+            self.points.get(next),
+        ) {
+            (_, Some([end, factor])) if *end == time => *factor,
+            (Some([start, before]), Some([end, after])) => {
+                let share = (time - start) / (end - start);
+                (1.0 - share) * before + share * after
+            }
+            (Some([_, factor]), None) | (None, Some(&[_, factor])) => factor,
+            (None, None) => 0.0,
+        }
+    }
+}
+
+/// Where a load step ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepEnd {
+    /// Its time.
+    pub time: f64,
+    /// The phase that the step belongs to.
+    pub phase: Option<String>,
+}
+
+/// The load steps of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Timetable {
+    /// A factor on all loads and prescribed displacements for each step.
+    Factors(Vec<f64>),
+    /// Steps in time.
+    Times {
+        /// Ends of the steps, ascending.
+        ends: Vec<StepEnd>,
+        /// When a condition without a history has grown to its full size.
+        grown: f64,
+    },
+}
+
+impl Default for Timetable {
+    fn default() -> Self {
+        Self::Factors(vec![1.0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_are_linear_between_points_and_constant_outside() {
+        let history = History {
+            points: vec![[1.0, 2.0], [3.0, -0.5], [4.0, 0.0]],
+        };
+        let times = [-1.0, 1.0, 2.0, 3.0, 3.5, 4.0, 9.0];
+        let factors = [2.0, 2.0, 0.75, -0.5, -0.25, 0.0, 0.0];
+        assert_eq!(times.map(|time| history.at(time)), factors);
+    }
+
+    #[test]
+    fn a_point_has_exactly_its_factor() {
+        let (time, factor) = (0.1 + 0.2, 1.0 / 3.0);
+        let history = History {
+            points: vec![[0.0, 0.7], [time, factor], [1.0, 0.9]],
+        };
+        assert_eq!(history.at(time), factor);
+    }
+
+    #[test]
+    fn without_a_history_a_condition_grows_once() {
+        let ramp = History::ramp(2.0);
+        assert_eq!(
+            [0.0, 0.5, 2.0, 5.0].map(|time| ramp.at(time)),
+            [0.0, 0.25, 1.0, 1.0]
+        );
+    }
+}
