@@ -177,7 +177,7 @@ pub fn solve_path(
     let mut newton = Newton::new(&system, settings).expect("analysis");
     let mut state = system.initial_state();
     let solved = loads.into_iter().map(|load| {
-        let record = newton.step(&system, &mut state, load, |_, _| {});
+        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
         (record, solution(&system, &state))
     });
     solved.collect()

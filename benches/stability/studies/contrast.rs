@@ -4,7 +4,7 @@ use faer::Side;
 use faer::sparse::{SparseColMat, Triplet};
 use kluft::chart::{Axis, Chart, Rate, Series};
 use lie_core::ClosureKind;
-use lie_solver::{Discretisation, LinearMethod, NewtonSettings, Problem, System};
+use lie_solver::{Discretisation, LinearMethod, Load, NewtonSettings, Problem, System};
 
 use super::{Effort, Finding, Study, Table, entry, height, hold_promise, most};
 use crate::closing::three_planes_of;
@@ -43,8 +43,9 @@ struct Equations {
 /// In the program's unknowns.
 fn of_jumps(problem: &Problem) -> Equations {
     let system = System::assemble(problem, Discretisation::of(problem).expect("supported"));
+    let load = Load::proportional(1.0);
     let unknowns = system.initial_state().unknowns;
-    let responses = system.responses(&unknowns, 1.0);
+    let responses = system.responses(&unknowns, &load);
     let tangents: Vec<_> = responses.iter().map(|response| response.tangent).collect();
     let tangent = system.tangent(&tangents);
     let rows = tangent.rows(&system.discretisation.pattern);
@@ -60,7 +61,7 @@ fn of_jumps(problem: &Problem) -> Equations {
     }
     let size = 3 * rows.rows();
     let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets);
-    let forces = system.load_forces(1.0);
+    let forces = system.load_forces(&load);
     Equations {
         matrix: matrix.expect("indices in range"),
         right: forces.iter().flat_map(|force| force.to_array()).collect(),

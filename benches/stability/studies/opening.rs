@@ -167,7 +167,7 @@ fn run(effort: Effort) -> Finding {
         let steps = [(&case.records, ""), (&records, ", floating block")];
         for (records, place) in steps {
             let worst = worst_step(records);
-            let place = format!("{name}{place}, factor {}", worst.load);
+            let place = format!("{name}{place}, factor {}", worst.load.factors[0]);
             hold_promise(&mut misses, &place, worst);
         }
         let hysteresis = largest(case.hysteresis.iter().copied());

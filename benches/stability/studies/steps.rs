@@ -129,7 +129,7 @@ fn run(effort: Effort) -> Finding {
         for record in &case.records {
             hold_promise(
                 &mut misses,
-                &format!("{name}, load {}", record.load),
+                &format!("{name}, load {}", record.load.factors[0]),
                 record,
             );
         }

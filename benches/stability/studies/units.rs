@@ -3,8 +3,8 @@
 use kluft::chart::{Axis, Chart, Series};
 use lie_core::ClosureKind;
 use lie_solver::{
-    Discretisation, LinearMethod, Linearisation, NewtonSettings, Problem, Solution, StepRecord,
-    Support, SurfaceLoad, System, norm,
+    Discretisation, LinearMethod, Linearisation, Load, NewtonSettings, Problem, Solution,
+    StepRecord, Support, SurfaceLoad, System, norm,
 };
 
 use super::{Effort, Finding, Study, Table, count, entry, hold_promise, largest};
@@ -98,7 +98,7 @@ fn solved(problem: &Problem, method: Option<LinearMethod>) -> (StepRecord, Solut
 fn absolute_test(problem: &Problem, exact: &Solution, newton: f64) -> f64 {
     let system = System::assemble(problem, Discretisation::of(problem).expect("supported"));
     let settings = NewtonSettings {
-        force: ABSOLUTE * newton / norm(&system.loads.applied),
+        force: ABSOLUTE * newton / norm(&system.load_forces(&Load::proportional(1.0))),
         increment: f64::INFINITY,
         closure: f64::INFINITY,
         linearisation: Linearisation::Landed,
