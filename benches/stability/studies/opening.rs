@@ -201,6 +201,7 @@ fn run(effort: Effort) -> Finding {
             .iter()
             .flat_map(|case| case.hysteresis.iter().copied()),
     );
+    let pull = LIFT / (1.0 / JOINT.0 + 2.0 / ROCK.young_modulus);
     let series = |case: &Case| {
         let points = case.records.chunks(CYCLE.len()).enumerate();
         let of_cycle = |(cycle, records): (usize, &[StepRecord])| {
@@ -216,11 +217,12 @@ fn run(effort: Effort) -> Finding {
         ),
         paragraph: format!(
             "Contact that opens and closes makes methods cycle between two states. Two blocks are pressed together and \
-             pulled apart by 1 mm, {cycles} times, with `tension_cutoff` (linear, logarithmic, hyperbolic) and with \
+             pulled apart by 1 mm, where a linear law with tension would hold them back by {:.0} MPa, {cycles} times, with `tension_cutoff` (linear, logarithmic, hyperbolic) and with \
              `contact`: openings and tractions follow the closed form (a joint in series with 2 m of rock; none once \
              open) to {error:.0e}, cycles repeat to {hysteresis:.0e}, steps take at most {newton} iterations. A block \
              between two joints of which the upper is open floats on the lower by its weight alone, which the joint \
-             carries to {worst_weight:.0e}."
+             carries to {worst_weight:.0e}.",
+            1e-6 * pull
         ),
         charts: vec![(
             "opening",

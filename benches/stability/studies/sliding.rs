@@ -9,6 +9,7 @@ use lie_solver::{
 
 use super::blocks::{fracture, stack, wedge};
 use super::cycles::hysteresis;
+use super::steps::difference;
 use super::{
     Effort, Finding, Study, Table, count, entry, height, hold_promise, hold_promise_with_friction,
     largest, most, worst_step,
@@ -47,9 +48,9 @@ fn rubbing(closure: Closure, shear_stiffness: f64, dilation: f64) -> FractureLaw
     }
 }
 
-fn laws() -> Vec<(&'static str, FractureLaw)> {
+fn laws() -> [(&'static str, FractureLaw); 5] {
     let closure = |kind| Closure::new(1e-4, 50e9, kind);
-    vec![
+    [
         ("linear", rubbing(closure(ClosureKind::Linear), 20e9, 0.0)),
         ("logarithmic", rubbing(closure(EXACT), 20e9, 0.0)),
         (
@@ -114,6 +115,44 @@ fn case(name: &'static str, law: FractureLaw, cycles: usize) -> Case {
         beyond: largest(solutions.iter().map(beyond_limit)),
         hysteresis: hysteresis(&solutions[CYCLE.len()..], &[0, 1, 2, 3]),
     }
+}
+
+/// There and back in so many steps each, divided by the program or not: iterations in all, and the
+/// state in the end.
+fn there_and_back(law: FractureLaw, steps: usize, divided: bool) -> (Option<usize>, Solution) {
+    let share = |step: usize| step as f64 / steps as f64;
+    let there = (1..=steps).map(share);
+    let back = (1..=steps).map(|step| 1.0 - 2.0 * share(step));
+    let mut settings = NewtonSettings::default();
+    if !divided {
+        settings.path = f64::INFINITY;
+    }
+    let path = scenes::solve_path(&shear_box(law), settings, there.chain(back));
+    let (records, solutions): (Vec<_>, Vec<_>) = path.into_iter().unzip();
+    let counts = records.iter().map(count);
+    let all = counts.sum::<Option<usize>>();
+    (all, solutions.into_iter().next_back().expect("a step"))
+}
+
+/// What dividing the steps costs and brings: errors over the iterations, against many small steps.
+fn paths(effort: Effort) -> Vec<Series> {
+    let (finest, steps): (usize, &[usize]) = match effort {
+        Effort::Quick => (16, &[1, 4]),
+        Effort::Full => (512, &[1, 2, 4, 8, 16, 32, 64]),
+    };
+    let [(_, law), ..] = laws();
+    let (_, reference) = there_and_back(law, finest, false);
+    let curve = |name: &str, divided: bool| {
+        let point = |&steps: &usize| {
+            let (count, end) = there_and_back(law, steps, divided);
+            (height(count), difference(&reference, &end))
+        };
+        Series::line(name, steps.iter().map(point).collect())
+    };
+    vec![
+        curve("steps as given", false),
+        curve("divided, Kluft", true),
+    ]
 }
 
 /// A wedge pressed between two joints, without friction and with it: records, how far the joints are
@@ -255,18 +294,27 @@ fn run(effort: Effort) -> Finding {
             .flat_map(|case| case.hysteresis.iter().copied()),
     );
     let beyond = largest(cases.iter().map(|case| case.beyond));
+    let paths = paths(effort);
+    let coarsest = |series: &Series| series.points[0];
+    let (given, divided) = (coarsest(&paths[0]), coarsest(&paths[1]));
     Finding {
-        breaks: "nothing else is run here".to_owned(),
+        breaks: format!(
+            "steps taken as given: jumps and tractions wrong by {:.0e} after one step there and one back, {:.0e} if \
+             the program divides them",
+            given.1, divided.1
+        ),
         ours: format!(
             "at most {newton} iterations a step of shear, all its parts together; shear beyond the limit {beyond:.0e}"
         ),
         paragraph: format!(
-            "Stick and slip is where Newton's method cycles in many programs. A shear box under 5 MPa is pushed to and \
-             fro by 2 mm, {cycles} times, with five laws: a step, which the program divides where the way matters, takes \
-             at most {newton} iterations in all its parts, and one part at most {part}; shear stays within the limit of friction to {beyond:.0e}, and \
-             from the second cycle on the loop repeats to {repeats:.0e} (without \
-             dilation, which never goes back). A wedge pressed between two joints has one solution without friction, and \
-             the joints carry its load."
+            "Friction makes the way matter: a step from one side to the other in one go is wrong by {:.1e} of the largest \
+             jump or traction, though it converges in {} iterations. Kluft walks each part of a step in one go and in \
+             two, and divides it where they differ: wrong by {:.1e}, for {} iterations. A shear box under 5 MPa is pushed \
+             to and fro by 2 mm, {cycles} times, with five laws: a step takes at most {newton} iterations in all its \
+             parts, one part at most {part}; shear stays within the limit of friction to {beyond:.0e}, and from the \
+             second cycle on the loop repeats to {repeats:.0e} (without dilation, which never goes back). A wedge \
+             pressed between two joints is held by them at every angle, with friction and without.",
+            given.1, given.0, divided.1, divided.0
         ),
         charts: vec![
             (
@@ -278,6 +326,19 @@ fn run(effort: Effort) -> Finding {
                         "Shear to and fro: most iterations of a step, all parts together",
                         Axis::linear("cycle"),
                         Axis::linear("Newton iterations"),
+                    )
+                },
+            ),
+            (
+                "sliding-path",
+                Chart {
+                    series: paths,
+                    failure: "no convergence".into(),
+                    front: true,
+                    ..Chart::new(
+                        "There and back in 1 to 64 steps each: error over cost",
+                        Axis::logarithmic("Newton iterations in all"),
+                        Axis::logarithmic("error of jumps and tractions (relative)").from(1e-12),
                     )
                 },
             ),
