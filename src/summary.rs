@@ -76,6 +76,8 @@ pub struct StepSummary {
     pub phase: Option<String>,
     /// Newton iterations, each with one linear solve.
     pub newton_iterations: usize,
+    /// Newton iterations of each part that the step was divided into, and that converged.
+    pub parts: Vec<usize>,
     /// Iterations of an iterative linear solver; 0 with a direct one.
     pub linear_iterations: usize,
     /// Out-of-balance force at the end, against the largest force.
@@ -98,6 +100,7 @@ impl StepSummary {
             time: step.load.time,
             phase: step.phase.clone(),
             newton_iterations: record.iterations.len(),
+            parts: record.parts.clone(),
             linear_iterations: record.linear_iterations(),
             force_residual: measure(|last| last.force_residual),
             increment: measure(|last| last.increment),

@@ -11,7 +11,8 @@ const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
 
 /// Reads a section on a fracture.
 pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
-    let closure = closure_name(section)?;
+    let known = closure_name(section);
+    let closure = known.unwrap_or("linear");
     let contact = closure == "contact";
     let rubs = section.has("friction_angle");
     let needed = [
@@ -42,6 +43,7 @@ pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<F
     if contact {
         refuse_in_contact(section);
     }
+    known?;
     let closure = if contact {
         Closure::contact(aperture?)
     } else {
@@ -87,7 +89,7 @@ fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>)
             section.refuse(
                 key,
                 format!("{key} {value} is above the aperture {aperture}"),
-                "it must lie between 0 and the aperture, or be left out",
+                "it must lie between 0 and the aperture; leave it out for the exact law",
             );
         }
         Some(value)

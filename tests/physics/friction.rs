@@ -60,6 +60,7 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
         for stiffness in [20e9, f64::INFINITY] {
             for (axial, slides) in [(3.4606e6, false), (3.4676e6, true)] {
                 let problem = column(rubbing(closure, stiffness, 30.0, 1e6), axial);
+                let start = std::time::Instant::now();
                 let (record, solution, _) = scenes::try_solve(&problem, NewtonSettings::default());
                 println!(
                     "{:?} {stiffness:e} {axial}: {:?} {:?} {}",
@@ -74,7 +75,16 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
                     .iter()
                     .map(|p| p.slip.length())
                     .fold(0.0, f64::max);
-                println!("   slip {largest:e}");
+                let sliding = solution
+                    .facet_points
+                    .iter()
+                    .filter(|p| p.state == lie_solver::FacetState::Slipping)
+                    .count();
+                println!(
+                    "   slip {largest:e} {sliding} of {} {:?}",
+                    solution.facet_points.len(),
+                    start.elapsed()
+                );
             }
         }
     }

@@ -14,6 +14,9 @@ use crate::conjugate_gradients::{
 /// Directions that are kept before the iteration starts anew from what it has.
 const RESTART: usize = 60;
 
+/// Share of the residual that a whole cycle may leave.
+const STAGNANT: f64 = 0.3;
+
 /// Solves `A x = b`: `product` computes `A v`, `precondition` an approximation of `A^-1 r`, each into
 /// its second argument. `solution` is the initial guess on entry and the last iterate on return. Sums
 /// have a fixed order.
@@ -44,8 +47,9 @@ pub(crate) fn gmres(
         }
         let mut space = Krylov::from(residual, length);
         let goal = settings.tolerance * scale;
+        let mut left = length;
         while space.images.len() < RESTART && residuals.len() <= settings.max_iterations {
-            let left = space.grow(&mut product, &mut precondition);
+            left = space.grow(&mut product, &mut precondition);
             residuals.push(left / scale);
             if !left.is_finite() || left <= goal {
                 break;
@@ -54,10 +58,8 @@ pub(crate) fn gmres(
         if !space.add_to(solution) {
             break Outcome::Breakdown;
         }
-        if residuals.len() > 1
-            && residuals.last() >= residuals.get(residuals.len() - 2)
-            && space.images.len() == RESTART
-        {
+        // A cycle that gains little is followed by more of the same.
+        if space.images.len() == RESTART && left > STAGNANT * length {
             break Outcome::Breakdown;
         }
     };
@@ -111,8 +113,7 @@ impl Krylov {
             for (entry, former) in column.iter_mut().zip(&self.basis) {
                 let share = dot(&next, former);
                 *entry += share;
-                let pairs = next.par_iter_mut().zip(former);
-                pairs.for_each(|(v, w)| *v -= share * *w);
+                add(-share, former, &mut next);
             }
         }
         let length = dot(&next, &next).sqrt();
@@ -160,18 +161,35 @@ impl Krylov {
             return false;
         }
         for (share, image) in shares.iter().zip(&self.images) {
-            let pairs = solution.par_iter_mut().zip(image);
-            pairs.for_each(|(x, z)| *x += *share * *z);
+            add(*share, image, solution);
         }
         true
     }
 }
 
+/// Adds `share` times `from` to `to`.
+fn add(share: f64, from: &[DVec3], to: &mut [DVec3]) {
+    let add = |(to, from): (&mut [DVec3], &[DVec3])| {
+        for (to, from) in to.iter_mut().zip(from) {
+            *to += share * *from;
+        }
+    };
+    // Waking another thread costs more than a short vector.
+    if from.len() <= PER_TASK {
+        add((to, from));
+    } else {
+        let pairs = to.par_chunks_mut(PER_TASK).zip(from.par_chunks(PER_TASK));
+        pairs.for_each(add);
+    }
+}
+
 fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    let part = |(a, b): (&[DVec3], &[DVec3])| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum();
+    if a.len() <= PER_TASK {
+        return part((a, b));
+    }
     let tasks = a.par_chunks(PER_TASK).zip(b.par_chunks(PER_TASK));
-    let sums: Vec<f64> = tasks
-        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum())
-        .collect();
+    let sums: Vec<f64> = tasks.map(part).collect();
     sums.iter().sum()
 }
 

@@ -27,10 +27,40 @@ const MOTIONS: [&str; 6] = [
     "rotation about z",
 ];
 
-/// Names every group of blocks that can move freely.
+/// What the walls of a facet resist.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tie {
+    /// Moving apart and together.
+    pub(crate) across: bool,
+    /// Sliding.
+    pub(crate) along: bool,
+}
+
+/// Names every group of blocks that can move freely before anything has moved.
 pub(crate) fn find(problem: &Problem, points: &Points, supports: &Supports) -> Vec<Defect> {
+    let tie = |facet: usize| {
+        let law = &problem.fractures[problem.mesh.facets.fracture[facet] as usize].law;
+        Tie {
+            across: law.closure.normal_stiffness > 0.0,
+            along: law.shear_stiffness > 0.0,
+        }
+    };
+    let remedy = "add a [boundary.NAME] with displacement or symmetry, a [[fixed_point]], or stiffness on the fractures around it";
+    let facets = 0..problem.mesh.facets.elements.len();
+    let ties: Vec<Tie> = facets.map(tie).collect();
+    find_with(problem, points, supports, &ties, remedy)
+}
+
+/// Names every group of blocks that can move freely with what `ties` hold, one for each facet.
+pub(crate) fn find_with(
+    problem: &Problem,
+    points: &Points,
+    supports: &Supports,
+    ties: &[Tie],
+    remedy: &str,
+) -> Vec<Defect> {
     let mesh = &problem.mesh;
-    let (body_of_block, body_count) = tie_blocks(problem);
+    let (body_of_block, body_count) = tie_blocks(mesh, ties);
     if body_count > MOST_BLOCKS {
         return Vec::new();
     }
@@ -38,6 +68,7 @@ pub(crate) fn find(problem: &Problem, points: &Points, supports: &Supports) -> V
     let constraints = Constraints {
         problem,
         points,
+        ties,
         body_of_block: &body_of_block,
         body_of_point: &body_of_point,
         bounds: mesh.bounds(),
@@ -59,20 +90,18 @@ pub(crate) fn find(problem: &Problem, points: &Points, supports: &Supports) -> V
     (0..body_count)
         .filter_map(|body| {
             let shares: Vec<f64> = (0..6).map(|motion| share(body, motion)).collect();
-            describe(mesh, &body_of_block, body, &shares)
+            describe(mesh, &body_of_block, body, &shares, remedy)
         })
         .collect()
 }
 
 /// Blocks joined by fractures stiff in normal and shear move as one body.
-fn tie_blocks(problem: &Problem) -> (Vec<u32>, usize) {
-    let mesh = &problem.mesh;
+fn tie_blocks(mesh: &Mesh, ties: &[Tie]) -> (Vec<u32>, usize) {
     let mut body: Vec<u32> = (0..mesh.block_count as u32).collect();
     loop {
         let mut changed = false;
-        for facet in 0..mesh.facets.elements.len() {
-            let law = &problem.fractures[mesh.facets.fracture[facet] as usize].law;
-            let stiff = law.closure.normal_stiffness > 0.0 && law.shear_stiffness > 0.0;
+        for (facet, tie) in ties.iter().enumerate() {
+            let stiff = tie.across && tie.along;
             let [a, b] = blocks_at(mesh, facet);
             if stiff && body[a] != body[b] {
                 let low = body[a].min(body[b]);
@@ -112,6 +141,7 @@ fn bodies_of_points(mesh: &Mesh, points: &Points, body_of_block: &[u32]) -> Vec<
 struct Constraints<'a> {
     problem: &'a Problem,
     points: &'a Points,
+    ties: &'a [Tie],
     body_of_block: &'a [u32],
     body_of_point: &'a [u32],
     bounds: (DVec3, DVec3),
@@ -146,17 +176,17 @@ impl Constraints<'_> {
         if plus == minus {
             return;
         }
-        let law = &self.problem.fractures[mesh.facets.fracture[facet] as usize].law;
+        let tie = self.ties[facet];
         let corners = mesh.corners(&mesh.facets.elements, facet);
         let normal = facet_area_vector(&corners).normalize();
         for at in corners {
             for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
                 let across = axis.dot(normal) * normal;
                 let mut resisted = DVec3::ZERO;
-                if law.closure.normal_stiffness > 0.0 {
+                if tie.across {
                     resisted += across;
                 }
-                if law.shear_stiffness > 0.0 {
+                if tie.along {
                     resisted += axis - across;
                 }
                 let motion = |body: usize, direction: DVec3| (body, self.motion(at, direction));
@@ -189,7 +219,13 @@ fn add(sum: &mut Mat<f64>, parts: &[(usize, [f64; 6])]) {
 
 /// A motion is named if half of it or more is free; if none is, the block turns about some other
 /// axis.
-fn describe(mesh: &Mesh, body_of_block: &[u32], body: usize, shares: &[f64]) -> Option<Defect> {
+fn describe(
+    mesh: &Mesh,
+    body_of_block: &[u32],
+    body: usize,
+    shares: &[f64],
+    remedy: &str,
+) -> Option<Defect> {
     if shares.iter().all(|share| *share < 1e-6) {
         return None;
     }
@@ -218,6 +254,6 @@ fn describe(mesh: &Mesh, body_of_block: &[u32], body: usize, shares: &[f64]) -> 
             low.x, low.y, low.z, high.x, high.y, high.z
         ),
         format!("nothing holds it: {motions} is free"),
-        "add a [boundary.NAME] with displacement or symmetry, a [[fixed_point]], or stiffness on the fractures around it",
+        remedy,
     ))
 }

@@ -9,7 +9,7 @@ use crate::gmres::gmres;
 use crate::system::System;
 
 /// Iterations after which a linear solve has failed.
-const MAX_ITERATIONS: usize = 600;
+const MAX_ITERATIONS: usize = 240;
 /// Residual, as a share of the right-hand side, that an iteration which gains nothing more may leave.
 const ROUNDED: f64 = 1e-3;
 

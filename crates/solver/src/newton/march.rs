@@ -10,7 +10,7 @@ use super::{Iteration, Linearisation, Newton, Outcome, StepRecord, interface, la
 use crate::schedule::Load;
 use crate::system::{State, System};
 
-/// Smallest part of a load step that is tried.
+/// Smallest part of a load step that is tried; what it differs from two halves is let be.
 const SMALLEST: f64 = 1.0 / 64.0;
 /// Below this share of the error allowed the next part is twice as long.
 const LONGER: f64 = 0.25;
@@ -36,6 +36,7 @@ impl Newton {
         if self.settings.linearisation == Linearisation::Landed {
             return match self.attempt(system, state, load, record, observe) {
                 Ok(end) => {
+                    record.walked = 1.0;
                     *state = end;
                     Outcome::Converged
                 }
@@ -44,21 +45,33 @@ impl Newton {
         }
         let start = state.load.clone();
         let mut here = state.clone();
-        let (mut walked, mut share) = (0.0, 1.0_f64);
-        while walked < 1.0 {
-            let end = f64::min(walked + share, 1.0);
+        // Without friction a block that flies at the end flies whatever the way.
+        let divides = system.is_path_dependent();
+        let mut share = 1.0_f64;
+        while record.walked < 1.0 {
+            let end = f64::min(record.walked + share, 1.0);
             let at = |way: f64| match way {
                 1.0 => load.clone(),
                 _ => Load::between(&start, load, way),
             };
-            let middle = at(0.5 * (walked + end));
-            match self.part(system, &here, [&middle, &at(end)], record, observe) {
+            let middle = at(0.5 * (record.walked + end));
+            let allowed = if share <= SMALLEST {
+                f64::INFINITY
+            } else {
+                self.settings.path
+            };
+            let part = self.part(system, &here, [&middle, &at(end)], allowed, record, observe);
+            match part {
                 Part::Walked(next, may_grow) => {
                     self.path.remember(system, &here);
-                    (here, walked) = (next, end);
+                    (here, record.walked) = (next, end);
                     share = if may_grow { 2.0 * share } else { share };
                 }
-                Part::TooLong(Some(outcome)) if share <= SMALLEST => return outcome,
+                Part::TooLong(Some(outcome))
+                    if share <= SMALLEST || (outcome == Outcome::Loose && !divides) =>
+                {
+                    return outcome;
+                }
                 Part::TooLong(_) => share *= 0.5,
             }
         }
@@ -71,6 +84,7 @@ impl Newton {
         system: &System<'_>,
         from: &State,
         [middle, end]: [&Load; 2],
+        allowed: f64,
         record: &mut StepRecord,
         observe: &mut dyn FnMut(usize, &Iteration),
     ) -> Part {
@@ -95,7 +109,7 @@ impl Newton {
             Err(outcome) => return Part::TooLong(Some(outcome)),
         };
         let error = difference(system, &whole, &halves);
-        if error <= self.settings.path {
+        if error <= allowed {
             Part::Walked(halves, error <= LONGER * self.settings.path)
         } else {
             Part::TooLong(None)

@@ -13,6 +13,7 @@
 //! soft against their elements.
 
 mod extrapolation;
+mod loose;
 mod march;
 mod record;
 mod walls;
@@ -36,6 +37,12 @@ const LOOSEST_SOLVE: f64 = 1e-3;
 /// Share of the largest sizes of a path that still counts once the loads are gone: what is left then
 /// is rounding, and would be compared with nothing but itself.
 const REMEMBERED: f64 = 1e-3;
+
+/// Iterations before blocks that fly are looked for, those that they may fly, and the force out of
+/// balance, against the largest, that makes them.
+const PATIENCE: usize = 8;
+const FLIGHTS: usize = 3;
+const UNBALANCED: f64 = 1e-4;
 
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
 ///
@@ -114,18 +121,52 @@ impl Newton {
         observe: &mut dyn FnMut(usize, &Iteration),
     ) -> Result<State, Outcome> {
         let mut trial = self.start(system, state, load);
-        for _ in 0..self.settings.max_iterations {
-            let iteration = self.iterate(system, &mut trial, record)?;
+        record.loose.clear();
+        let outcome = self.settle(system, &mut trial, record, observe);
+        if outcome == Outcome::Converged {
+            let state = &mut trial.state;
+            walls::commit(system, state);
+            state.reached = trial.sizes.or_share(1.0, state.reached);
+            return Ok(trial.state);
+        }
+        if record.loose.is_empty() && !system.is_smooth() {
+            record.loose = loose::find(system, &trial.state);
+        }
+        Err(outcome)
+    }
+
+    /// Iterates until the tests hold, or it is clear that they will not.
+    fn settle(
+        &mut self,
+        system: &System<'_>,
+        trial: &mut Trial,
+        record: &mut StepRecord,
+        observe: &mut dyn FnMut(usize, &Iteration),
+    ) -> Outcome {
+        let mut flights = 0;
+        for count in 1..=self.settings.max_iterations {
+            let iteration = match self.iterate(system, trial, record) {
+                Ok(iteration) => iteration,
+                Err(outcome) => return outcome,
+            };
             record.iterations.push(iteration);
             observe(record.iterations.len(), &iteration);
             if self.is_converged(system, &iteration) {
-                let state = &mut trial.state;
-                walls::commit(system, state);
-                state.reached = trial.sizes.or_share(1.0, state.reached);
-                return Ok(trial.state);
+                return Outcome::Converged;
+            }
+            if count >= PATIENCE && !system.is_smooth() && iteration.force_residual > UNBALANCED {
+                record.loose = loose::find(system, &trial.state);
+                flights = if record.loose.is_empty() {
+                    0
+                } else {
+                    flights + 1
+                };
+            }
+            if flights == FLIGHTS {
+                return Outcome::Loose;
             }
         }
-        Err(Outcome::OutOfIterations)
+        Outcome::OutOfIterations
     }
 
     /// The first guess for a step.

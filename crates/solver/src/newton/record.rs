@@ -1,5 +1,7 @@
 //! Settings of a nonlinear solve, and its record.
 
+use lie_mesh::Defect;
+
 use crate::linear::{LinearFailure, LinearMethod};
 use crate::schedule::Load;
 
@@ -71,6 +73,8 @@ pub enum Outcome {
     Converged,
     /// The iterations ran out.
     OutOfIterations,
+    /// Loads push blocks that nothing holds any more, see [`StepRecord::loose`].
+    Loose,
     /// An iterate is not a number or not finite; the facet point where it showed, if there.
     NotFinite(Option<usize>),
     /// The linear system could not be solved.
@@ -86,8 +90,12 @@ pub struct StepRecord {
     pub iterations: Vec<Iteration>,
     /// Iterations of each part that converged.
     pub parts: Vec<usize>,
+    /// Share of the way from the load before that was walked.
+    pub walked: f64,
     /// How it ended.
     pub outcome: Outcome,
+    /// Blocks that nothing held when it failed, each with its free motions.
+    pub loose: Vec<Defect>,
     /// The facet point with the largest closure error at the end.
     pub worst_facet_point: Option<usize>,
     /// Time spent in factorisations (s).
@@ -102,6 +110,8 @@ impl StepRecord {
             load,
             iterations: Vec::new(),
             parts: Vec::new(),
+            walked: 0.0,
+            loose: Vec::new(),
             outcome: Outcome::OutOfIterations,
             worst_facet_point: None,
             factorise_seconds: 0.0,

@@ -89,7 +89,7 @@ pub(super) fn reined(system: &System<'_>, tangents: &Tangents) -> Tangents {
     }
 }
 
-fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointState) -> Tangent {
+pub(super) fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointState) -> Tangent {
     law.tangent(
         &state.walls,
         &state.memory,
