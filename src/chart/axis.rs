@@ -8,6 +8,8 @@ use plotters::coord::ranged1d::{
 
 /// Most ticks on an axis.
 const MOST_TICKS: usize = 11;
+/// Logarithmic axes of fewer decades have ticks between the powers of ten.
+const FEW_DECADES: f64 = 2.0;
 /// Free space beyond the outermost values, as a share of their range.
 const MARGIN: f64 = 0.05;
 
@@ -76,12 +78,12 @@ impl Axis {
     /// The range of the axis for values it takes.
     pub(super) fn over(&self, values: impl Iterator<Item = f64>) -> Spanned {
         let forth = |value: f64| self.scale.forth(self.at(value));
-        let (mut low, mut high) = values
+        let places: Vec<f64> = values
             .filter(|&value| self.takes(value))
             .map(forth)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            });
+            .collect();
+        let mut low = places.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if low > high {
             (low, high) = (0.0, 1.0);
         }
@@ -95,6 +97,7 @@ impl Axis {
         Spanned {
             scale: self.scale,
             floor: self.floor,
+            counts: places.iter().all(|place| place.fract() == 0.0),
             low: low - MARGIN * width,
             high: high + MARGIN * width,
         }
@@ -122,6 +125,8 @@ impl Scale {
 pub(super) struct Spanned {
     scale: Scale,
     floor: Option<f64>,
+    /// Whether all values are whole, so that ticks between whole numbers would mean nothing.
+    counts: bool,
     low: f64,
     high: f64,
 }
@@ -135,9 +140,12 @@ impl Spanned {
 
     /// Values with a tick.
     fn ticks(&self) -> Vec<f64> {
+        let range = self.high - self.low;
         let step = match self.scale {
-            Scale::Linear => nice_step(self.high - self.low),
-            Scale::Logarithmic => whole_step(self.high - self.low),
+            Scale::Linear if self.counts => nice_step(range).max(1.0),
+            Scale::Linear => nice_step(range),
+            Scale::Logarithmic if range < FEW_DECADES => return self.ticks_within_decades(),
+            Scale::Logarithmic => whole_step(range),
         };
         let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
         let count = (last - first) as usize;
@@ -145,10 +153,18 @@ impl Spanned {
         ticks.map(|place| self.scale.back(place)).collect()
     }
 
+    /// 1, 2 and 5 times each power of ten.
+    fn ticks_within_decades(&self) -> Vec<f64> {
+        let decades = self.low.floor() as i32..=self.high.floor() as i32;
+        let ticks = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|n| n * 10.0_f64.powi(decade)));
+        let inside = |tick: &f64| (self.low..=self.high).contains(&tick.log10());
+        ticks.filter(inside).collect()
+    }
+
     fn label(&self, value: f64) -> String {
         let text = match self.scale {
             Scale::Linear => plain(value),
-            Scale::Logarithmic => power_of_ten(value.log10().round() as i32),
+            Scale::Logarithmic => multiple_of_power(value),
         };
         match self.floor {
             Some(floor) if value <= floor * 1.000_001 => format!("≤ {text}"),
@@ -175,6 +191,19 @@ fn plain(value: f64) -> String {
     let rounded = format!("{value:.9}");
     let text = rounded.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0" } else { text }.replace('-', "−")
+}
+
+/// `10⁻³`, or `2·10⁻³`.
+fn multiple_of_power(value: f64) -> String {
+    // A little more than the logarithm, which may be rounded down.
+    let exponent = (value.log10() + 1e-9).floor() as i32;
+    let factor = (value / 10.0_f64.powi(exponent)).round();
+    let power = power_of_ten(exponent);
+    if factor == 1.0 {
+        power
+    } else {
+        format!("{factor}·{power}")
+    }
 }
 
 /// `10⁻³`.
@@ -237,6 +266,19 @@ mod tests {
         assert_eq!(labels[1], "5");
         assert_eq!(plain(0.1 + 0.2), "0.3");
         assert_eq!(plain(-0.25), "−0.25");
+    }
+
+    #[test]
+    fn few_decades_have_ticks_between() {
+        let axis = Axis::logarithmic("error").over([3e-3, 0.06].into_iter());
+        let labels: Vec<String> = axis.ticks().iter().map(|&tick| axis.label(tick)).collect();
+        assert_eq!(labels, ["5·10⁻³", "10⁻²", "2·10⁻²", "5·10⁻²"]);
+    }
+
+    #[test]
+    fn counts_have_no_ticks_between() {
+        let axis = Axis::linear("iterations").over([1.0, 3.0].into_iter());
+        assert_eq!(axis.ticks(), [0.0, 1.0, 2.0, 3.0]);
     }
 
     #[test]
