@@ -2,8 +2,8 @@
 
 use lie_mesh::Defect;
 use lie_solver::{
-    LinearFailure, LinearMethod, Outcome, Plan, Prediction, Problem, Schedule, Step, StepRecord,
-    Support, System,
+    LinearFailure, LinearMethod, NewtonSettings, Outcome, Plan, Prediction, Problem, Schedule,
+    Step, StepRecord, Support, System,
 };
 
 use crate::scene::SolverEntry;
@@ -58,7 +58,13 @@ pub fn of_problem(problem: &Problem) -> Vec<String> {
     if nothing_acts(problem) {
         lines.push("nothing acts: no load, no pressure, no prescribed displacement".into());
     }
-    if problem.schedule.steps.len() > 1 {
+    let rubbing = names(&lie_core::FractureLaw::is_path_dependent);
+    if !rubbing.is_empty() {
+        let accuracy = NewtonSettings::default().path;
+        lines.push(format!(
+            "{rubbing} can slide or break: the way of the loads matters, steps are divided until jumps agree to {accuracy} of the largest"
+        ));
+    } else if problem.schedule.steps.len() > 1 {
         let why = "no law has friction: the end state does not depend on the load steps";
         lines.push(why.into());
     }

@@ -96,22 +96,28 @@ pub struct Workload {
     pub steps: usize,
     /// Whether a step takes more than one linear solve.
     pub is_nonlinear: bool,
+    /// Whether tractions depend on the way, as with friction: each step is walked in one part and in
+    /// two, and the tangents are not symmetric.
+    pub is_path_dependent: bool,
 }
 
 impl Workload {
     /// What a problem asks for.
     pub fn of(problem: &Problem) -> Self {
-        let mut laws = problem.fractures.iter().map(|fracture| fracture.law);
+        let laws = || problem.fractures.iter().map(|fracture| fracture.law);
         Self {
             steps: problem.schedule.steps.len(),
-            is_nonlinear: laws.any(|law| !law.is_linear()),
+            is_nonlinear: laws().any(|law| !law.is_linear()),
+            is_path_dependent: laws().any(|law| law.is_path_dependent()),
         }
     }
 
     /// Linear solves of the whole run: Newton takes about four iterations in its first step and two
-    /// in a step that continues a path.
+    /// in a step that continues a path. Friction has no path to continue.
     fn solves(self) -> f64 {
-        if self.is_nonlinear {
+        if self.is_path_dependent {
+            15.0 * self.steps as f64
+        } else if self.is_nonlinear {
             2.0 + 2.0 * self.steps as f64
         } else {
             self.steps as f64
@@ -278,8 +284,12 @@ fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     const SETUP_BYTES: f64 = 4000.0;
     const ITERATION_BYTES: f64 = 400.0;
     const MEMORY_BYTES: f64 = 190.0;
+    /// Iterations of a solve that is not symmetric, which cost more than those of one that is.
+    const UNSYMMETRIC: f64 = 60.0;
     let blocks = unknowns.pattern.columns.len() as f64;
-    let iterations = if workload.is_nonlinear {
+    let iterations = if workload.is_path_dependent {
+        UNSYMMETRIC * workload.solves()
+    } else if workload.is_nonlinear {
         30.0 + 20.0 * workload.steps as f64
     } else {
         35.0 * workload.steps as f64
