@@ -246,12 +246,13 @@ fn run(effort: Effort) -> Finding {
         breaks: "a law with tension where there is none: the joint would pull the blocks back"
             .to_owned(),
         ours: format!(
-            "closed forms to {error:.0e}, hysteresis {hysteresis:.0e}; at most {newton} iterations a step"
+            "closed forms to {error:.0e}, hysteresis {hysteresis:.0e}, at most {newton} iterations a step; {failed} of \
+             {of_all} floating blocks fail"
         ),
         paragraph: format!(
             "Contact that opens and closes makes methods cycle between two states. Two blocks are pressed together and \
-             pulled apart by 1 mm, where a linear law with tension would hold them back by {:.0} MPa, {cycles} times, with `tension_cutoff` (linear, logarithmic, hyperbolic) and with \
-             `contact`: openings and tractions follow the closed form (a joint in series with 2 m of rock; none once \
+             pulled apart by 1 mm, where a linear law with tension would hold them back by {:.0} MPa, {cycles} times, \
+             with `tension_cutoff` (linear, logarithmic, hyperbolic) and with `contact`: openings and tractions follow the closed form (a joint in series with 2 m of rock; none once \
              open) to {error:.0e}, cycles repeat to {hysteresis:.0e}, steps take at most {newton} iterations. A block \
              between two joints, the upper one lifted off by 1e-9 to 0.1 m, floats on the lower one by its weight alone: \
              {failed} of {of_all} such cases fail, the others take up to {slowest} iterations a step.",
