@@ -153,8 +153,15 @@ fn charts(cases: &[Case], exact: &StepRecord, touching: f64) -> Vec<(&'static st
     ]
 }
 
+/// Share of the facet points that are open.
+fn open_share(solution: &Solution) -> f64 {
+    let points = solution.facet_points.iter();
+    let open = points.filter(|point| point.opening > 0.0).count();
+    open as f64 / solution.facet_points.len() as f64
+}
+
 fn run(effort: Effort) -> Finding {
-    let exponents: Vec<i32> = match effort {
+    let exponents = match effort {
         Effort::Quick => vec![-3, 2, 8],
         Effort::Full => (-3..=8).collect(),
     };
@@ -162,16 +169,15 @@ fn run(effort: Effort) -> Finding {
     let mut misses = Vec::new();
     hold_promise(&mut misses, "contact", &record);
     let touching = penetration(&reference);
-    let cases = exponents
+    let contrasts = exponents
         .into_iter()
-        .map(|e| case(10.0_f64.powi(e), &reference));
-    let cases: Vec<Case> = cases.collect();
+        .map(|exponent| 10.0_f64.powi(exponent));
+    let cases: Vec<Case> = contrasts
+        .map(|contrast| case(contrast, &reference))
+        .collect();
     for case in &cases {
-        hold_promise(
-            &mut misses,
-            &format!("penalty {:e}", case.contrast),
-            &case.ours,
-        );
+        let name = format!("penalty {:e}", case.contrast);
+        hold_promise(&mut misses, &name, &case.ours);
     }
     if touching.is_nan() || touching > 1e-12 {
         misses.push(format!(
@@ -179,19 +185,11 @@ fn run(effort: Effort) -> Finding {
         ));
     }
     let (soft, stiff) = (&cases[0], cases.last().expect("cases"));
-    let open = reference
-        .facet_points
-        .iter()
-        .filter(|point| point.opening > 0.0)
-        .count();
-    let share = 100.0 * open as f64 / reference.facet_points.len() as f64;
+    let share = 100.0 * open_share(&reference);
     let ours = entry(most(cases.iter().map(|case| count(&case.ours))));
     let failed = cases.iter().filter(|case| !case.plain.converged()).count();
-    let plain = cases
-        .iter()
-        .filter_map(|case| count(&case.plain))
-        .max()
-        .unwrap_or(0);
+    let plain = cases.iter().filter_map(|case| count(&case.plain));
+    let plain = plain.max().unwrap_or(0);
     Finding {
         breaks: format!(
             "a penalty: penetration {:.0e} of the displacement at K h/E = {:e}, {:.0e} at {:e}",

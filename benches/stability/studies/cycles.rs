@@ -91,6 +91,64 @@ fn incremental_rest(closure: &Closure, cycles: usize) -> Vec<f64> {
     rests
 }
 
+fn charts(cases: &[Case], rests: &[f64]) -> Vec<(&'static str, Chart)> {
+    let points = |values: &[f64]| -> Vec<(f64, f64)> {
+        let values = values.iter().enumerate();
+        values
+            .map(|(cycle, value)| (cycle as f64 + 1.0, *value))
+            .collect()
+    };
+    let of_law = |law: &str| {
+        let own = || cases.iter().filter(|case| case.name.ends_with(law));
+        let worst = |cycle: usize| largest(own().map(|case| case.hysteresis[cycle]));
+        points(&(0..rests.len()).map(worst).collect::<Vec<f64>>())
+    };
+    vec![(
+        "cycles",
+        Chart {
+            series: vec![
+                Series::line("incremental law", points(rests)),
+                Series::line("logarithmic, worst scene", of_law("logarithmic")),
+                Series::line("linear, worst scene", of_law("linear")),
+            ],
+            ..Chart::new(
+                "Hysteresis over cycles of loading and unloading",
+                Axis::linear("cycle"),
+                Axis::logarithmic("difference from the first loading (relative)").from(1e-17),
+            )
+        },
+    )]
+}
+
+fn table(cases: &[Case], misses: &mut Vec<String>) -> Table {
+    let mut table = Table::new(&[
+        "scene",
+        "cycle",
+        "hysteresis",
+        "most Newton iterations of a step",
+    ]);
+    for case in cases {
+        for record in &case.records {
+            hold_promise(misses, &case.name, record);
+        }
+        let worst = largest(case.hysteresis.iter().copied());
+        if worst.is_nan() || worst > NONE {
+            misses.push(format!("{}: hysteresis {worst:.1e}", case.name));
+        }
+        for (cycle, value) in case.hysteresis.iter().enumerate() {
+            let records = &case.records[CYCLE.len() * cycle..][..CYCLE.len()];
+            let count = most(records.iter().map(super::count));
+            table.push([
+                case.name.clone(),
+                (cycle + 1).to_string(),
+                format!("{value:.2e}"),
+                entry(count),
+            ]);
+        }
+    }
+    table
+}
+
 fn run(effort: Effort) -> Finding {
     let (cycles, scenes): (usize, &[(&str, f64)]) = match effort {
         Effort::Quick => (3, &[("x-junction", 0.3)]),
@@ -116,31 +174,7 @@ fn run(effort: Effort) -> Finding {
     }
     let rests = incremental_rest(&joint(EXACT).law.closure, cycles);
     let mut misses = Vec::new();
-    let mut table = Table::new(&[
-        "scene",
-        "cycle",
-        "hysteresis",
-        "most Newton iterations of a step",
-    ]);
-    for case in &cases {
-        for record in &case.records {
-            hold_promise(&mut misses, &case.name, record);
-        }
-        let worst = largest(case.hysteresis.iter().copied());
-        if worst.is_nan() || worst > NONE {
-            misses.push(format!("{}: hysteresis {worst:.1e}", case.name));
-        }
-        for (cycle, value) in case.hysteresis.iter().enumerate() {
-            let records = &case.records[CYCLE.len() * cycle..][..CYCLE.len()];
-            let count = most(records.iter().map(super::count));
-            table.push([
-                case.name.clone(),
-                (cycle + 1).to_string(),
-                format!("{value:.2e}"),
-                entry(count),
-            ]);
-        }
-    }
+    let table = table(&cases, &mut misses);
     let worst = largest(
         cases
             .iter()
@@ -148,17 +182,6 @@ fn run(effort: Effort) -> Finding {
     );
     let records = cases.iter().flat_map(|case| &case.records);
     let newton = entry(most(records.map(super::count)));
-    let points = |values: &[f64]| -> Vec<(f64, f64)> {
-        let values = values.iter().enumerate();
-        values
-            .map(|(cycle, value)| (cycle as f64 + 1.0, *value))
-            .collect()
-    };
-    let of_law = |law: &str| {
-        let own = || cases.iter().filter(|case| case.name.ends_with(law));
-        let worst = |cycle: usize| largest(own().map(|case| case.hysteresis[cycle]));
-        points(&(0..cycles).map(worst).collect::<Vec<f64>>())
-    };
     let (first, last) = (rests[0], rests[rests.len() - 1]);
     Finding {
         breaks: format!(
@@ -172,21 +195,7 @@ fn run(effort: Effort) -> Finding {
              In Kluft the junctions (X, T, three planes) and the closing blocks return over {cycles} cycles to the \
              same jumps and tractions, to {worst:.0e} of the largest, in at most {newton} Newton iterations a step."
         ),
-        charts: vec![(
-            "cycles",
-            Chart {
-                series: vec![
-                    Series::line("incremental law", points(&rests)),
-                    Series::line("logarithmic, worst scene", of_law("logarithmic")),
-                    Series::line("linear, worst scene", of_law("linear")),
-                ],
-                ..Chart::new(
-                    "Hysteresis over cycles of loading and unloading",
-                    Axis::linear("cycle"),
-                    Axis::logarithmic("difference from the first loading (relative)").from(1e-17),
-                )
-            },
-        )],
+        charts: charts(&cases, &rests),
         table,
         misses,
     }

@@ -83,6 +83,43 @@ fn profile(quadrature: FacetQuadrature) -> Vec<(f64, f64)> {
         .collect()
 }
 
+fn charts(curves: &[Curve]) -> Vec<(&'static str, Chart)> {
+    let series = curves.iter().map(|curve| {
+        let points = curve.points.iter().map(|point| (point.0, point.1));
+        Series::line(
+            format!("{:?}, {}", curve.shape, curve.rule),
+            points.collect(),
+        )
+    });
+    vec![
+        (
+            "front",
+            Chart {
+                series: series.collect(),
+                ..Chart::new(
+                    "A joint in tension ahead of a crack: its smallest traction",
+                    Axis::logarithmic("stiffness of the joint, K h/E"),
+                    Axis::linear("smallest over largest traction (wrong sign below 0)"),
+                )
+            },
+        ),
+        (
+            "front-profile",
+            Chart {
+                series: vec![
+                    Series::line("Gauss", profile(FacetQuadrature::Gauss)),
+                    Series::line("nodal, Kluft", profile(FacetQuadrature::Nodal)),
+                ],
+                ..Chart::new(
+                    "Traction behind the front, linear tetrahedra, K h/E = 10⁴",
+                    Axis::linear("distance from the front (cells)"),
+                    Axis::linear("smallest traction there over the largest of all"),
+                )
+            },
+        ),
+    ]
+}
+
 fn run(effort: Effort) -> Finding {
     let curves = curves(effort);
     let mut table = Table::new(&[
@@ -110,13 +147,6 @@ fn run(effort: Effort) -> Finding {
             }
         }
     }
-    let series = curves.iter().map(|curve| {
-        let points = curve.points.iter().map(|point| (point.0, point.1));
-        Series::line(
-            format!("{:?}, {}", curve.shape, curve.rule),
-            points.collect(),
-        )
-    });
     let wrong = curves
         .iter()
         .flat_map(|curve| &curve.points)
@@ -141,33 +171,7 @@ fn run(effort: Effort) -> Finding {
              nodes, so that the fractures couple no two nodes: no wrong sign at any stiffness, the smallest traction \
              is {nodal:.2} of the largest. [facet-quadrature.md](facet-quadrature.md) has all cells."
         ),
-        charts: vec![
-            (
-                "front",
-                Chart {
-                    series: series.collect(),
-                    ..Chart::new(
-                        "A joint in tension ahead of a crack: its smallest traction",
-                        Axis::logarithmic("stiffness of the joint, K h/E"),
-                        Axis::linear("smallest over largest traction (wrong sign below 0)"),
-                    )
-                },
-            ),
-            (
-                "front-profile",
-                Chart {
-                    series: vec![
-                        Series::line("Gauss", profile(FacetQuadrature::Gauss)),
-                        Series::line("nodal, Kluft", profile(FacetQuadrature::Nodal)),
-                    ],
-                    ..Chart::new(
-                        "Traction behind the front, linear tetrahedra, K h/E = 10⁴",
-                        Axis::linear("distance from the front (cells)"),
-                        Axis::linear("smallest traction there over the largest of all"),
-                    )
-                },
-            ),
-        ],
+        charts: charts(&curves),
         table,
         misses,
     }

@@ -61,6 +61,45 @@ fn total_ratio(problem: &Problem, steps: usize) -> (f64, Vec<StepRecord>) {
     (worst, path.into_iter().map(|(record, _)| record).collect())
 }
 
+/// Error of the traction over the steps.
+fn errors(rows: &[(usize, f64)]) -> Vec<(f64, f64)> {
+    let errors = rows
+        .iter()
+        .map(|(steps, ratio)| (*steps as f64, (ratio - 1.0).abs()));
+    errors.collect()
+}
+
+fn table(theirs: &[(usize, f64)], ours: &[(usize, f64)]) -> Table {
+    let mut table = Table::new(&["law", "steps", "traction / law"]);
+    for (law, rows) in [("incremental", theirs), ("total, Kluft", ours)] {
+        for (steps, ratio) in rows {
+            table.push([law.to_owned(), steps.to_string(), format!("{ratio:.12}")]);
+        }
+    }
+    table
+}
+
+fn charts(theirs: &[(usize, f64)], ours: &[(usize, f64)]) -> Vec<(&'static str, Chart)> {
+    vec![(
+        "increments",
+        Chart {
+            series: vec![
+                Series::line("incremental law", errors(theirs)),
+                Series::line("total law, Kluft", errors(ours)),
+            ],
+            rates: vec![Rate {
+                series: 0,
+                rate: -1.0,
+            }],
+            ..Chart::new(
+                "A joint closed to a tenth: error of the traction over the steps",
+                Axis::logarithmic("load steps"),
+                Axis::logarithmic("error of the traction (relative)").from(1e-16),
+            )
+        },
+    )]
+}
+
 fn run(effort: Effort) -> Finding {
     let (decades, own): (u32, &[usize]) = match effort {
         Effort::Quick => (4, &[1, 10]),
@@ -82,19 +121,7 @@ fn run(effort: Effort) -> Finding {
         }
         ours.push((steps, ratio));
     }
-    let mut table = Table::new(&["law", "steps", "traction / law"]);
-    for (law, rows) in [("incremental", &theirs), ("total, Kluft", &ours)] {
-        for (steps, ratio) in rows {
-            table.push([law.to_owned(), steps.to_string(), format!("{ratio:.12}")]);
-        }
-    }
-    let error = |rows: &[(usize, f64)]| -> Vec<(f64, f64)> {
-        let errors = rows
-            .iter()
-            .map(|(n, ratio)| (*n as f64, (ratio - 1.0).abs()));
-        errors.collect()
-    };
-    let worst = largest(error(&ours).iter().map(|point| point.1));
+    let worst = largest(errors(&ours).iter().map(|point| point.1));
     if worst > 1e-9 {
         misses.push(format!("the total law is off by {worst:.1e}"));
     }
@@ -125,25 +152,8 @@ fn run(effort: Effort) -> Finding {
             at(50),
             at(100)
         ),
-        charts: vec![(
-            "increments",
-            Chart {
-                series: vec![
-                    Series::line("incremental law", error(&theirs)),
-                    Series::line("total law, Kluft", error(&ours)),
-                ],
-                rates: vec![Rate {
-                    series: 0,
-                    rate: -1.0,
-                }],
-                ..Chart::new(
-                    "A joint closed to a tenth: error of the traction over the steps",
-                    Axis::logarithmic("load steps"),
-                    Axis::logarithmic("error of the traction (relative)").from(1e-16),
-                )
-            },
-        )],
-        table,
+        charts: charts(&theirs, &ours),
+        table: table(&theirs, &ours),
         misses,
     }
 }

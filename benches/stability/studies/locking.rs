@@ -66,6 +66,76 @@ fn curve(cases: &[Case], order: u32, of: impl Fn(&Case) -> f64) -> Series {
     Series::line(name(order), points.collect())
 }
 
+fn charts(cases: &[Case]) -> Vec<(&'static str, Chart)> {
+    let x = || Axis::logarithmic("1 − 2 ν (0.5 is ν = 0.25, 0.0002 is ν = 0.4999)");
+    vec![
+        (
+            "locking",
+            Chart {
+                series: [1, 2]
+                    .map(|order| curve(cases, order, |case| case.errors[2]))
+                    .into(),
+                ..Chart::new(
+                    "A floating core: error of the shell's displacement",
+                    x(),
+                    Axis::logarithmic("error (relative, root mean square)"),
+                )
+            },
+        ),
+        (
+            "locking-iterations",
+            Chart {
+                series: [1, 2]
+                    .map(|order| {
+                        curve(cases, order, |case| {
+                            height(linear_iterations(&case.iterative))
+                        })
+                    })
+                    .into(),
+                failure: "no convergence".into(),
+                ..Chart::new(
+                    "A floating core: iterations of the multigrid solver in one load step",
+                    x(),
+                    Axis::logarithmic("linear iterations"),
+                )
+            },
+        ),
+    ]
+}
+
+fn table(cases: &[Case], misses: &mut Vec<String>) -> Table {
+    let mut table = Table::new(&[
+        "order",
+        "Poisson's ratio",
+        "error of the traction",
+        "error of the opening",
+        "error of the shell's displacement",
+        "Newton",
+        "Newton, iterative solver",
+        "linear iterations, iterative solver",
+    ]);
+    for case in cases {
+        let place = format!("{}, ratio {}", name(case.order), case.ratio);
+        hold_promise(misses, &place, &case.direct);
+        hold_promise(
+            misses,
+            &format!("{place}, iterative solver"),
+            &case.iterative,
+        );
+        table.push([
+            case.order.to_string(),
+            case.ratio.to_string(),
+            format!("{:.3e}", case.errors[0]),
+            format!("{:.3e}", case.errors[1]),
+            format!("{:.3e}", case.errors[2]),
+            entry(count(&case.direct)),
+            entry(count(&case.iterative)),
+            entry(linear_iterations(&case.iterative)),
+        ]);
+    }
+    table
+}
+
 fn run(effort: Effort) -> Finding {
     let (sizes, ratios): ([f64; 2], &[f64]) = match effort {
         Effort::Quick => ([0.5, 0.7], &[0.25, 0.4999]),
@@ -81,35 +151,7 @@ fn run(effort: Effort) -> Finding {
         cases.extend(ratios.iter().map(|&ratio| case(order, h, ratio)));
     }
     let mut misses = Vec::new();
-    let mut table = Table::new(&[
-        "order",
-        "Poisson's ratio",
-        "error of the traction",
-        "error of the opening",
-        "error of the shell's displacement",
-        "Newton",
-        "Newton, iterative solver",
-        "linear iterations, iterative solver",
-    ]);
-    for case in &cases {
-        let place = format!("{}, ratio {}", name(case.order), case.ratio);
-        hold_promise(&mut misses, &place, &case.direct);
-        hold_promise(
-            &mut misses,
-            &format!("{place}, iterative solver"),
-            &case.iterative,
-        );
-        table.push([
-            case.order.to_string(),
-            case.ratio.to_string(),
-            format!("{:.3e}", case.errors[0]),
-            format!("{:.3e}", case.errors[1]),
-            format!("{:.3e}", case.errors[2]),
-            entry(count(&case.direct)),
-            entry(count(&case.iterative)),
-            entry(linear_iterations(&case.iterative)),
-        ]);
-    }
+    let table = table(&cases, &mut misses);
     let end = |order: u32, last: bool| {
         let mut own = cases.iter().filter(|case| case.order == order);
         let found = if last { own.next_back() } else { own.next() };
@@ -117,7 +159,6 @@ fn run(effort: Effort) -> Finding {
     };
     let percent = |order, last| format!("{:.2} %", 100.0 * end(order, last).errors[2]);
     let iterations = |order, last| entry(linear_iterations(&end(order, last).iterative));
-    let x = || Axis::logarithmic("1 − 2 ν (0.5 is ν = 0.25, 0.0002 is ν = 0.4999)");
     Finding {
         breaks: format!(
             "linear tetrahedra: the shell's displacement is {} off at ν = 0.25 and {} at 0.4999",
@@ -146,39 +187,7 @@ fn run(effort: Effort) -> Finding {
             iterations(2, false),
             iterations(2, true),
         ),
-        charts: vec![
-            (
-                "locking",
-                Chart {
-                    series: [1, 2]
-                        .map(|order| curve(&cases, order, |case| case.errors[2]))
-                        .into(),
-                    ..Chart::new(
-                        "A floating core: error of the shell's displacement",
-                        x(),
-                        Axis::logarithmic("error (relative, root mean square)"),
-                    )
-                },
-            ),
-            (
-                "locking-iterations",
-                Chart {
-                    series: [1, 2]
-                        .map(|order| {
-                            curve(&cases, order, |case| {
-                                height(linear_iterations(&case.iterative))
-                            })
-                        })
-                        .into(),
-                    failure: "no convergence".into(),
-                    ..Chart::new(
-                        "A floating core: iterations of the multigrid solver in one load step",
-                        x(),
-                        Axis::logarithmic("linear iterations"),
-                    )
-                },
-            ),
-        ],
+        charts: charts(&cases),
         table,
         misses,
     }

@@ -194,9 +194,41 @@ fn lifts(effort: Effort, table: &mut Table, misses: &mut Vec<String>) -> Vec<Ser
     all
 }
 
-fn run(effort: Effort) -> Finding {
-    let cycles = if effort == Effort::Quick { 2 } else { 20 };
-    let mut misses = Vec::new();
+fn charts(cases: &[Case], lifts: &[Series]) -> Vec<(&'static str, Chart)> {
+    let series = |case: &Case| {
+        let points = case.hysteresis.iter().enumerate();
+        let points = points.map(|(cycle, value)| (cycle as f64 + 1.0, *value));
+        Series::line(case.name, points.collect())
+    };
+    vec![
+        (
+            "floating",
+            Chart {
+                series: lifts.to_vec(),
+                failure: "no convergence".into(),
+                ..Chart::new(
+                    "A block that floats between an open and a closed joint: iterations",
+                    Axis::logarithmic("lift of the block above (m); b0 is 10⁻⁴ m"),
+                    Axis::linear("most Newton iterations of a step"),
+                )
+            },
+        ),
+        (
+            "opening",
+            Chart {
+                series: cases.iter().map(series).collect(),
+                ..Chart::new(
+                    "Opening and closing without tension: hysteresis",
+                    Axis::linear("cycle"),
+                    Axis::logarithmic("difference from the first cycle (relative)").from(1e-17),
+                )
+            },
+        ),
+    ]
+}
+
+/// All laws over all cycles, noted in the table and the misses.
+fn cases(cycles: usize, misses: &mut Vec<String>) -> (Vec<Case>, Table) {
     let mut table = Table::new(&[
         "law",
         "case",
@@ -210,15 +242,16 @@ fn run(effort: Effort) -> Finding {
         let hysteresis = largest(case.hysteresis.iter().copied());
         let what = format!("{cycles} cycles");
         let numbers = [case.error, hysteresis];
-        note(
-            &mut table,
-            &mut misses,
-            [name, &what],
-            &case.records,
-            numbers,
-        );
+        note(&mut table, misses, [name, &what], &case.records, numbers);
         cases.push(case);
     }
+    (cases, table)
+}
+
+fn run(effort: Effort) -> Finding {
+    let cycles = if effort == Effort::Quick { 2 } else { 20 };
+    let mut misses = Vec::new();
+    let (cases, mut table) = cases(cycles, &mut misses);
     let lifts = lifts(effort, &mut table, &mut misses);
     let floats = || lifts.iter().flat_map(|series| &series.points);
     let failed = floats().filter(|point| point.1.is_nan()).count();
@@ -237,11 +270,6 @@ fn run(effort: Effort) -> Finding {
             .flat_map(|case| case.hysteresis.iter().copied()),
     );
     let pull = LIFT / (1.0 / JOINT.0 + 2.0 / ROCK.young_modulus);
-    let series = |case: &Case| {
-        let points = case.hysteresis.iter().enumerate();
-        let points = points.map(|(cycle, value)| (cycle as f64 + 1.0, *value));
-        Series::line(case.name, points.collect())
-    };
     Finding {
         breaks: "a law with tension where there is none: the joint would pull the blocks back"
             .to_owned(),
@@ -258,31 +286,7 @@ fn run(effort: Effort) -> Finding {
              {failed} of {of_all} such cases fail, the others take up to {slowest} iterations a step.",
             1e-6 * pull
         ),
-        charts: vec![
-            (
-                "floating",
-                Chart {
-                    series: lifts.clone(),
-                    failure: "no convergence".into(),
-                    ..Chart::new(
-                        "A block that floats between an open and a closed joint: iterations",
-                        Axis::logarithmic("lift of the block above (m); b0 is 10⁻⁴ m"),
-                        Axis::linear("most Newton iterations of a step"),
-                    )
-                },
-            ),
-            (
-                "opening",
-                Chart {
-                    series: cases.iter().map(series).collect(),
-                    ..Chart::new(
-                        "Opening and closing without tension: hysteresis",
-                        Axis::linear("cycle"),
-                        Axis::logarithmic("difference from the first cycle (relative)").from(1e-17),
-                    )
-                },
-            ),
-        ],
+        charts: charts(&cases, &lifts),
         table,
         misses,
     }

@@ -234,8 +234,57 @@ fn wedges(effort: Effort, table: &mut Table, misses: &mut Vec<String>) -> Vec<Se
     all
 }
 
-fn run(effort: Effort) -> Finding {
-    let cycles = if effort == Effort::Quick { 3 } else { 10 };
+fn charts(cases: &[Case], paths: Vec<Series>, wedges: Vec<Series>) -> Vec<(&'static str, Chart)> {
+    let series = |case: &Case| {
+        let of_cycle = |(cycle, records): (usize, &[StepRecord])| {
+            (cycle as f64 + 1.0, height(most(records.iter().map(count))))
+        };
+        let chunks = case.records.chunks(CYCLE.len()).enumerate();
+        Series::line(case.name, chunks.map(of_cycle).collect())
+    };
+    vec![
+        (
+            "sliding",
+            Chart {
+                series: cases.iter().map(series).collect(),
+                failure: "no convergence".into(),
+                ..Chart::new(
+                    "Shear to and fro: most iterations of a step, all parts together",
+                    Axis::linear("cycle"),
+                    Axis::linear("Newton iterations"),
+                )
+            },
+        ),
+        (
+            "sliding-path",
+            Chart {
+                series: paths,
+                failure: "no convergence".into(),
+                front: true,
+                ..Chart::new(
+                    "There and back in 1 to 64 steps each: error over cost",
+                    Axis::logarithmic("Newton iterations in all"),
+                    Axis::logarithmic("error of jumps and tractions (relative)").from(1e-12),
+                )
+            },
+        ),
+        (
+            "wedge",
+            Chart {
+                series: wedges,
+                failure: "no convergence".into(),
+                ..Chart::new(
+                    "A wedge between two joints in contact",
+                    Axis::linear("angle of the flanks (degrees)"),
+                    Axis::linear("Newton iterations"),
+                )
+            },
+        ),
+    ]
+}
+
+/// All laws over all cycles of shear, noted in the table and the misses.
+fn shear(cycles: usize) -> (Vec<Case>, Table, Vec<String>) {
     let mut misses = Vec::new();
     let mut table = Table::new(&[
         "case",
@@ -271,14 +320,13 @@ fn run(effort: Effort) -> Finding {
         }
         cases.push(case);
     }
+    (cases, table, misses)
+}
+
+fn run(effort: Effort) -> Finding {
+    let cycles = if effort == Effort::Quick { 3 } else { 10 };
+    let (cases, mut table, mut misses) = shear(cycles);
     let wedges = wedges(effort, &mut table, &mut misses);
-    let series = |case: &Case| {
-        let of_cycle = |(cycle, records): (usize, &[StepRecord])| {
-            (cycle as f64 + 1.0, height(most(records.iter().map(count))))
-        };
-        let chunks = case.records.chunks(CYCLE.len()).enumerate();
-        Series::line(case.name, chunks.map(of_cycle).collect())
-    };
     let newton = entry(most(
         cases.iter().flat_map(|case| case.records.iter().map(count)),
     ));
@@ -316,45 +364,7 @@ fn run(effort: Effort) -> Finding {
              pressed between two joints is held by them at every angle, with friction and without.",
             given.1, given.0, divided.1, divided.0
         ),
-        charts: vec![
-            (
-                "sliding",
-                Chart {
-                    series: cases.iter().map(series).collect(),
-                    failure: "no convergence".into(),
-                    ..Chart::new(
-                        "Shear to and fro: most iterations of a step, all parts together",
-                        Axis::linear("cycle"),
-                        Axis::linear("Newton iterations"),
-                    )
-                },
-            ),
-            (
-                "sliding-path",
-                Chart {
-                    series: paths,
-                    failure: "no convergence".into(),
-                    front: true,
-                    ..Chart::new(
-                        "There and back in 1 to 64 steps each: error over cost",
-                        Axis::logarithmic("Newton iterations in all"),
-                        Axis::logarithmic("error of jumps and tractions (relative)").from(1e-12),
-                    )
-                },
-            ),
-            (
-                "wedge",
-                Chart {
-                    series: wedges,
-                    failure: "no convergence".into(),
-                    ..Chart::new(
-                        "A wedge between two joints in contact",
-                        Axis::linear("angle of the flanks (degrees)"),
-                        Axis::linear("Newton iterations"),
-                    )
-                },
-            ),
-        ],
+        charts: charts(&cases, paths, wedges),
         table,
         misses,
     }

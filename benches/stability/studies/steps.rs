@@ -114,6 +114,33 @@ fn curves(cases: &[Case], of: impl Fn(&Case) -> f64) -> Vec<Series> {
     names.into_iter().map(curve).collect()
 }
 
+fn charts(cases: &[Case]) -> Vec<(&'static str, Chart)> {
+    vec![
+        (
+            "steps",
+            Chart {
+                series: curves(cases, |case| height(Some(case.all()))),
+                ..Chart::new(
+                    "Newton iterations of the whole run over the number of steps",
+                    Axis::logarithmic("load steps"),
+                    Axis::logarithmic("Newton iterations in all"),
+                )
+            },
+        ),
+        (
+            "steps-agreement",
+            Chart {
+                series: curves(cases, |case| case.apart),
+                ..Chart::new(
+                    "Agreement with one step",
+                    Axis::logarithmic("load steps"),
+                    Axis::logarithmic("difference of jumps and tractions (relative)").from(1e-17),
+                )
+            },
+        ),
+    ]
+}
+
 fn run(effort: Effort) -> Finding {
     let cases = cases(effort);
     let mut misses = Vec::new();
@@ -165,31 +192,7 @@ fn run(effort: Effort) -> Finding {
              a step takes at most {most_of_all} Newton iterations, and in {finest} steps {per_step:.1} on average or \
              less, because every step starts from the path of the last ones, continued."
         ),
-        charts: vec![
-            (
-                "steps",
-                Chart {
-                    series: curves(&cases, |case| height(Some(case.all()))),
-                    ..Chart::new(
-                        "Newton iterations of the whole run over the number of steps",
-                        Axis::logarithmic("load steps"),
-                        Axis::logarithmic("Newton iterations in all"),
-                    )
-                },
-            ),
-            (
-                "steps-agreement",
-                Chart {
-                    series: curves(&cases, |case| case.apart),
-                    ..Chart::new(
-                        "Agreement with one step",
-                        Axis::logarithmic("load steps"),
-                        Axis::logarithmic("difference of jumps and tractions (relative)")
-                            .from(1e-17),
-                    )
-                },
-            ),
-        ],
+        charts: charts(&cases),
         table,
         misses,
     }

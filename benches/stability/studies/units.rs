@@ -24,6 +24,16 @@ const AGREEMENT: f64 = 1e-9;
 /// The failing method: stop when the forces out of balance are below this, in the unit at hand.
 const ABSOLUTE: f64 = 1e-6;
 
+/// Columns of the table.
+const HEAD: [&str; 6] = [
+    "scene",
+    "units",
+    "linear solver",
+    "Newton",
+    "linear iterations",
+    "difference from m and Pa",
+];
+
 /// Metres and pascals in one unit.
 const SYSTEMS: [(&str, f64, f64); 3] = [
     ("m, Pa", 1.0, 1.0),
@@ -167,15 +177,26 @@ fn compare(effort: Effort, table: &mut Table, misses: &mut Vec<String>) -> f64 {
     worst
 }
 
-fn run(effort: Effort) -> Finding {
-    let mut table = Table::new(&[
-        "scene",
+fn charts(absolute: Vec<(f64, f64)>, ours: Vec<(f64, f64)>) -> Vec<(&'static str, Chart)> {
+    vec![(
         "units",
-        "linear solver",
-        "Newton",
-        "linear iterations",
-        "difference from m and Pa",
-    ]);
+        Chart {
+            series: vec![
+                Series::line(format!("force test, {ABSOLUTE:e} units"), absolute),
+                Series::line("Kluft", ours),
+            ],
+            failure: "no convergence".into(),
+            ..Chart::new(
+                "Three crossing planes: what the unit of force does to the answer",
+                Axis::logarithmic("unit of force (N)"),
+                Axis::logarithmic("error of jumps and tractions (relative)").from(1e-16),
+            )
+        },
+    )]
+}
+
+fn run(effort: Effort) -> Finding {
+    let mut table = Table::new(&HEAD);
     let mut misses = Vec::new();
     let worst = compare(effort, &mut table, &mut misses);
     // Plain Newton needs a cutoff.
@@ -225,21 +246,7 @@ fn run(effort: Effort) -> Finding {
              have a unit of 1e15 N). All tests of Kluft are ratios: in m and Pa, mm and MPa, km and GPa, with every \
              linear solver, it takes the same number of Newton and linear iterations to the same answer, to {worst:.0e}."
         ),
-        charts: vec![(
-            "units",
-            Chart {
-                series: vec![
-                    Series::line(format!("force test, {ABSOLUTE:e} units"), absolute),
-                    Series::line("Kluft", ours),
-                ],
-                failure: "no convergence".into(),
-                ..Chart::new(
-                    "Three crossing planes: what the unit of force does to the answer",
-                    Axis::logarithmic("unit of force (N)"),
-                    Axis::logarithmic("error of jumps and tractions (relative)").from(1e-16),
-                )
-            },
-        )],
+        charts: charts(absolute, ours),
         table,
         misses,
     }
