@@ -185,16 +185,20 @@ pub fn of_step(schedule: &Schedule, step: &Step) -> String {
     let phase = step.phase.iter().map(|phase| format!("phase {phase}"));
     let time = schedule
         .is_timed
-        .then(|| format!("time {}", step.load.time));
-    let factors = match step.load.single_factor() {
-        Some(factor) => format!("load {factor}"),
-        None => {
-            let factors: Vec<String> = step.load.factors.iter().map(f64::to_string).collect();
-            format!("loads {}", factors.join(" "))
-        }
+        .then(|| format!("time {}", brief(step.load.time)));
+    let factors: Vec<String> = step.load.factors.iter().map(|f| brief(*f)).collect();
+    let factors = match &factors[..] {
+        [factor] => format!("load {factor}"),
+        factors => format!("loads {}", factors.join(" ")),
     };
     let parts: Vec<String> = phase.chain(time).chain([factors]).collect();
     parts.join(", ")
+}
+
+/// A number with six digits, without the zeros at its end.
+fn brief(number: f64) -> String {
+    let rounded: f64 = format!("{number:.5e}").parse().unwrap_or(number);
+    rounded.to_string()
 }
 
 /// Why a load step did not converge, and where.

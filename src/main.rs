@@ -26,6 +26,7 @@ Examples:
   kluft run geometries/inclined-joint/scene.toml          mesh, solve, write beside the scene
   kluft network fractures.csv -o network                  a geometry and a scene from a list
   kluft run scene.toml --out results --threads 2 -v       say where and how
+  kluft run scene.toml --resume                           go on after an interruption
   kluft inspect scene.toml                                look at the mesh before solving
   paraview results/rock.pvd results/fractures.pvd         look at it
 
@@ -72,6 +73,9 @@ A scene names its geometry, rocks, fractures and conditions, all in SI units:
   [boundary.bottom]
   symmetry = true                    # a roller on any plane
 
+After each load step the results are complete on disk, and a run that was killed goes on with --resume:
+the same bits as without the interruption.
+
 The folder geometries/ holds complete scenes; README.md lists every key.";
 
 #[derive(Args)]
@@ -84,6 +88,9 @@ struct RunArgs {
     /// Number of threads; results do not depend on it [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Go on after the last load step that an interrupted run of the same scene finished
+    #[arg(long)]
+    resume: bool,
     /// Print nothing but errors
     #[arg(long, short, conflicts_with = "verbose")]
     quiet: bool,
@@ -215,6 +222,7 @@ fn solve(args: RunArgs) -> Result<(), Failure> {
         out: args.out,
         threads: args.threads.map(usize::from),
         verbosity: verbosity(args.quiet, args.verbose),
+        resume: args.resume,
     };
     run(&args.scene, &options)
 }

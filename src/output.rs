@@ -6,6 +6,8 @@ use lie_io::{Field, Grid, Values, write_pvd, write_vtu};
 use lie_mesh::Defect;
 use lie_solver::{Solution, System};
 
+use crate::checkpoint;
+
 /// Writes the results of a run into one folder, step by step; the collections always list exactly
 /// the steps that are complete.
 pub struct Output {
@@ -43,8 +45,35 @@ impl Output {
         self.folder.join(name)
     }
 
-    /// Removes what [`Output::write_step`] has written in another run, so that the folder never
-    /// holds steps of two runs.
+    /// Goes on after load steps that a former run has written, which end at `times`.
+    pub fn go_on_after(&mut self, times: impl Iterator<Item = f64>) {
+        for (index, time) in times.enumerate() {
+            let [rock, fractures] = names(index + 1);
+            self.rock.push((time, rock));
+            self.fractures.push((time, fractures));
+        }
+    }
+
+    /// Checks that the results of the first `count` load steps are there.
+    ///
+    /// # Errors
+    /// Those that are not.
+    pub fn check_steps(&self, count: usize) -> Result<(), Vec<Defect>> {
+        let files = (1..=count).flat_map(|number| names(number).map(|name| self.path(&name)));
+        let missing = files.filter(|file| !file.is_file()).map(|file| {
+            let problem = "the results of a finished load step are gone";
+            let remedy = "put the file back, or run without --resume: it starts from the beginning";
+            Defect::new(file.display().to_string(), problem, remedy)
+        });
+        let missing: Vec<Defect> = missing.collect();
+        match missing.is_empty() {
+            true => Ok(()),
+            false => Err(missing),
+        }
+    }
+
+    /// Removes what another run has written: its load steps, so that the folder never holds steps of
+    /// two runs, its checkpoint, and what it left unfinished.
     ///
     /// # Errors
     /// If a file cannot be removed.
@@ -54,8 +83,12 @@ impl Output {
             let names = entries.map(|entry| entry.map(|entry| entry.file_name()));
             let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
             names.retain(|name| name.to_str().is_some_and(is_result));
-            // Collections first, so that none ever lists a grid that is gone.
-            names.sort_by_key(|name| !name.as_encoded_bytes().ends_with(b".pvd"));
+            // The checkpoint first, so that none ever continues steps that are gone, then the
+            // collections, so that none ever lists a grid that is gone.
+            names.sort_by_key(|name| {
+                let is_collection = name.as_encoded_bytes().ends_with(b".pvd");
+                (name != checkpoint::NAME, !is_collection)
+            });
             names
                 .iter()
                 .try_for_each(|name| std::fs::remove_file(self.folder.join(name)))
@@ -79,11 +112,7 @@ impl Output {
         solution: &Solution,
         time: f64,
     ) -> Result<(), Defect> {
-        let number = self.rock.len() + 1;
-        let (rock, fractures) = (
-            format!("rock_{number:04}.vtu"),
-            format!("fractures_{number:04}.vtu"),
-        );
+        let [rock, fractures] = names(self.rock.len() + 1);
         write_vtu(&self.path(&rock), &rock_grid(system, solution))?;
         write_vtu(&self.path(&fractures), &fracture_grid(system, solution))?;
         self.rock.push((time, rock));
@@ -93,8 +122,29 @@ impl Output {
     }
 }
 
-/// Whether [`Output::write_step`] writes files of this name.
+/// Names of the grids of a load step.
+fn names(number: usize) -> [String; 2] {
+    [
+        format!("rock_{number:04}.vtu"),
+        format!("fractures_{number:04}.vtu"),
+    ]
+}
+
+/// Whether a run writes files of this name beside its mesh and its summary, or leaves them if it is
+/// killed.
 fn is_result(name: &str) -> bool {
+    let unfinished = name
+        .strip_prefix('.')
+        .and_then(|name| name.strip_suffix(".tmp"));
+    let of_gmsh = [".tmp.msh", ".msh41.msh"].iter();
+    let is_mesh = name.starts_with('.') && of_gmsh.into_iter().any(|end| name.ends_with(end));
+    let name = unfinished.unwrap_or(name);
+    let is_summary = unfinished.is_some() && name == "summary.json";
+    is_mesh || is_summary || name == checkpoint::NAME || is_step(name)
+}
+
+/// Whether [`Output::write_step`] writes files of this name.
+fn is_step(name: &str) -> bool {
     let of_kind = |kind: &str| {
         let Some(rest) = name.strip_prefix(kind) else {
             return false;

@@ -5,10 +5,10 @@ use std::path::Path;
 use lie_io::write_atomically;
 use lie_mesh::Defect;
 use lie_solver::{FacetState, Interface, Problem, Solution, Step, StepRecord};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Smallest.
     pub min: f64,
@@ -19,7 +19,7 @@ pub struct Spread {
 }
 
 /// Numbers of one fracture.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FractureSummary {
     /// Number of facets.
     pub facets: usize,
@@ -74,6 +74,14 @@ pub struct StepSummary {
     /// Its phase, if the scene names phases.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
+    /// How it was solved.
+    #[serde(flatten)]
+    pub measures: StepMeasures,
+}
+
+/// How a load step was solved.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct StepMeasures {
     /// Newton iterations, each with one linear solve.
     pub newton_iterations: usize,
     /// Newton iterations of each part that the step was divided into, and that converged.
@@ -91,14 +99,22 @@ pub struct StepSummary {
 }
 
 impl StepSummary {
-    /// Sums up the record of a step.
-    pub fn of(step: &Step, record: &StepRecord) -> Self {
-        let last = record.iterations.last();
-        let measure = |of: fn(&lie_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
+    /// A load step and how it was solved.
+    pub fn of(step: &Step, measures: StepMeasures) -> Self {
         Self {
             load: step.load.single_factor(),
             time: step.load.time,
             phase: step.phase.clone(),
+            measures,
+        }
+    }
+}
+
+impl From<&StepRecord> for StepMeasures {
+    fn from(record: &StepRecord) -> Self {
+        let last = record.iterations.last();
+        let measure = |of: fn(&lie_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
+        Self {
             newton_iterations: record.iterations.len(),
             parts: record.parts.clone(),
             linear_iterations: record.linear_iterations(),
@@ -111,7 +127,7 @@ impl StepSummary {
 }
 
 /// Wall-clock time of each stage (s).
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Seconds {
     /// gmsh.
     pub mesh: f64,

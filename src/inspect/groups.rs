@@ -132,7 +132,9 @@ fn what_acts(entry: &BoundaryEntry) -> String {
             format!("displacement {} m", parts.collect::<Vec<_>>().join(", "))
         }
     });
-    [load, support]
+    let points = entry.history.as_ref().map(|history| history.points.len());
+    let history = points.map(|count| format!("history of {count} points"));
+    [load, support, history]
         .into_iter()
         .flatten()
         .collect::<Vec<_>>()

@@ -90,7 +90,15 @@ impl Scene {
     /// # Errors
     /// Every defect of the file, each with its line and a remedy.
     pub fn read(path: &Path) -> Result<Self, Vec<Defect>> {
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        Self::parse_file(path, &Self::text(path)?)
+    }
+
+    /// The text of a scene file.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn text(path: &Path) -> Result<String, Vec<Defect>> {
+        std::fs::read_to_string(path).map_err(|error| {
             let remedy = match error.kind() {
                 std::io::ErrorKind::InvalidData => "save the file as UTF-8 text",
                 _ => "give the path of a scene file, e.g. geometries/inclined-joint/scene.toml",
@@ -100,9 +108,16 @@ impl Scene {
                 format!("the scene cannot be read: {error}"),
                 remedy,
             )]
-        })?;
+        })
+    }
+
+    /// Reads a scene from the text of its file.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn parse_file(path: &Path, text: &str) -> Result<Self, Vec<Defect>> {
         let folder = path.parent().unwrap_or(Path::new("."));
-        Self::parse(&text, &path.display().to_string(), folder)
+        Self::parse(text, &path.display().to_string(), folder)
     }
 
     /// Reads a scene from its text; `name` is for messages, `folder` is where its paths start.

@@ -1,10 +1,11 @@
 //! The linear solvers against each other: the same state whichever solves.
 
 use glam::DVec3;
+use lie_core::Friction;
 use lie_mesh::structured::Patch;
 use lie_solver::{
-    Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, Solution, Support, System,
-    solution,
+    Bookmark, Discretisation, FacetResult, LinearMethod, Load, Newton, NewtonSettings, Problem,
+    Solution, Support, System, solution,
 };
 
 use crate::networks;
@@ -176,4 +177,82 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
             assert_eq!(one, with(threads), "{method}, {threads} threads");
         }
     }
+}
+
+/// Runs that go on in a new solver from the bytes of a bookmark, against the one that does not stop;
+/// returns the iterations of the linear solver.
+fn interrupt(problem: &Problem, method: LinearMethod) -> usize {
+    const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
+    let discretisation = Discretisation::of(problem).expect("supported");
+    let system = System::assemble(problem, discretisation);
+    let prepared = || Newton::new(&system, settings(method)).expect("prepared");
+    let step = |newton: &mut Newton, state: &mut _, factor: f64| {
+        let record = newton.step(&system, state, &Load::proportional(factor), |_, _| {});
+        assert!(record.converged(), "{method}, {factor}: {record:?}");
+        record.linear_iterations()
+    };
+    let (mut newton, mut state) = (prepared(), system.initial_state());
+    let mut bookmarks = Vec::new();
+    let mut iterations = 0;
+    for factor in FACTORS {
+        let bytes = postcard::to_stdvec(&newton.bookmark(&state));
+        bookmarks.push(bytes.expect("bytes"));
+        iterations += step(&mut newton, &mut state, factor);
+    }
+    let end = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes");
+    for start in [0, 1, 4, 7] {
+        let mut newton = prepared();
+        let bookmark: Bookmark<'_> = postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
+        assert!(bookmark.fits(&system));
+        let mut state = newton.turn_to(bookmark).expect("prepared");
+        for factor in &FACTORS[start..] {
+            step(&mut newton, &mut state, *factor);
+        }
+        let same = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes") == end;
+        assert!(same, "{method} from step {start}");
+    }
+    iterations
+}
+
+/// Whatever the solver has learnt before counts: factors of former tangents, paths that turn. Blocks
+/// smaller than these never reuse a factor.
+#[test]
+fn bookmarks_continue_to_the_last_bit() {
+    assert_eq!(interrupt(&t_block(4), LinearMethod::Direct), 0);
+    for method in [LinearMethod::Condensed, LinearMethod::Iterative] {
+        assert!(interrupt(&t_block(14), method) > 0, "{method}");
+    }
+}
+
+/// Joints that slide and open by it remember that.
+#[test]
+fn bookmarks_continue_sliding_to_the_last_bit() {
+    let mut problem = t_block(4);
+    scenes::load(&mut problem, "right", DVec3::new(-5e6, 0.0, 0.0));
+    for fracture in &mut problem.fractures {
+        fracture.law.friction = Some(Friction {
+            coefficient: 1.0_f64.to_radians().tan(),
+            cohesion: 0.0,
+            dilation: 0.5_f64.to_radians().tan(),
+        });
+    }
+    let slid = |point: &FacetResult| {
+        let shear = (point.traction.length_squared() - point.normal_traction.powi(2)).sqrt();
+        point.slip.length() > 1.1 * shear / 20e9
+    };
+    assert!(scenes::solve(&problem).facet_points.iter().any(slid));
+    for method in LinearMethod::ALL {
+        interrupt(&problem, method);
+    }
+}
+
+#[test]
+fn a_bookmark_of_another_system_does_not_fit() {
+    let (small, large) = (t_block(4), t_block(6));
+    let system = |problem| System::assemble(problem, Discretisation::of(problem).expect("held"));
+    let (small, large) = (system(&small), system(&large));
+    let newton = Newton::new(&small, settings(LinearMethod::Direct)).expect("prepared");
+    let state = small.initial_state();
+    let bookmark = newton.bookmark(&state);
+    assert!(bookmark.fits(&small) && !bookmark.fits(&large));
 }

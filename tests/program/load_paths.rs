@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::harness::{Workshop, files, summary};
+use crate::harness::{Workshop, files, kluft, summary};
 use crate::read_back::read_back;
 
 /// Loading in two steps, unloading in one.
@@ -81,6 +81,28 @@ fn the_report_names_phases_and_factors() {
     let said = summary(&workshop.path("out"));
     let steps = said["steps"].as_array().expect("steps");
     assert!(steps.iter().all(|step| step.get("load").is_none()));
+}
+
+#[test]
+fn an_inspection_tells_histories_and_weighs_the_largest_factor() {
+    let history = format!("{TOP}\nhistory = [[0, 0], [1, 1e3], [3.5, 0]]");
+    let workshop = Workshop::new("inclined-joint", &[PHASES, (TOP, &history)]);
+    let (scene, out) = (workshop.scene(), workshop.path("out"));
+    let arguments = [
+        "inspect".as_ref(),
+        scene.as_os_str(),
+        "--out".as_ref(),
+        out.as_os_str(),
+    ];
+    let run = kluft(&arguments);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    // 7 kPa times 1000; the walls would meet at 31 kPa.
+    for text in [
+        "traction (0, 0, -7000) Pa; history of 3 points",
+        "up to 7.000e6 Pa",
+    ] {
+        assert!(run.out.contains(text), "{text:?} is not in\n{}", run.out);
+    }
 }
 
 /// Without a history a condition grows in the first step and stays.

@@ -10,5 +10,6 @@ mod network_seeds;
 mod read_back;
 mod renumbered;
 mod results;
+mod resume;
 mod talk;
 mod usage;

@@ -16,12 +16,13 @@
 //! ```
 
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 use crate::closure::{Separation, Tension};
 use crate::fracture_law::{FractureLaw, Friction, Hold, outer};
 
 /// Where the walls are and what they carry.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Walls {
     /// How far they are apart.
     pub separation: Separation,
@@ -38,7 +39,7 @@ pub struct Walls {
 }
 
 /// What lasts of former steps.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Memory {
     /// Opening by dilation (m).
     pub dilation: f64,
@@ -298,7 +299,12 @@ impl FractureLaw {
         normal: DVec3,
         rigid: f64,
     ) -> Tangent {
-        let direction = walls.slip.normalize_or_zero();
+        // Right after a commit walls without elastic slip have none, but still know where they slid.
+        let direction = if walls.slip == DVec3::ZERO {
+            walls.shear.normalize_or_zero()
+        } else {
+            walls.slip.normalize_or_zero()
+        };
         let slope = self.slope(walls, memory, rigid);
         let compliance = self.shear_stiffness.recip();
         let (_, bond) = self.bond(walls, memory);

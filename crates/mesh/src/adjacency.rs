@@ -2,9 +2,11 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use rayon::prelude::*;
+
 use crate::draft::{Draft, Elements};
-use crate::pairing::{Entry, visit_runs};
-use crate::shape::{Face, Shape};
+use crate::pairing::{Entry, bounds, visit_runs};
+use crate::shape::{Face, Shape, TETRAHEDRON};
 
 /// Marks the absence of a neighbour.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -39,8 +41,9 @@ impl Adjacency {
     /// Pairs the faces of the cells, and the facets with them.
     pub(crate) fn of(draft: &Draft) -> Self {
         let cells = &draft.cells.elements;
+        let shapes = [cells, &draft.facets.elements].map(Elements::distinct_shapes);
         let tetrahedra = |shape: &Shape| shape.faces().len() <= 4;
-        let local_bits = if cells.shapes.iter().all(tetrahedra) {
+        let local_bits = if shapes[0].iter().all(tetrahedra) {
             2
         } else {
             3
@@ -50,12 +53,18 @@ impl Adjacency {
             face_end + draft.facets.elements.len() < NONE as usize,
             "fewer than 2^32 faces"
         );
+        let unpaired = (0..face_end).into_par_iter().map(|_| AtomicU32::new(NONE));
         Pairing {
             cells,
             facets: &draft.facets.elements,
             local_bits,
             face_end: face_end as u32,
-            neighbour: (0..face_end).map(|_| AtomicU32::new(NONE)).collect(),
+            node_count: draft.nodes.len(),
+            triangles_only: shapes
+                .iter()
+                .flatten()
+                .all(|shape| has_triangles_only(*shape)),
+            neighbour: unpaired.collect(),
         }
         .run()
     }
@@ -69,6 +78,20 @@ impl Adjacency {
     pub(crate) fn faces_of(&self, cells: &Elements, cell: usize) -> std::ops::Range<u32> {
         let first = (cell << self.local_bits) as u32;
         first..first + cells.shapes[cell].faces().len() as u32
+    }
+
+    /// Faces of lower cells that lie at the faces of this one.
+    pub(crate) fn lower_neighbours(
+        &self,
+        cells: &Elements,
+        cell: usize,
+    ) -> impl Iterator<Item = u32> {
+        let faces = self.faces_of(cells, cell);
+        let others = &self.neighbour[faces.start as usize..faces.end as usize];
+        others
+            .iter()
+            .copied()
+            .filter(move |&other| other < faces.start)
     }
 
     /// Positions of a face's nodes in the flat node list of the cells, in outward order.
@@ -88,9 +111,10 @@ impl Adjacency {
     }
 
     /// Cuts the cells at two faces off from each other.
-    pub(crate) fn part(&mut self, face: u32, other: u32) {
-        self.neighbour[face as usize] = NONE;
-        self.neighbour[other as usize] = NONE;
+    pub(crate) fn part(&mut self, faces: [u32; 2]) {
+        for face in faces {
+            self.neighbour[face as usize] = NONE;
+        }
     }
 }
 
@@ -105,6 +129,9 @@ struct Pairing<'a> {
     facets: &'a Elements,
     local_bits: u32,
     face_end: u32,
+    node_count: usize,
+    /// Whether no face or facet is a quadrangle.
+    triangles_only: bool,
     /// Written once a face, by the only task that sees it.
     neighbour: Vec<AtomicU32>,
 }
@@ -122,16 +149,19 @@ struct Found {
 impl Pairing<'_> {
     fn run(self) -> Adjacency {
         let count = self.cells.len() + self.facets.len();
-        let shapes = || self.cells.shapes.iter().chain(&self.facets.shapes);
-        let found = if shapes().all(|shape| has_triangles_only(*shape)) {
+        let found = if self.triangles_only {
             visit_runs(
                 count,
+                self.node_count,
+                |i| self.reach(i),
                 |i, out| self.emit(i, out),
                 |found, run| self.settle(found, run),
             )
         } else {
             visit_runs(
                 count,
+                self.node_count,
+                |i| self.reach(i),
                 |i, out| self.emit(i, out),
                 |found, run| self.split(found, run),
             )
@@ -170,7 +200,12 @@ impl Pairing<'_> {
         let Some(facet) = element.checked_sub(self.cells.len()) else {
             let nodes = self.cells.nodes_of(element);
             let first = (element << self.local_bits) as u32;
-            let faces = self.cells.shapes[element].faces();
+            let shape = self.cells.shapes[element];
+            if let (Shape::Tet4 | Shape::Tet10, Some(corners)) = (shape, nodes.first_chunk()) {
+                entries.extend_from_slice(&tetrahedron(*corners, first));
+                return;
+            }
+            let faces = shape.faces();
             entries.extend((first..).zip(faces).map(|(item, face)| {
                 let corners = face.corners();
                 let key = match *corners {
@@ -190,6 +225,19 @@ impl Pairing<'_> {
             key,
             item: self.face_end + facet as u32,
         });
+    }
+
+    /// The lowest corner that is the lowest of a face, and one that is not below the others.
+    fn reach(&self, element: usize) -> (u32, u32) {
+        let Some(facet) = element.checked_sub(self.cells.len()) else {
+            let nodes = self.cells.nodes_of(element);
+            let shape = self.cells.shapes[element];
+            if let (Shape::Tet4 | Shape::Tet10, Some(corners)) = (shape, nodes.first_chunk()) {
+                return lowest_two(*corners);
+            }
+            return bounds(&nodes[..shape.corner_count()]);
+        };
+        bounds(&self.facets.nodes_of(facet)[..self.facets.shapes[facet].corner_count()])
     }
 
     /// Tells triangles from quadrangles, and these by their fourth corner.
@@ -258,11 +306,13 @@ impl Pairing<'_> {
     /// one side.
     fn runs_alike(&self, face: &Entry, other: &Entry) -> bool {
         let [a, b, c] = face.key;
-        let is_triangle = shape_of(self.cells, face.item, self.local_bits)
-            .corners()
-            .len()
-            == 3;
-        if is_triangle && a != b && b != c && a != c {
+        let is_triangle = || {
+            shape_of(self.cells, face.item, self.local_bits)
+                .corners()
+                .len()
+                == 3
+        };
+        if (self.triangles_only || is_triangle()) && a != b && b != c && a != c {
             return b == other.key[1];
         }
         let mut own = self.corners(face.item);
@@ -273,6 +323,24 @@ impl Pairing<'_> {
         let after = twin().skip_while(|&node| node != first).nth(1);
         after.or_else(|| twin().next()) == Some(second)
     }
+}
+
+/// The lowest corner of a tetrahedron, and the lowest of the face across.
+fn lowest_two([a, b, c, d]: [u32; 4]) -> (u32, u32) {
+    let (low, high) = (a.min(b), a.max(b));
+    let (other_low, other_high) = (c.min(d), c.max(d));
+    let second = low.max(other_low).min(high).min(other_high);
+    (low.min(other_low), second)
+}
+
+/// The faces of a tetrahedron, numbered from `first` on.
+fn tetrahedron(nodes: [u32; 4], first: u32) -> [Entry; 4] {
+    let mut faces = [Entry::default(); 4];
+    for ((face, item), [a, b, c]) in faces.iter_mut().zip(first..).zip(TETRAHEDRON) {
+        let key = turned([nodes[a], nodes[b], nodes[c]]);
+        *face = Entry { key, item };
+    }
+    faces
 }
 
 fn has_triangles_only(shape: Shape) -> bool {

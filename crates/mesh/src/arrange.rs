@@ -5,10 +5,13 @@
 
 use rayon::prelude::*;
 
-use crate::draft::{Draft, Elements, TaggedElements};
+use crate::draft::{Draft, Elements, TaggedElements, split};
 
 /// Bits of a coordinate on the curve.
 const BITS: u32 = 21;
+
+/// Elements that one task takes in hand.
+const ELEMENTS_PER_TASK: usize = 8192;
 
 impl Draft {
     /// Numbers the nodes along a Morton curve and sorts the cells by their first node on it. Tags,
@@ -19,19 +22,34 @@ impl Draft {
         for (new, &old) in order.iter().enumerate() {
             number[old as usize] = new as u32;
         }
-        self.nodes = permuted(&self.nodes, &order);
-        self.node_tags = permuted(&self.node_tags, &order);
-        for elements in [&mut self.cells.elements, &mut self.facets.elements] {
-            let nodes = elements.nodes.par_iter_mut();
-            nodes.for_each(|node| *node = number[*node as usize]);
-        }
-        let order = by_first_node(&self.cells.elements, self.nodes.len());
+        let mut cells = std::mem::take(&mut self.cells);
+        let lowest = renumber(&mut cells.elements, &number);
+        // The sorting is one thread's work, which leaves the others to the nodes.
+        let (cell_order, ()) = rayon::join(
+            || sorted(&lowest, number.len()),
+            || self.renumber_nodes(&order, &number),
+        );
         self.cells = TaggedElements {
-            elements: permuted_elements(&self.cells.elements, &order),
-            tags: permuted(&self.cells.tags, &order),
-            group_set: permuted(&self.cells.group_set, &order),
+            elements: permuted_elements(cells.elements, &cell_order),
+            tags: permuted(&cells.tags, &cell_order),
+            group_set: arranged(cells.group_set, &cell_order),
         };
     }
+
+    fn renumber_nodes(&mut self, order: &[u32], number: &[u32]) {
+        self.nodes = permuted(&self.nodes, order);
+        self.node_tags = permuted(&self.node_tags, order);
+        let facets = self.facets.elements.nodes.par_iter_mut();
+        facets.for_each(|node| *node = number[*node as usize]);
+    }
+}
+
+/// Values in another order; nothing is done where all are the same.
+fn arranged<T: Copy + PartialEq + Send + Sync>(values: Vec<T>, order: &[u32]) -> Vec<T> {
+    if values.windows(2).all(|pair| pair[0] == pair[1]) {
+        return values;
+    }
+    permuted(&values, order)
 }
 
 fn permuted<T: Copy + Send + Sync>(values: &[T], order: &[u32]) -> Vec<T> {
@@ -74,28 +92,36 @@ fn spread_bits(value: u64) -> u64 {
     (bits | bits << 2) & 0x1249_2492_4924_9249
 }
 
-/// Elements sorted by their lowest node, by counting.
-fn by_first_node(elements: &Elements, node_count: usize) -> Vec<u32> {
-    let first: Vec<u32> = (0..elements.len())
-        .into_par_iter()
-        .map(|element| {
-            elements
-                .nodes_of(element)
-                .iter()
-                .copied()
-                .min()
-                .unwrap_or(0)
-        })
-        .collect();
+/// Gives the nodes of elements other numbers and returns the lowest of each element.
+fn renumber(elements: &mut Elements, number: &[u32]) -> Vec<u32> {
+    let offsets = &elements.offsets;
+    let mut lowest = vec![0; elements.shapes.len()];
+    let tasks = split(offsets, ELEMENTS_PER_TASK, &mut elements.nodes).into_par_iter();
+    let tasks = tasks.zip(lowest.par_chunks_mut(ELEMENTS_PER_TASK));
+    tasks.for_each(|((stretch, nodes), lowest)| {
+        let start = offsets[stretch.start];
+        for (element, lowest) in stretch.zip(lowest) {
+            let [first, end] = [0, 1].map(|behind| (offsets[element + behind] - start) as usize);
+            let own = &mut nodes[first..end];
+            own.iter_mut()
+                .for_each(|node| *node = number[*node as usize]);
+            *lowest = own.iter().copied().min().unwrap_or(0);
+        }
+    });
+    lowest
+}
+
+/// Elements sorted by their lowest nodes, by counting.
+fn sorted(lowest: &[u32], node_count: usize) -> Vec<u32> {
     let mut next = vec![0_u32; node_count + 1];
-    for &node in &first {
+    for &node in lowest {
         next[node as usize + 1] += 1;
     }
     for node in 0..node_count {
         next[node + 1] += next[node];
     }
-    let mut order = vec![0; elements.len()];
-    for (element, &node) in first.iter().enumerate() {
+    let mut order = vec![0; lowest.len()];
+    for (element, &node) in lowest.iter().enumerate() {
         let place = &mut next[node as usize];
         order[*place as usize] = element as u32;
         *place += 1;
@@ -103,20 +129,52 @@ fn by_first_node(elements: &Elements, node_count: usize) -> Vec<u32> {
     order
 }
 
-fn permuted_elements(elements: &Elements, order: &[u32]) -> Elements {
-    let mut arranged = Elements {
-        shapes: permuted(&elements.shapes, order),
-        offsets: Vec::with_capacity(order.len() + 1),
-        nodes: Vec::with_capacity(elements.nodes.len()),
+fn permuted_elements(elements: Elements, order: &[u32]) -> Elements {
+    let mut nodes = vec![0; elements.nodes.len()];
+    let distinct = elements.distinct_shapes();
+    let offsets = if let [shape] = distinct.as_slice() {
+        // The offsets, which would have to be looked up in any order, are known.
+        let width = shape.node_count();
+        let nodes_of = |element: usize| &elements.nodes[element * width..][..width];
+        permute_nodes(&elements.offsets, order, &mut nodes, nodes_of);
+        elements.offsets
+    } else {
+        let offsets = new_offsets(&elements, order);
+        let nodes_of = |element: usize| elements.nodes_of(element);
+        permute_nodes(&offsets, order, &mut nodes, nodes_of);
+        offsets
     };
-    arranged.offsets.push(0);
-    for &old in order {
-        arranged
-            .nodes
-            .extend_from_slice(elements.nodes_of(old as usize));
-        arranged.offsets.push(arranged.nodes.len() as u32);
+    Elements {
+        shapes: arranged(elements.shapes, order),
+        offsets,
+        nodes,
     }
-    arranged
+}
+
+/// Fills the nodes of elements with these offsets from those they had in another order.
+fn permute_nodes<'a>(
+    offsets: &[u32],
+    order: &[u32],
+    nodes: &mut [u32],
+    old: impl Fn(usize) -> &'a [u32] + Sync,
+) {
+    let tasks = split(offsets, ELEMENTS_PER_TASK, nodes).into_par_iter();
+    tasks.for_each(|(stretch, mut nodes)| {
+        for &element in &order[stretch] {
+            let old = old(element as usize);
+            let own = nodes.split_off_mut(..old.len()).unwrap_or_default();
+            own.copy_from_slice(old);
+        }
+    });
+}
+
+fn new_offsets(elements: &Elements, order: &[u32]) -> Vec<u32> {
+    let mut end = 0;
+    let ends = order.iter().map(|&old| {
+        end += elements.shapes[old as usize].node_count() as u32;
+        end
+    });
+    std::iter::once(0).chain(ends).collect()
 }
 
 #[cfg(test)]

@@ -1,56 +1,66 @@
 //! Blocks: parts of the body that hang together without crossing a fracture.
 
-use crate::adjacency::{Adjacency, NONE};
+use rayon::prelude::*;
+
+use crate::adjacency::Adjacency;
+use crate::disjoint_sets::Stretch;
 use crate::draft::Elements;
+
+/// Cells that one task joins.
+const CELLS_PER_TASK: usize = 32_768;
 
 /// The block of each cell, numbered by the lowest cell in each, and how many there are. Faces on
 /// fractures have no neighbour any more in `adjacency`.
 pub(crate) fn find(cells: &Elements, adjacency: &Adjacency) -> (Vec<u32>, usize) {
     let mut block = vec![0; cells.len()];
-    let mut count = 0;
-    // One bit a cell stays in the cache where the numbers would not.
-    let mut reached = Bits::new(cells.len());
-    let mut queue: Vec<u32> = Vec::with_capacity(cells.len());
-    for seed in 0..cells.len() as u32 {
-        if !reached.insert(seed) {
-            continue;
-        }
-        let mut next = queue.len();
-        queue.push(seed);
-        while next < queue.len() {
-            let cell = queue[next] as usize;
-            next += 1;
-            block[cell] = count;
-            let faces = adjacency.faces_of(cells, cell);
-            for &other in &adjacency.neighbour[faces.start as usize..faces.end as usize] {
-                if other != NONE && reached.insert(adjacency.cell_of(other)) {
-                    queue.push(adjacency.cell_of(other));
-                }
+    let tasks = block.par_chunks_mut(CELLS_PER_TASK).enumerate();
+    let crossing: Vec<Vec<(u32, u32)>> = tasks
+        .map(|(task, parent)| join_stretch(cells, adjacency, task * CELLS_PER_TASK, parent))
+        .collect();
+    let mut whole = Stretch::of(0, &mut block);
+    for (cell, other) in crossing.into_iter().flatten() {
+        whole.join(cell, other);
+    }
+    let count = number(&mut block);
+    (block, count)
+}
+
+/// Joins neighbours from cell `first` on and returns those of which one lies before.
+fn join_stretch(
+    cells: &Elements,
+    adjacency: &Adjacency,
+    first: usize,
+    parent: &mut [u32],
+) -> Vec<(u32, u32)> {
+    let end = first + parent.len();
+    let mut stretch = Stretch::of(first as u32, parent);
+    let mut crossing = Vec::new();
+    for cell in first..end {
+        stretch.single(cell as u32);
+        for other in adjacency.lower_neighbours(cells, cell) {
+            let pair = (adjacency.cell_of(other), cell as u32);
+            if pair.0 as usize >= first {
+                stretch.join(pair.0, pair.1);
+            } else {
+                crossing.push(pair);
             }
         }
-        count += 1;
     }
-    (block, count as usize)
+    crossing
 }
 
-/// A set of small numbers.
-struct Bits {
-    words: Vec<u64>,
-}
-
-impl Bits {
-    fn new(count: usize) -> Self {
-        Self {
-            words: vec![0; count.div_ceil(64)],
+/// Turns members of sets, each with one of its set that is not higher, into numbers of sets.
+fn number(sets: &mut [u32]) -> usize {
+    let mut count = 0;
+    for member in 0..sets.len() {
+        let above = sets[member] as usize;
+        if above == member {
+            sets[member] = count;
+            count += 1;
+        } else {
+            // What is lower has its number already.
+            sets[member] = sets[above];
         }
     }
-
-    /// Adds a number; false if it is there already.
-    fn insert(&mut self, number: u32) -> bool {
-        let word = &mut self.words[number as usize / 64];
-        let bit = 1 << (number % 64);
-        let is_new = *word & bit == 0;
-        *word |= bit;
-        is_new
-    }
+    count as usize
 }

@@ -7,9 +7,10 @@ use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, FacetPlace, NONE};
 use crate::defect::{Defect, sample};
-use crate::draft::Draft;
+use crate::draft::{Draft, Elements};
 use crate::geometry::cell_volume;
 use crate::mesh::SurfaceRole;
+use crate::shape::Shape;
 
 /// A cell is flat when its volume is this small against the cube of its longest edge: there the
 /// sign of the volume is rounding.
@@ -114,6 +115,7 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
     }
     let wrong: Vec<(usize, bool)> = (0..cells.len())
         .into_par_iter()
+        .filter(|&cell| !is_surely_sound(cells, nodes, cell))
         .filter_map(|cell| {
             let volume = relative_volume(draft, nodes, cell);
             let is_flat = volume.abs() <= FLAT;
@@ -126,6 +128,25 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
         report(&mut defects, &draft.source, "cell", &tags, kind);
     }
     defects
+}
+
+/// Whether a glance shows that the cell is a tetrahedron of positive volume and not flat. Its longest
+/// edge `l` is at most twice the longest `e` of those from one corner, so `V^2 > (2e)^6 f^2` is more
+/// than `V > l^3 f`, and takes neither roots nor quotients. The factor leaves room for rounding.
+fn is_surely_sound(cells: &Elements, nodes: &[DVec3], cell: usize) -> bool {
+    const LIMIT: f64 = 100.0 * FLAT * FLAT;
+    let (Shape::Tet4, Some(corners)) = (cells.shapes[cell], cells.nodes_of(cell).first_chunk())
+    else {
+        return false;
+    };
+    let [origin, a, b, c] = corners.map(|node: u32| nodes[node as usize]);
+    let (a, b, c) = (a - origin, b - origin, c - origin);
+    let volume = a.cross(b).dot(c) / 6.0;
+    let longest = 4.0
+        * a.length_squared()
+            .max(b.length_squared())
+            .max(c.length_squared());
+    volume > 0.0 && volume * volume > LIMIT * longest * longest * longest
 }
 
 /// Volume over the cube of the longest distance between corners.

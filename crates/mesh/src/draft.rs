@@ -1,5 +1,7 @@
 //! A mesh as read from a file, before anything about it has been checked.
 
+use std::ops::Range;
+
 use crate::shape::Shape;
 
 /// A physical group of the file.
@@ -44,28 +46,54 @@ impl Elements {
         self.shapes.is_empty()
     }
 
+    /// The shapes that occur.
+    pub(crate) fn distinct_shapes(&self) -> Vec<Shape> {
+        let mut distinct: Vec<Shape> = Vec::new();
+        // Elements of one shape mostly stand side by side.
+        for alike in self.shapes.chunk_by(|a, b| a == b) {
+            if !distinct.contains(&alike[0]) {
+                distinct.push(alike[0]);
+            }
+        }
+        distinct
+    }
+
     /// Node indices of element `index`.
     pub fn nodes_of(&self, index: usize) -> &[u32] {
         &self.nodes[self.range(index)]
     }
 
     /// Where the nodes of element `index` stand in the flat list.
-    pub fn range(&self, index: usize) -> std::ops::Range<usize> {
+    pub fn range(&self, index: usize) -> Range<usize> {
         self.offsets[index] as usize..self.offsets[index + 1] as usize
     }
 
-    /// Appends `count` elements of one shape, all of whose nodes are 0 still.
+    /// So many elements of each of these shapes, all of whose nodes are 0 still.
     ///
     /// # Panics
     /// If the flat list outgrows 32 bits.
-    pub fn append(&mut self, shape: Shape, count: usize) {
-        let (first, width) = (self.nodes.len(), shape.node_count());
-        let end = first + count * width;
+    pub fn blank(blocks: &[(Shape, usize)]) -> Self {
+        let count = blocks.iter().map(|(_, count)| count).sum();
+        let ends = blocks
+            .iter()
+            .map(|(shape, count)| count * shape.node_count());
+        let end: usize = ends.sum();
         assert!(u32::try_from(end).is_ok(), "fewer than 2^32 element nodes");
-        self.shapes.resize(self.shapes.len() + count, shape);
-        self.nodes.resize(end, 0);
-        let ends = (1..=count).map(|element| (first + element * width) as u32);
-        self.offsets.extend(ends);
+        let mut blank = Self {
+            shapes: Vec::with_capacity(count),
+            offsets: Vec::with_capacity(count + 1),
+            nodes: vec![0; end],
+        };
+        blank.offsets.push(0);
+        let mut first = 0;
+        for &(shape, count) in blocks {
+            let width = shape.node_count();
+            blank.shapes.resize(blank.shapes.len() + count, shape);
+            let ends = (1..=count).map(|element| (first + element * width) as u32);
+            blank.offsets.extend(ends);
+            first += count * width;
+        }
+        blank
     }
 
     /// Appends all elements of another list.
@@ -95,6 +123,24 @@ impl Elements {
         let end = u32::try_from(self.nodes.len()).expect("fewer than 2^32 element nodes");
         self.offsets.push(end);
     }
+}
+
+/// Cuts a list parallel to the nodes of elements with these offsets: so many elements at a time, and
+/// their share of the list.
+pub(crate) fn split<'a, T>(
+    offsets: &[u32],
+    at_a_time: usize,
+    mut values: &'a mut [T],
+) -> Vec<(Range<usize>, &'a mut [T])> {
+    let count = offsets.len().saturating_sub(1);
+    let firsts = (0..count).step_by(at_a_time);
+    let stretches = firsts.map(|first| first..count.min(first + at_a_time));
+    let mut cut = |stretch: Range<usize>| {
+        let length = (offsets[stretch.end] - offsets[stretch.start]) as usize;
+        let own = values.split_off_mut(..length).unwrap_or_default();
+        (stretch, own)
+    };
+    stretches.map(&mut cut).collect()
 }
 
 /// Elements as they stand in the file: with their tags and physical groups.

@@ -111,38 +111,33 @@ impl Mesh {
     ) -> Result<Self, Vec<Defect>> {
         let nodes = std::mem::take(&mut draft.nodes).into_iter();
         let nodes: Vec<DVec3> = nodes.map(DVec3::from).collect();
-        let mut defects = check::cells(&draft, &nodes);
+        let overlapping = check::faces(&draft, &adjacency);
+        if !overlapping.is_empty() {
+            // There nothing can be said of the surfaces; defects of the cells may be the cause.
+            let broken = check::cells(&draft, &nodes);
+            return Err(if broken.is_empty() {
+                overlapping
+            } else {
+                broken
+            });
+        }
+        let (surfaces, mut defects) = check::surfaces(&draft, roles, &adjacency);
+        for facet in &surfaces.facets {
+            adjacency.part(facet.faces);
+        }
+        // The fractures are mostly one thread's work, which leaves the others to the cells.
+        let ((facets, boundaries, one_sided), (broken, (block, block_count), sectors)) =
+            rayon::join(
+                || collect(&draft, &nodes, &adjacency, &surfaces),
+                || divide(&draft, &nodes, &adjacency, &surfaces),
+            );
+        if !broken.is_empty() {
+            return Err(broken);
+        }
+        defects.extend(one_sided);
         if !defects.is_empty() {
             return Err(defects);
         }
-        let cells = &draft.cells.elements;
-        defects.extend(check::faces(&draft, &adjacency));
-        if !defects.is_empty() {
-            // Where cells overlap, nothing can be said of the surfaces.
-            return Err(defects);
-        }
-        let (surfaces, found) = check::surfaces(&draft, roles, &adjacency);
-        defects.extend(found);
-        let (faces, found) = orient::fractures(&draft, &nodes, &adjacency, &surfaces);
-        defects.extend(found);
-        if !defects.is_empty() {
-            return Err(defects);
-        }
-        for &(minus, plus) in &faces {
-            adjacency.part(minus, plus);
-        }
-        // The blocks are one thread's work, which leaves the others to the rest.
-        let ((block, block_count), (sectors, facets)) = rayon::join(
-            || blocks::find(cells, &adjacency),
-            || {
-                let sectors = sectors::find(cells, nodes.len(), &adjacency, &faces);
-                (
-                    sectors,
-                    collect_facets(cells, &adjacency, &surfaces, &faces),
-                )
-            },
-        );
-        let boundaries = collect_boundaries(&draft, &adjacency, &surfaces);
         let shared = surfaces.shared.iter();
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
         let shared_facets = shared_facets.collect();
@@ -191,6 +186,39 @@ impl Mesh {
     }
 }
 
+/// The facets of fractures and boundaries, and defects of the fractures.
+fn collect(
+    draft: &Draft,
+    nodes: &[DVec3],
+    adjacency: &Adjacency,
+    surfaces: &check::Surfaces,
+) -> (Facets, Vec<Boundary>, Vec<Defect>) {
+    let (faces, found) = orient::fractures(draft, nodes, adjacency, surfaces);
+    let facets = collect_facets(&draft.cells.elements, adjacency, surfaces, &faces);
+    (
+        facets,
+        collect_boundaries(draft, adjacency, surfaces),
+        found,
+    )
+}
+
+/// Defects of the cells, their blocks, the sectors of the nodes.
+fn divide(
+    draft: &Draft,
+    nodes: &[DVec3],
+    adjacency: &Adjacency,
+    surfaces: &check::Surfaces,
+) -> (Vec<Defect>, (Vec<u32>, usize), Sectors) {
+    let cells = &draft.cells.elements;
+    let broken = check::cells(draft, nodes);
+    let fractured = surfaces.facets.iter().flat_map(|facet| facet.faces);
+    let (blocks, sectors) = rayon::join(
+        || blocks::find(cells, adjacency),
+        || sectors::find(cells, nodes.len(), adjacency, fractured),
+    );
+    (broken, blocks, sectors)
+}
+
 /// Appends the cell face `face` to `elements` and its slots to `slots`.
 fn push_face(
     cells: &Elements,
@@ -222,10 +250,7 @@ fn collect_facets(
         .zip(faces.par_chunks(PER_TASK))
         .map(|(facets, faces)| facets_between(cells, adjacency, facets, faces))
         .collect();
-    let mut whole = Facets {
-        elements: Elements::new(),
-        ..Facets::default()
-    };
+    let mut whole = room_for(faces.len());
     for part in parts {
         whole.elements.extend(&part.elements);
         whole.fracture.extend(part.fracture);
@@ -237,6 +262,22 @@ fn collect_facets(
     whole
 }
 
+/// No facets, and room for so many triangles.
+fn room_for(count: usize) -> Facets {
+    let mut elements = Elements::new();
+    elements.shapes.reserve(count);
+    elements.offsets.reserve(count);
+    elements.nodes.reserve(3 * count);
+    Facets {
+        elements,
+        fracture: Vec::with_capacity(count),
+        minus: Vec::with_capacity(count),
+        plus: Vec::with_capacity(count),
+        minus_slots: Vec::with_capacity(3 * count),
+        plus_slots: Vec::with_capacity(3 * count),
+    }
+}
+
 /// The facets between these pairs of minus and plus faces.
 fn facets_between(
     cells: &Elements,
@@ -244,10 +285,7 @@ fn facets_between(
     drafts: &[check::DraftFacet],
     faces: &[(u32, u32)],
 ) -> Facets {
-    let mut facets = Facets {
-        elements: Elements::new(),
-        ..Facets::default()
-    };
+    let mut facets = room_for(faces.len());
     for (draft, &(minus, plus)) in drafts.iter().zip(faces) {
         push_face(
             cells,

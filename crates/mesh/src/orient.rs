@@ -8,7 +8,7 @@ use crate::check::{DraftFacet, Surfaces};
 use crate::defect::Defect;
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
-use crate::pairing::{Entry, visit_runs};
+use crate::pairing::{Entry, bounds, visit_runs};
 
 /// The facet on the other side of an edge, or [`NONE`], and whether the first faces of both run
 /// along it the same way.
@@ -28,7 +28,7 @@ pub(crate) fn fractures(
 ) -> (Vec<(u32, u32)>, Vec<Defect>) {
     let faces = surfaces.facets.par_iter().map(|facet| facet.faces[0]);
     let rings: Vec<Ring> = faces.map(|face| Ring::of(draft, adjacency, face)).collect();
-    let links = links(surfaces, &rings);
+    let links = links(surfaces, &rings, nodes.len());
     let mut flipped: Vec<Option<bool>> = vec![None; surfaces.facets.len()];
     let mut defects = Vec::new();
     for seed in 0..surfaces.facets.len() {
@@ -39,7 +39,7 @@ pub(crate) fn fractures(
         if !consistent {
             defects.push(one_sided(draft, surfaces, &surfaces.facets[seed]));
         }
-        let areas = surface.iter().map(|&facet| {
+        let areas = surface.par_iter().map(|&facet| {
             let (centre, area) = rings[facet as usize].centre_and_area(nodes);
             let flip = flipped[facet as usize] == Some(true);
             (centre, if flip { -area } else { area })
@@ -102,7 +102,7 @@ impl Ring {
 }
 
 /// For every facet its neighbours across edges where exactly two facets of the fracture meet.
-fn links(surfaces: &Surfaces, rings: &[Ring]) -> Vec<Links> {
+fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
     let emit = |facet: usize, entries: &mut Vec<Entry>| {
         let fracture = surfaces.facets[facet].fracture;
         let edges = rings[facet].edges();
@@ -114,10 +114,15 @@ fn links(surfaces: &Surfaces, rings: &[Ring]) -> Vec<Links> {
                 forward,
             };
             entries.push(Entry {
-                key: [fracture, low, high],
+                // No node has a number as high as that.
+                key: [low, high, NONE - fracture],
                 item: edge.pack(),
             });
         }
+    };
+    let reach = |facet: usize| {
+        let corners = &rings[facet].corners[..rings[facet].count];
+        bounds(corners)
     };
     let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[Entry]| {
         if let [a, b] = run {
@@ -125,7 +130,7 @@ fn links(surfaces: &Surfaces, rings: &[Ring]) -> Vec<Links> {
         }
     };
     let mut links = vec![[(NONE, false); 4]; surfaces.facets.len()];
-    for [a, b] in visit_runs(surfaces.facets.len(), emit, visit)
+    for [a, b] in visit_runs(surfaces.facets.len(), node_count, reach, emit, visit)
         .into_iter()
         .flatten()
     {

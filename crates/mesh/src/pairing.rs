@@ -1,7 +1,9 @@
 //! Finds what has the same key among millions of items, in a time linear in their number.
 //!
-//! Items are dealt out by a hash of their key, first into parts that fit a processor's cache, then
-//! into buckets of a few; only within a bucket they are sorted. Every part is the work of one task.
+//! Items are dealt out by the first number of their key, a node, into parts that fit a processor's
+//! cache, and there into buckets, within which they are compared one by one. Where the elements lie in the
+//! order of their nodes, most items of a part come from a few stretches of elements: these are not
+//! dealt out but asked for again. Every part is the work of one task.
 
 use std::ops::Range;
 
@@ -9,9 +11,10 @@ use rayon::prelude::*;
 
 /// Elements whose items one task deals out.
 const ELEMENTS_PER_TASK: usize = 16_384;
-/// The hash has this many bits for the part.
-const PART_BITS: u32 = 7;
-const PARTS: usize = 1 << PART_BITS;
+/// So many nodes have a few hundred kilobytes of faces around them.
+const NODES_PER_PART: usize = 512;
+/// Each task of the dealing has a list as long as there are parts.
+const MOST_PARTS: usize = 1024;
 
 /// An item and the three numbers it is matched by, the last two in any order.
 #[derive(Debug, Clone, Copy, Default)]
@@ -26,87 +29,175 @@ impl Entry {
         let [first, a, b] = self.key;
         [first, a.min(b), a.max(b)]
     }
-
-    /// Orders entries by key, those of one key by item.
-    fn rank(&self) -> u128 {
-        let digits = |sum: u128, digit: u32| sum << u32::BITS | u128::from(digit);
-        self.sorted_key()
-            .into_iter()
-            .chain([self.item])
-            .fold(0, digits)
-    }
-
-    fn hash(&self) -> u64 {
-        // Odd constants without pattern; only the upper bits are used, and these depend on all.
-        const FIRST: u64 = 0x9E37_79B9_7F4A_7C15;
-        const SECOND: u64 = 0xD6E8_FEB8_6659_FD93;
-        let [first, a, b] = self.sorted_key().map(u64::from);
-        let mixed = (first | a << 32).wrapping_mul(FIRST).rotate_left(32) ^ b;
-        mixed.wrapping_mul(SECOND)
-    }
-
-    fn part(&self) -> usize {
-        (self.hash() >> (u64::BITS - PART_BITS)) as usize
-    }
-
-    /// The bucket within the part, of `2^bits`.
-    fn bucket(&self, bits: u32) -> usize {
-        (self.hash() << PART_BITS >> (u64::BITS - bits)) as usize
-    }
 }
 
 /// Visits every run of two or more entries with one key, in ascending order of their items, and
 /// returns what each task has made of its runs. `emit` appends the entries of one of `count`
-/// elements; items ascend from element to element. Which run a task visits, and when, depends on the keys alone.
+/// elements, their keys beginning with a number below `end`; `reach` gives the lowest of these numbers
+/// and one that none of them exceeds. Which run a task visits, and when, depends on the keys alone.
 pub(crate) fn visit_runs<A: Default + Send>(
     count: usize,
+    end: usize,
+    reach: impl Fn(usize) -> (u32, u32) + Sync,
     emit: impl Fn(usize, &mut Vec<Entry>) + Sync,
     visit: impl Fn(&mut A, &[Entry]) + Sync,
 ) -> Vec<A> {
+    let parts = Parts::of(end);
     let deal = |entries: &mut Vec<Entry>, task: usize| {
         let first = task * ELEMENTS_PER_TASK;
-        entries.clear();
-        (first..count.min(first + ELEMENTS_PER_TASK)).for_each(|element| emit(element, entries));
-        Dealt::of(entries)
+        let elements = first..count.min(first + ELEMENTS_PER_TASK);
+        Dealt::in_order(parts, elements.clone(), &reach, &emit, entries)
+            .unwrap_or_else(|| Dealt::all(parts, elements, &emit, entries))
     };
     let tasks = (0..count.div_ceil(ELEMENTS_PER_TASK)).into_par_iter();
     let dealt: Vec<Dealt> = tasks.map_init(Vec::new, deal).collect();
     let visit_part = |buckets: &mut Buckets, part: usize| {
         let mut answer = A::default();
-        buckets.fill(&dealt, part);
-        buckets.visit_runs(|run| visit(&mut answer, run));
+        buckets.entries.clear();
+        for dealt in &dealt {
+            for element in dealt.own(part) {
+                parts.emit_into(part, &mut buckets.entries, |entries| emit(element, entries));
+            }
+            buckets.entries.extend(dealt.of_part(part));
+        }
+        buckets.visit_runs(parts, |run| visit(&mut answer, run));
         answer
     };
-    let parts = (0..PARTS).into_par_iter();
-    parts.map_init(Buckets::default, visit_part).collect()
+    let all = (0..parts.count).into_par_iter();
+    all.map_init(Buckets::default, visit_part).collect()
 }
 
-/// The entries of one task, those of one part side by side.
+/// The lowest and the highest of some numbers.
+pub(crate) fn bounds(numbers: &[u32]) -> (u32, u32) {
+    let all = numbers.iter().copied();
+    all.fold((u32::MAX, 0), |(low, high), number| {
+        (low.min(number), high.max(number))
+    })
+}
+
+/// How first numbers of keys are divided.
+#[derive(Clone, Copy)]
+struct Parts {
+    shift: u32,
+    count: usize,
+}
+
+impl Parts {
+    fn of(end: usize) -> Self {
+        let per_part = end.div_ceil(MOST_PARTS).max(NODES_PER_PART);
+        let shift = per_part.next_power_of_two().ilog2();
+        let count = (end >> shift) + 1;
+        Self { shift, count }
+    }
+
+    fn of_number(self, number: u32) -> usize {
+        (number >> self.shift) as usize
+    }
+
+    fn of_entry(self, entry: &Entry) -> usize {
+        self.of_number(entry.key[0])
+    }
+
+    /// Appends those entries of an element that belong to a part.
+    fn emit_into(self, part: usize, entries: &mut Vec<Entry>, emit: impl Fn(&mut Vec<Entry>)) {
+        let first = entries.len();
+        emit(entries);
+        self.keep(entries, first, |entry_part| entry_part == part);
+    }
+
+    /// Drops entries of some parts, from `first` on.
+    fn keep(self, entries: &mut Vec<Entry>, first: usize, wanted: impl Fn(usize) -> bool) {
+        if entries[first..]
+            .iter()
+            .all(|entry| wanted(self.of_entry(entry)))
+        {
+            return;
+        }
+        let mut end = first;
+        for place in first..entries.len() {
+            // Without a branch, for which parts come next cannot be foreseen.
+            let entry = entries[place];
+            entries[end] = entry;
+            end += usize::from(wanted(self.of_entry(&entry)));
+        }
+        entries.truncate(end);
+    }
+}
+
+/// What one task has dealt out.
 struct Dealt {
+    /// First of the elements that each part has to ask for again, and of those behind.
+    own: Vec<usize>,
+    /// The entries of all other elements, and those that do not belong to the part of their element;
+    /// those of one part side by side.
     entries: Vec<Entry>,
-    start: [u32; PARTS + 1],
+    start: Vec<u32>,
 }
 
 impl Dealt {
-    fn of(entries: &[Entry]) -> Self {
-        let mut start = [0; PARTS + 1];
-        for entry in entries {
-            start[entry.part() + 1] += 1;
+    /// Leaves elements to the parts of their lowest keys, if these ascend.
+    fn in_order(
+        parts: Parts,
+        elements: Range<usize>,
+        reach: impl Fn(usize) -> (u32, u32),
+        emit: impl Fn(usize, &mut Vec<Entry>),
+        entries: &mut Vec<Entry>,
+    ) -> Option<Self> {
+        let mut own = Vec::with_capacity(parts.count + 1);
+        entries.clear();
+        for element in elements.clone() {
+            let (home, last) = reach(element);
+            let (home, last) = (parts.of_number(home), parts.of_number(last));
+            if home + 1 < own.len() {
+                return None;
+            }
+            own.resize(home + 1, element);
+            if last > home {
+                let first = entries.len();
+                emit(element, entries);
+                parts.keep(entries, first, |part| part != home);
+            }
         }
-        for part in 0..PARTS {
+        own.resize(parts.count + 1, elements.end);
+        Some(Self::of(parts, own, entries))
+    }
+
+    /// Leaves no element to the parts.
+    fn all(
+        parts: Parts,
+        elements: Range<usize>,
+        emit: impl Fn(usize, &mut Vec<Entry>),
+        entries: &mut Vec<Entry>,
+    ) -> Self {
+        entries.clear();
+        elements.for_each(|element| emit(element, entries));
+        Self::of(parts, vec![0; parts.count + 1], entries)
+    }
+
+    fn of(parts: Parts, own: Vec<usize>, entries: &[Entry]) -> Self {
+        let mut start = vec![0; parts.count + 1];
+        for entry in entries {
+            start[parts.of_entry(entry) + 1] += 1;
+        }
+        for part in 0..parts.count {
             start[part + 1] += start[part];
         }
-        let mut next = start;
+        let mut next = start.clone();
         let mut dealt = vec![Entry::default(); entries.len()];
         for entry in entries {
-            let place = &mut next[entry.part()];
+            let place = &mut next[parts.of_entry(entry)];
             dealt[*place as usize] = *entry;
             *place += 1;
         }
         Self {
+            own,
             entries: dealt,
             start,
         }
+    }
+
+    fn own(&self, part: usize) -> Range<usize> {
+        self.own[part]..self.own[part + 1]
     }
 
     fn of_part(&self, part: usize) -> &[Entry] {
@@ -115,54 +206,85 @@ impl Dealt {
     }
 }
 
-/// The entries of one part, those of one bucket side by side.
+/// The entries of one part.
 #[derive(Default)]
 struct Buckets {
+    /// As they come.
     entries: Vec<Entry>,
-    start: Vec<u32>,
+    /// Those whose keys begin with the same number side by side.
+    sorted: Vec<Entry>,
+    end: Vec<u32>,
 }
 
 impl Buckets {
-    fn fill(&mut self, dealt: &[Dealt], part: usize) {
-        let entries = || dealt.iter().flat_map(|dealt| dealt.of_part(part));
-        let count: usize = dealt.iter().map(|dealt| dealt.of_part(part).len()).sum();
-        // One or two entries a bucket: most keys occur twice.
-        let bits = count.max(2).ilog2();
-        self.start.clear();
-        self.start.resize(1 << bits, 0);
-        for entry in entries() {
-            self.start[entry.bucket(bits)] += 1;
+    fn visit_runs(&mut self, parts: Parts, mut visit: impl FnMut(&[Entry])) {
+        self.sort(parts);
+        let mut start = 0;
+        for &end in &self.end {
+            visit_bucket(&mut self.sorted[start..end as usize], &mut visit);
+            start = end as usize;
         }
-        let mut end = 0;
-        for start in &mut self.start {
-            (*start, end) = (end, end + *start);
-        }
-        self.entries.resize(count, Entry::default());
-        for entry in entries() {
-            let place = &mut self.start[entry.bucket(bits)];
-            self.entries[*place as usize] = *entry;
-            *place += 1;
-        }
-        // By now each start has moved on to the next.
     }
 
-    fn visit_runs(&mut self, mut visit: impl FnMut(&[Entry])) {
-        let mut start = 0;
-        for &end in &self.start {
-            let bucket = &mut self.entries[start as usize..end as usize];
-            start = end;
-            if let [first, second] = bucket {
-                // What there is in most buckets, in the order of the items already.
-                if first.sorted_key() == second.sorted_key() {
-                    visit(bucket);
-                }
-            } else if bucket.len() > 2 {
-                bucket.sort_unstable_by_key(Entry::rank);
-                let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
-                runs.filter(|run| run.len() > 1).for_each(&mut visit);
-            }
+    fn sort(&mut self, parts: Parts) {
+        let bucket = |entry: &Entry| entry.key[0] as usize & ((1 << parts.shift) - 1);
+        self.end.clear();
+        self.end.resize(1 << parts.shift, 0);
+        for entry in &self.entries {
+            self.end[bucket(entry)] += 1;
+        }
+        let mut sum = 0;
+        for end in &mut self.end {
+            (*end, sum) = (sum, sum + *end);
+        }
+        self.sorted.resize(self.entries.len(), Entry::default());
+        for entry in &self.entries {
+            // A begin that moves on to the end.
+            let end = &mut self.end[bucket(entry)];
+            self.sorted[*end as usize] = *entry;
+            *end += 1;
         }
     }
+}
+
+/// Visits the runs among entries whose keys begin alike: around a node there are a few dozen.
+fn visit_bucket(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
+    const MANY: usize = 64;
+    if bucket.len() > MANY {
+        return visit_sorted(bucket, visit);
+    }
+    let (mut first, mut end) = (0, bucket.len());
+    while first < end {
+        let one = bucket[first];
+        let key = one.sorted_key();
+        let (mut twin, mut twins) = (first, 0);
+        // Without a branch, for where the twin is cannot be foreseen.
+        for (place, entry) in bucket[..end].iter().enumerate().skip(first + 1) {
+            let is_twin = entry.sorted_key() == key;
+            twin = if is_twin { place } else { twin };
+            twins += usize::from(is_twin);
+        }
+        if twins > 1 {
+            return visit_sorted(&mut bucket[first..end], visit);
+        }
+        first += 1;
+        if twins == 1 {
+            let other = bucket[twin];
+            end -= 1;
+            bucket[twin] = bucket[end];
+            visit(&if one.item < other.item {
+                [one, other]
+            } else {
+                [other, one]
+            });
+        }
+    }
+}
+
+fn visit_sorted(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
+    bucket.sort_unstable_by_key(|entry| (entry.sorted_key(), entry.item));
+    let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
+    runs.filter(|run| run.len() > 1).for_each(visit);
 }
 
 #[cfg(test)]
@@ -190,10 +312,20 @@ mod tests {
                 entries.push(Entry { key: key(0), item });
             }
         };
+        // Element 2 and others lie in two parts; the elements do not all ascend.
+        let reach = |element: usize| {
+            let firsts = [element, (element + 1) % COUNT].map(|i| i as u32 / 3);
+            let low = if element % 50 == 2 {
+                0
+            } else {
+                firsts[0].min(firsts[1])
+            };
+            (low, firsts[0].max(firsts[1]))
+        };
         let visit = |found: &mut Vec<Vec<u32>>, run: &[Entry]| {
             found.push(run.iter().map(|entry| entry.item).collect());
         };
-        let mut runs = visit_runs(COUNT, emit, visit).concat();
+        let mut runs = visit_runs(COUNT, COUNT, reach, emit, visit).concat();
         runs.sort_by_key(Vec::len);
         assert_eq!(runs.len(), COUNT);
         let longest = runs.pop().expect("runs");

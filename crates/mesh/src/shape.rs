@@ -140,6 +140,17 @@ const TET4_FACES: [Face; 4] = [
     face(Tri3, &[1, 2, 3]),
 ];
 
+/// Corners of a tetrahedron's faces, for loops over very many of them.
+pub(crate) const TETRAHEDRON: [[usize; 3]; 4] = {
+    let mut corners = [[0; 3]; 4];
+    let mut place = 0;
+    while place < 12 {
+        corners[place / 3][place % 3] = TET4_FACES[place / 3].nodes[place % 3] as usize;
+        place += 1;
+    }
+    corners
+};
+
 const TET10_FACES: [Face; 4] = [
     face(Tri6, &[0, 2, 1, 6, 5, 4]),
     face(Tri6, &[0, 1, 3, 4, 9, 7]),

@@ -130,3 +130,40 @@ fn boundaries_face_outwards() {
         assert!(area.z > 0.0);
     }
 }
+
+#[test]
+fn a_draft_without_cells_is_refused() {
+    let defects = Mesh::build(Draft::default(), &[]).expect_err("no cells");
+    assert!(defects[0].problem.contains("no cells"), "{defects:?}");
+}
+
+/// Joined by several tasks; a plane leaves two sectors at each of its nodes, and two blocks.
+#[test]
+fn sectors_and_blocks_of_a_large_mesh() {
+    let level = |x: [f64; 3]| x[2] == 0.5;
+    let plane = Patch {
+        name: "level",
+        contains: &level,
+    };
+    let mut draft = tetrahedra([24; 3], [1.0; 3], &[plane]);
+    for arranged in [false, true] {
+        if arranged {
+            draft.arrange();
+        }
+        let mesh = Mesh::build(draft.clone(), &[SurfaceRole::Fracture; 2]).expect("a mesh");
+        assert!(mesh.cells.len() > 65_536);
+        assert_eq!(histogram(&mesh), [24 * 25 * 25, 25 * 25]);
+        assert_eq!(mesh.block_count, 2);
+        let upper = mesh
+            .facets
+            .plus
+            .iter()
+            .map(|&cell| mesh.block[cell as usize]);
+        let lower = mesh
+            .facets
+            .minus
+            .iter()
+            .map(|&cell| mesh.block[cell as usize]);
+        assert!(upper.zip(lower).all(|(upper, lower)| upper == 1 - lower));
+    }
+}

@@ -33,12 +33,12 @@ pub use conjugate_gradients::{
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
     Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,
-    LinearSolution, NodeOrder, Plan, Prediction, TangentSolver, Tangents, Unknowns, Whole,
-    Workload,
+    LinearSolution, NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
+    Whole, Workload,
 };
 pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;
-pub use newton::{Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
+pub use newton::{Bookmark, Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
 pub use pattern::{Lists, Pattern};
 pub use points::Points;
 pub use problem::{

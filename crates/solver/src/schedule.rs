@@ -1,11 +1,13 @@
 //! When what acts: load cases, each with a factor of its own, and the load steps.
 
+use serde::{Deserialize, Serialize};
+
 /// How far the loads have grown: a time and one factor for each load case.
 ///
 /// A factor scales the loads (surface loads, gravity, fluid pressure) and the prescribed displacements
 /// of its case. A case without a factor does not act. The initial stress is a state and not a load:
 /// nothing scales it.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Load {
     /// Time, in the unit that the user chose.
     pub time: f64,

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 use lie_core::{FractureLaw, Landing, Memory, Response, Walls};
 use lie_mesh::Defect;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::{self, Frame};
 use crate::folded;
@@ -68,7 +69,7 @@ impl Discretisation {
 /// Apertures and tractions are kept beside the unknowns and follow them by increments. Computed
 /// anew from displacements, a stiff fracture would multiply the rounding of the displacements by
 /// its stiffness.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
     /// Load under which the state stands.
     pub load: Load,
@@ -83,7 +84,7 @@ pub struct State {
 }
 
 /// How large the quantities of a state are: what "small" is measured against.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Sizes {
     /// Largest of the forces that must balance (N).
     pub(crate) force: f64,
@@ -105,7 +106,7 @@ impl Sizes {
 }
 
 /// State of one facet point.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct FacetPointState {
     /// Where the law is linearised, which is where the walls are once converged.
     pub walls: Walls,

@@ -148,7 +148,11 @@ fn former_results() -> BTreeMap<String, Vec<u8>> {
 
 fn judge_all(cases: &[Case]) {
     let former = former_results();
-    assert_eq!(former.len(), 5, "two collections, two grids, a summary");
+    assert_eq!(
+        former.len(),
+        6,
+        "two collections, two grids, a summary, a checkpoint"
+    );
     let verdicts: Vec<String> = cases
         .iter()
         .filter_map(|case| case.judge(&former))

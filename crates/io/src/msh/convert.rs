@@ -20,14 +20,16 @@ const LARGE: usize = 20_000;
 /// # Errors
 /// As [`super::read_msh`], and what gmsh says against the file.
 pub fn load_msh(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
-    let mut draft = load(path, scratch_dir)?;
+    let (mut draft, bytes) = load(path, scratch_dir)?;
     if draft.cells.elements.len() >= LARGE {
-        draft.arrange();
+        // To give back the memory of a large file takes the system a while.
+        rayon::join(|| drop(bytes), || draft.arrange());
     }
     Ok(draft)
 }
 
-fn load(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
+/// The draft, and the bytes that it was read from where they are still there.
+fn load(path: &Path, scratch_dir: &Path) -> Result<(Draft, Vec<u8>), Vec<Defect>> {
     let name = path.display().to_string();
     let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
     let source = Source {
@@ -35,7 +37,7 @@ fn load(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
         bytes: &bytes,
     };
     match header::read(source).map_err(|defect| vec![defect])? {
-        Format::Current(_) => parse_msh(&bytes, &name),
+        Format::Current(_) => parse_msh(&bytes, &name).map(|draft| (draft, bytes)),
         Format::Older(version) => {
             drop(bytes);
             let mut draft = load_older(path, scratch_dir)?;
@@ -43,7 +45,7 @@ fn load(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
                 drop_repeated(&mut draft.cells);
                 drop_repeated(&mut draft.facets);
             }
-            Ok(draft)
+            Ok((draft, Vec::new()))
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lie_mesh::{Defect, Draft, Shape, TaggedElements, sample};
+use lie_mesh::{Defect, Draft, Elements, Shape, TaggedElements, sample};
 use mshio::ElementType;
 use rayon::prelude::*;
 
@@ -11,6 +11,7 @@ use super::elements::Block;
 use super::entities::{EntityKey, entity_name};
 use super::groups::Groups;
 use super::guard::{Survey, keep};
+use super::source::Encoding;
 use super::tags::TagIndex;
 use super::{mshio_calls, nodes};
 
@@ -77,14 +78,7 @@ fn coordinates(survey: &Survey) -> Result<Vec<[f64; 3]>, Defect> {
 
 fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Result<(), Defect> {
     let index = TagIndex::new(&survey.nodes.tags);
-    for block in &survey.blocks {
-        if let Some((target, shape)) = target_of(block, &mut draft.cells, &mut draft.facets) {
-            let set = groups.set_of(block.entity, &survey.entities);
-            target.elements.append(shape, block.count);
-            target.tags.resize(target.elements.len(), 0);
-            target.group_set.resize(target.elements.len(), set);
-        }
-    }
+    make_room(survey, &mut groups, draft);
     let found: Vec<Result<Dangling, Defect>> = readings(survey, draft)
         .into_par_iter()
         .map(|reading| reading.run(survey, &index))
@@ -98,6 +92,24 @@ fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Resu
         dangling.nodes.append(&mut found.nodes);
     }
     dangling.check(survey.source.name)
+}
+
+/// Shapes and groups of all elements; nodes and tags remain 0.
+fn make_room(survey: &Survey, groups: &mut Groups, draft: &mut Draft) {
+    let (mut cells, mut facets) = (Vec::new(), Vec::new());
+    for block in &survey.blocks {
+        let cells = (&mut cells, &mut draft.cells.group_set);
+        let facets = (&mut facets, &mut draft.facets.group_set);
+        if let Some(((blocks, sets), shape)) = target_of(block, cells, facets) {
+            let set = groups.set_of(block.entity, &survey.entities);
+            blocks.push((shape, block.count));
+            sets.resize(sets.len() + block.count, set);
+        }
+    }
+    for (elements, blocks) in [(&mut draft.cells, cells), (&mut draft.facets, facets)] {
+        elements.elements = Elements::blank(&blocks);
+        elements.tags = vec![0; elements.elements.len()];
+    }
 }
 
 /// Where the elements of a block belong, if anywhere, and their shape.
@@ -144,15 +156,55 @@ fn readings<'a>(survey: &'a Survey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
 
 impl Reading<'_> {
     fn run(self, survey: &Survey, index: &TagIndex) -> Result<Dangling, Defect> {
+        match survey.encoding {
+            Encoding::Text => self.text(survey, index),
+            Encoding::LittleEndian => self.binary(survey, index, u64::from_le_bytes),
+            Encoding::BigEndian => self.binary(survey, index, u64::from_be_bytes),
+        }
+    }
+
+    fn text(self, survey: &Survey, index: &TagIndex) -> Result<Dangling, Defect> {
+        let elements = mshio_calls::elements(survey.source, self.kind, self.piece)?;
+        let elements = elements.iter();
+        Ok(self.fill(
+            index,
+            elements.map(|element| (element.element_tag, element.nodes.iter().copied())),
+        ))
+    }
+
+    /// Each element is a row of numbers of one width: nothing that mshio would have to parse, and
+    /// its vector for each element takes far longer than the numbers.
+    fn binary(
+        self,
+        survey: &Survey,
+        index: &TagIndex,
+        number: impl Fn([u8; 8]) -> u64,
+    ) -> Result<Dangling, Defect> {
+        let (numbers, rest) = survey.source.bytes[self.piece.bytes.clone()].as_chunks();
+        if !rest.is_empty() || numbers.len() != self.tags.len() + self.nodes.len() {
+            return Err(disagreement(survey, "element nodes"));
+        }
+        let width = numbers.len() / self.piece.count;
+        let rows = numbers.chunks_exact(width);
+        Ok(self.fill(
+            index,
+            rows.map(|row| (number(row[0]), row[1..].iter().map(|&bytes| number(bytes)))),
+        ))
+    }
+
+    /// Puts elements, each a tag and the tags of its nodes, into their places.
+    fn fill<N: Iterator<Item = u64>>(
+        self,
+        index: &TagIndex,
+        elements: impl Iterator<Item = (u64, N)>,
+    ) -> Dangling {
         let mut dangling = Dangling::default();
-        let elements =
-            mshio_calls::elements(survey.source, survey.encoding, self.kind, self.piece)?;
         let width = self.nodes.len() / self.piece.count;
         let places = self.tags.iter_mut().zip(self.nodes.chunks_exact_mut(width));
-        for (element, (tag, nodes)) in elements.iter().zip(places) {
-            *tag = element.element_tag;
+        for ((element, node_tags), (tag, nodes)) in elements.zip(places) {
+            *tag = element;
             let missing = dangling.nodes.len();
-            for (place, &tag) in nodes.iter_mut().zip(&element.nodes) {
+            for (place, tag) in nodes.iter_mut().zip(node_tags) {
                 match index.get(tag) {
                     Some(node) => *place = node,
                     None => dangling.nodes.push(tag),
@@ -162,7 +214,7 @@ impl Reading<'_> {
                 dangling.elements.push(*tag);
             }
         }
-        Ok(dangling)
+        dangling
     }
 }
 
@@ -268,7 +320,7 @@ fn unsupported(survey: &Survey, groups: &Groups, blocks: &[&Block]) -> Defect {
 
 fn disagreement(survey: &Survey, what: &str) -> Defect {
     survey.source.defect(
-        format!("mshio finds another number of {what} than the file says"),
+        format!("there is another number of {what} than the file says"),
         "open the file in gmsh and save it again as MSH 4.1",
     )
 }

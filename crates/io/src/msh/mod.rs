@@ -88,11 +88,11 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
 /// Large files are read by several tasks: copying them out of the system's cache takes as long as
 /// the parsing of a binary one.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    const PART: usize = 8 << 20;
+    const PART: usize = 2 << 20;
     let length = std::fs::metadata(path)?.len();
     // What is no ordinary file has no length.
     let length = usize::try_from(length).map_err(io::Error::other)?;
-    if length < 2 * PART {
+    if length < 8 * PART {
         return std::fs::read(path);
     }
     let mut bytes = vec![0; length];

@@ -1,7 +1,6 @@
 //! The two calls of mshio. Each gets what the guard has walked, behind a clean header: the section
-//! of nodes, or a piece of a block of elements, many of which can be read at the same time.
-
-use std::fmt::Display;
+//! of nodes, or a piece of a block of elements in a text file, many of which can be read at the same
+//! time.
 
 use lie_mesh::Defect;
 use mshio::{Element, ElementType, MshData, MshParserError, Nodes};
@@ -20,15 +19,14 @@ pub(super) fn nodes(
         .ok_or_else(|| refused(source, "Nodes", "no section"))
 }
 
-/// Parses elements of one type, as many as the guard has counted.
+/// Parses elements of one type in a text file, as many as the guard has counted.
 pub(super) fn elements(
     source: Source,
-    encoding: Encoding,
     kind: ElementType,
     piece: &Piece,
 ) -> Result<Vec<Element<u64>>, Defect> {
-    let body = lone_block(source, encoding, kind, piece);
-    let data = parse(source, encoding, "Elements", &body)?;
+    let body = lone_block(source, kind, piece);
+    let data = parse(source, Encoding::Text, "Elements", &body)?;
     let blocks = data.elements.map(|section| section.element_blocks);
     match blocks.unwrap_or_default().pop() {
         Some(block) if block.elements.len() == piece.count => Ok(block.elements),
@@ -38,34 +36,17 @@ pub(super) fn elements(
 
 /// The body of a section with this piece for its only block. Only the type and the number of the
 /// elements matter.
-fn lone_block(source: Source, encoding: Encoding, kind: ElementType, piece: &Piece) -> Vec<u8> {
+fn lone_block(source: Source, kind: ElementType, piece: &Piece) -> Vec<u8> {
     let kind = match kind {
         // mshio takes the 18-node prism for one of 28 nodes; this is another type of 18 nodes.
         ElementType::Pri18 => ElementType::Tri18,
         kind => kind,
     };
-    let records = &source.bytes[piece.bytes.clone()];
-    let count = piece.count as u64;
-    let mut body = Vec::with_capacity(records.len() + 128);
+    let (kind, count) = (kind as i32, piece.count);
     // Blocks, elements, lowest and highest tag: with the true tags, mshio would index sparse ones.
-    for number in [1, count, 1, count] {
-        push(&mut body, encoding, number, &number.to_le_bytes());
-    }
-    for number in [3, 1, kind as i32] {
-        push(&mut body, encoding, number, &number.to_le_bytes());
-    }
-    push(&mut body, encoding, count, &count.to_le_bytes());
-    body.extend_from_slice(records);
+    let mut body = format!("1 {count} 1 {count} 3 1 {kind} {count} ").into_bytes();
+    body.extend_from_slice(&source.bytes[piece.bytes.clone()]);
     body
-}
-
-/// Appends a number in the encoding of the file.
-fn push(body: &mut Vec<u8>, encoding: Encoding, number: impl Display, little: &[u8]) {
-    match encoding {
-        Encoding::Text => body.extend(format!("{number} ").bytes()),
-        Encoding::LittleEndian => body.extend(little),
-        Encoding::BigEndian => body.extend(little.iter().rev()),
-    }
 }
 
 /// Only this section is handed on: mshio searches the end of others in quadratic time.

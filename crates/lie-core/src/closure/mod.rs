@@ -22,6 +22,8 @@ mod tension;
 #[cfg(test)]
 mod tests;
 
+use serde::{Deserialize, Serialize};
+
 pub use tension::Tension;
 
 /// How the normal stiffness depends on the aperture, in compression.
@@ -47,7 +49,7 @@ pub enum ClosureKind {
 
 /// How far the walls of a fracture are apart, to full relative precision wherever that matters:
 /// the opening near the initial aperture, the aperture near closure.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Separation {
     /// Opening `w_n` (m).
     pub opening: f64,

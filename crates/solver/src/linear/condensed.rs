@@ -11,7 +11,7 @@ use glam::DMat3;
 use glam::DVec3;
 
 use super::jump_problem::JumpProblem;
-use super::{Analysis, Cholesky, LinearFailure, LinearSolution, TangentSolver};
+use super::{Analysis, Cholesky, LinearFailure, LinearSolution, SolverHistory, TangentSolver};
 use crate::system::System;
 
 /// Condensed solver of a system.
@@ -91,6 +91,18 @@ impl TangentSolver for Condensed {
             unknowns: self.cholesky.restored(&column),
             iterations,
         })
+    }
+
+    fn history(&self) -> SolverHistory {
+        SolverHistory {
+            stiffness: self.jumps.factored().map(<[DMat3]>::to_vec),
+            spectrum: None,
+        }
+    }
+
+    fn restore(&mut self, history: SolverHistory) -> Result<(), LinearFailure> {
+        let restored = self.jumps.factorise_again(history.stiffness);
+        restored.map_err(|failure| self.named(failure))
     }
 }
 

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::jump_block::JumpBlock;
-use super::{LinearFailure, LinearSolution, TangentSolver};
+use super::{LinearFailure, LinearSolution, SolverHistory, TangentSolver};
 use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
@@ -55,7 +55,7 @@ impl Iterative {
         let multigrid = multigrid.map_err(|failure| explain(&failure, &rock))?;
         Ok(Self {
             workspace: multigrid.workspace(),
-            jumps: JumpBlock::of(system, &rock),
+            jumps: JumpBlock::of(system, &rock)?,
             stiffness: None,
             multigrid,
             rock,
@@ -164,6 +164,24 @@ impl TangentSolver for Iterative {
             unknowns,
             iterations,
         })
+    }
+
+    fn history(&self) -> SolverHistory {
+        SolverHistory {
+            stiffness: self.stiffness.clone(),
+            spectrum: Some(self.jumps.spectrum()),
+        }
+    }
+
+    fn restore(&mut self, history: SolverHistory) -> Result<(), LinearFailure> {
+        if let Some(stiffness) = history.stiffness {
+            self.jumps.update(&stiffness)?;
+            self.stiffness = Some(stiffness);
+        }
+        if let Some(spectrum) = history.spectrum {
+            self.jumps.take_spectrum(spectrum);
+        }
+        Ok(())
     }
 
     fn precondition(

@@ -13,7 +13,8 @@ use faer::{Conj, Mat, Par, Side};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::LinearFailure;
+use super::ordering::nested_dissection;
+use super::{Analysis, Cholesky, LinearFailure};
 use crate::multigrid::{BlockRows, DROPPED, OwnedBlockRows, numbers};
 use crate::system::System;
 
@@ -48,6 +49,9 @@ pub(super) struct JumpBlock {
     largest_eigenvalue: f64,
     /// Factor on the result of the power iteration.
     margin: f64,
+    /// The block factorised, where laws have kinks: tangents next to each other may then differ by any
+    /// factor, and what is not symmetric feeds on the error of a polynomial.
+    factor: Option<Cholesky>,
     coupling: Vec<CoupledRow>,
 }
 
@@ -79,7 +83,10 @@ fn sign(index: usize) -> f64 {
 
 impl JumpBlock {
     /// Collects the block; `rock` are the other unknowns, ascending.
-    pub(super) fn of(system: &System<'_>, rock: &[u32]) -> Self {
+    ///
+    /// # Errors
+    /// If the ordering or the analysis of a factor fails.
+    pub(super) fn of(system: &System<'_>, rock: &[u32]) -> Result<Self, LinearFailure> {
         let unknowns = system.discretisation.interface.unknowns.clone();
         let rows = system.rock_rows();
         let own = rows.sub_block(&unknowns);
@@ -98,7 +105,13 @@ impl JumpBlock {
             *next += length;
             Some(*next - length)
         });
-        Self {
+        let factor = if system.is_smooth() {
+            None
+        } else {
+            Some(unfactorised(&own)?)
+        };
+        Ok(Self {
+            factor,
             inverse_offset: inverse_offset.collect(),
             nodes,
             node_of,
@@ -110,7 +123,7 @@ impl JumpBlock {
             largest_eigenvalue: 1.0,
             margin: POWER_MARGIN,
             unknowns,
-        }
+        })
     }
 
     pub(super) fn unknowns(&self) -> &[u32] {
@@ -137,6 +150,20 @@ impl JumpBlock {
             .flat_map(|f| f.start.iter().copied())
             .collect();
         self.largest_eigenvalue = self.margin * self.power_iteration(start);
+        if let Some(factor) = &mut self.factor {
+            for row in 0..self.unknowns.len() {
+                for (place, (_, block)) in self.tangent.view().row(row).enumerate() {
+                    factor.set_block(row, place, *block);
+                }
+            }
+            let factorised = factor.factorise();
+            factorised.map_err(|failure| match failure {
+                LinearFailure::Indefinite(row) => {
+                    LinearFailure::Indefinite(self.unknowns[row] as usize)
+                }
+                other => other,
+            })?;
+        }
         Ok(())
     }
 
@@ -145,6 +172,16 @@ impl JumpBlock {
     pub(super) fn widen(&mut self) {
         self.margin *= WIDENING;
         self.largest_eigenvalue *= WIDENING;
+    }
+
+    /// The largest eigenvalue as it was found or widened, and the factor on the next one.
+    pub(super) fn spectrum(&self) -> (f64, f64) {
+        (self.largest_eigenvalue, self.margin)
+    }
+
+    /// Takes over what [`Self::spectrum`] told.
+    pub(super) fn take_spectrum(&mut self, (largest_eigenvalue, margin): (f64, f64)) {
+        (self.largest_eigenvalue, self.margin) = (largest_eigenvalue, margin);
     }
 
     /// The diagonal block of a node, factorised.
@@ -224,8 +261,11 @@ impl JumpBlock {
     }
 
     /// An approximate solution for forces on the jumps (N): Chebyshev polynomial of the first kind
-    /// (Saad 2003, algorithm 12.1) in `D^-1 A`.
+    /// (Saad 2003, algorithm 12.1) in `D^-1 A`, or the exact one if the block is factorised.
     pub(super) fn solve(&self, right: &[DVec3]) -> Vec<DVec3> {
+        if let Some(factor) = &self.factor {
+            return factor.solve(right);
+        }
         let (high, low) = (self.largest_eigenvalue, self.largest_eigenvalue / CONDITION);
         let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
         let sigma = middle / half;
@@ -300,6 +340,15 @@ impl JumpBlock {
             forces[coupled.row as usize] -= sum;
         }
     }
+}
+
+fn unfactorised(own: &OwnedBlockRows) -> Result<Cholesky, LinearFailure> {
+    let rows = own.view();
+    let neighbours = |row: usize| rows.row(row).map(|(column, _)| column);
+    let count = own.row_offset.len() - 1;
+    let order = nested_dissection(count, neighbours)?;
+    let analysis = Analysis::of(&own.row_offset, &own.columns, order)?;
+    Ok(Cholesky::new(analysis, rows))
 }
 
 /// Scalar product, summed in a fixed order.

@@ -79,6 +79,26 @@ impl JumpProblem {
         self.change = pairs.map(|(new, old)| *new - *old).collect();
     }
 
+    /// Change of the stiffness that the present factor has, `C - C_0`.
+    pub(super) fn factored(&self) -> Option<&[DMat3]> {
+        self.factored.as_deref()
+    }
+
+    /// Factorises for a change that [`Self::factored`] told.
+    ///
+    /// # Errors
+    /// [`LinearFailure::Indefinite`] with the number of the block.
+    pub(super) fn factorise_again(
+        &mut self,
+        change: Option<Vec<DMat3>>,
+    ) -> Result<(), LinearFailure> {
+        if let Some(change) = change {
+            self.change = change;
+            self.factorise()?;
+        }
+        Ok(())
+    }
+
     /// Solves for `right` (N), to `tolerance` times its norm if that needs no new factor. Returns the
     /// iterations it took.
     ///

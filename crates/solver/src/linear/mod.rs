@@ -13,6 +13,7 @@ mod tangent;
 mod whole;
 
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 use crate::system::System;
 
@@ -54,6 +55,24 @@ pub struct LinearSolution {
     pub iterations: usize,
 }
 
+/// What the solves of a solver depend on that earlier steps left behind.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SolverHistory {
+    /// Blocks of the fractures that its factor or its preconditioner was made with.
+    stiffness: Option<Vec<DMat3>>,
+    /// What it takes the spectrum of the jumps for: the largest eigenvalue, and the factor on an
+    /// estimate of it.
+    spectrum: Option<(f64, f64)>,
+}
+
+impl SolverHistory {
+    /// Whether it speaks of this number of blocks of the fractures.
+    pub(crate) fn fits(&self, blocks: usize) -> bool {
+        let stiffness = self.stiffness.as_ref();
+        stiffness.is_none_or(|stiffness| stiffness.len() == blocks)
+    }
+}
+
 /// Tangents of the facet points (Pa/m).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tangents {
@@ -91,6 +110,19 @@ pub trait TangentSolver: Send + Sync {
         right: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure>;
+
+    /// What later solves depend on beside the tangents and the forces; nothing, if the solver is exact.
+    fn history(&self) -> SolverHistory {
+        SolverHistory::default()
+    }
+
+    /// Brings a solver that has just been prepared to where one with this history is.
+    ///
+    /// # Errors
+    /// If the tangent of that time cannot be factorised.
+    fn restore(&mut self, _: SolverHistory) -> Result<(), LinearFailure> {
+        Ok(())
+    }
 
     /// An approximate solution for the forces `right` (N), in one go.
     ///

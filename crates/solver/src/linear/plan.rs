@@ -285,7 +285,7 @@ fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     const ITERATION_BYTES: f64 = 400.0;
     const MEMORY_BYTES: f64 = 190.0;
     /// Iterations of a solve that is not symmetric, which cost more than those of one that is.
-    const UNSYMMETRIC: f64 = 60.0;
+    const UNSYMMETRIC: f64 = 40.0;
     let blocks = unknowns.pattern.columns.len() as f64;
     let iterations = if workload.is_path_dependent {
         UNSYMMETRIC * workload.solves()

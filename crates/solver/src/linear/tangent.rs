@@ -3,7 +3,7 @@
 use glam::DMat3;
 use glam::DVec3;
 
-use super::{LinearFailure, LinearSolution, TangentSolver, Tangents};
+use super::{LinearFailure, LinearSolution, SolverHistory, TangentSolver, Tangents};
 use crate::conjugate_gradients::{ConjugateGradientOutcome, ConjugateGradientSettings};
 use crate::gmres::gmres;
 use crate::system::System;
@@ -43,6 +43,19 @@ impl AnyTangent {
             .then(|| interface.stiffness(&tangents.exact));
         let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
         self.inner.update(system, positive)
+    }
+
+    /// What later solves depend on beside the tangents and the forces.
+    pub fn history(&self) -> SolverHistory {
+        self.inner.history()
+    }
+
+    /// Brings a solver that has just been prepared to where one with this history is.
+    ///
+    /// # Errors
+    /// If the tangent of that time cannot be factorised.
+    pub fn restore(&mut self, history: SolverHistory) -> Result<(), LinearFailure> {
+        self.inner.restore(history)
     }
 
     /// Solves for the forces `right` (N), to `tolerance` times their norm if it iterates.

@@ -10,6 +10,7 @@ use std::collections::VecDeque;
 use glam::DVec3;
 use lie_core::{FractureLaw, Landing};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::schedule::Load;
 use crate::system::{FacetPointState, State, System};
@@ -23,10 +24,10 @@ const WEIGHTIEST: f64 = 15.0;
 const CORNER: f64 = 0.5;
 
 /// Converged states, the latest first, beside the one that a step starts from.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Path(VecDeque<Former>);
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Former {
     load: Load,
     unknowns: Vec<DVec3>,
@@ -43,6 +44,12 @@ impl Path {
             unknowns: state.unknowns.clone(),
             tractions: system.law_tractions(state),
         });
+    }
+
+    /// Whether its states are of these numbers of unknowns and facet points.
+    pub(super) fn fits(&self, unknowns: usize, facet_points: usize) -> bool {
+        let mut formers = self.0.iter();
+        formers.all(|f| f.unknowns.len() == unknowns && f.tractions.len() == facet_points)
     }
 
     /// Continues the path through `state` to `load`, or close to it, if there is one and `load` is not

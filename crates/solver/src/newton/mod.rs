@@ -12,6 +12,7 @@
 //! small a `k` comes down from the open side step by step. A fixed `E/h` fails for joints that are
 //! soft against their elements.
 
+mod bookmark;
 mod extrapolation;
 mod loose;
 mod march;
@@ -29,6 +30,7 @@ use crate::system::{Sizes, State, System, norm};
 use extrapolation::Path;
 use walls::Landed;
 
+pub use bookmark::Bookmark;
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
@@ -37,6 +39,13 @@ const LOOSEST_SOLVE: f64 = 1e-3;
 /// Share of the largest sizes of a path that still counts once the loads are gone: what is left then
 /// is rounding, and would be compared with nothing but itself.
 const REMEMBERED: f64 = 1e-3;
+
+/// Share of the largest increment allowed where walls are reined in.
+const REINED: f64 = 1e-2;
+
+/// Share of the traction that would close an open fracture, below which the errors of its own count as
+/// small.
+const OPEN: f64 = 1e-3;
 
 /// Iterations before blocks that fly are looked for, those that they may fly, and the force out of
 /// balance, against the largest, that makes them.
@@ -196,9 +205,15 @@ impl Newton {
 
     fn is_converged(&self, system: &System<'_>, iteration: &Iteration) -> bool {
         let settings = &self.settings;
+        // The error of a reined iteration falls by a factor, not as a square.
+        let increment = if system.is_smooth() {
+            settings.increment
+        } else {
+            REINED * settings.increment
+        };
         iteration.force_residual <= settings.force
             && iteration.closure_error <= settings.closure
-            && (!system.is_nonlinear() || iteration.increment <= settings.increment)
+            && (!system.is_nonlinear() || iteration.increment <= increment)
     }
 
     fn iterate(
@@ -312,8 +327,19 @@ fn sizes(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Sizes {
     Sizes {
         force: system.force_scale(&trial.rock_forces, tractions, &state.load),
         displacement: openings.fold(largest(&displacements), f64::max),
-        traction: largest(tractions),
+        traction: largest(tractions).max(OPEN * rebound(system, state)),
     }
+}
+
+/// Traction (Pa) that would close the widest of the fractures again, if any may be free of traction.
+fn rebound(system: &System<'_>, state: &State) -> f64 {
+    if system.is_smooth() {
+        return 0.0;
+    }
+    let points = interface(system).points.iter().zip(&state.facet_points);
+    points
+        .map(|(point, state)| point.spring * state.walls.separation.opening.abs())
+        .fold(0.0, f64::max)
 }
 
 fn largest(vectors: &[DVec3]) -> f64 {

@@ -1,0 +1,343 @@
+//! `resume.bin`: what a run needs to go on where it was interrupted.
+//!
+//! A head that names the format, an [`Identity`], [`Progress`] (both as postcard), and the XXH3 sum of
+//! all that. Whether the file is whole and belongs to the run is known before anything else of it is
+//! believed.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use lie_io::write_atomically;
+use lie_mesh::Defect;
+use lie_solver::Bookmark;
+use serde::{Deserialize, Serialize};
+use twox_hash::XxHash3_128;
+
+use crate::summary::{FractureSummary, Seconds, StepMeasures};
+
+/// Its name in the folder of the results.
+pub const NAME: &str = "resume.bin";
+/// What every checkpoint begins with, and the number of the format.
+const HEAD: &[u8] = b"kluft checkpoint 1\n";
+const KIND: usize = b"kluft checkpoint ".len();
+/// Bytes of the sum at the end.
+const SUM: usize = 16;
+/// What helps against any checkpoint that does not serve.
+const AFRESH: &str = "run without --resume: it starts from the beginning";
+
+/// A sum over some bytes (XXH3, 128 bits): equal for equal bytes, and for others never in practice.
+pub type Fingerprint = u128;
+
+/// What a run is made of; it can only be resumed with the same.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Version of the program.
+    pub version: String,
+    /// The text of the scene.
+    pub scene: Fingerprint,
+    /// The text of the geometry, if the scene names one.
+    pub geometry: Option<Fingerprint>,
+    /// The bytes of the mesh file.
+    pub mesh: Fingerprint,
+}
+
+/// What is finished, and how to go on.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Progress<'a> {
+    /// Name of the linear solver, and why it was chosen.
+    pub choice: (String, String),
+    /// The finished load steps.
+    pub steps: Vec<StepMeasures>,
+    /// The fractures after the last of them.
+    pub fractures: Vec<(String, FractureSummary)>,
+    /// Where the time went so far.
+    pub seconds: Seconds,
+    /// Largest resident memory so far (bytes).
+    pub peak_memory_bytes: u64,
+    /// Where the solver stands; none after the last load step.
+    pub bookmark: Option<Bookmark<'a>>,
+}
+
+/// Sum of a file's bytes.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn fingerprint_of(path: &Path) -> Result<Fingerprint, Defect> {
+    let sum = || -> io::Result<Fingerprint> {
+        let mut file = File::open(path)?;
+        let mut buffer = vec![0; 1 << 18];
+        let mut sum = XxHash3_128::new();
+        loop {
+            match file.read(&mut buffer) {
+                Ok(0) => return Ok(sum.finish_128()),
+                Ok(count) => sum.write(&buffer[..count]),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+    };
+    sum().map_err(|error| {
+        let place = path.display().to_string();
+        let problem = format!("the file cannot be read: {error}");
+        Defect::new(place, problem, "check the path and the permissions")
+    })
+}
+
+/// Sum of a text.
+pub fn fingerprint(text: &str) -> Fingerprint {
+    XxHash3_128::oneshot(text.as_bytes())
+}
+
+/// A writer that sums up what goes through it.
+struct Summing<W> {
+    inner: W,
+    sum: XxHash3_128,
+}
+
+impl<W: Write> Write for Summing<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.inner.write(bytes)?;
+        self.sum.write(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+/// Writes a checkpoint, whole or not at all.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write(path: &Path, identity: &Identity, progress: &Progress<'_>) -> Result<(), Defect> {
+    write_atomically(path, |out| {
+        let mut out = Summing {
+            inner: out,
+            sum: XxHash3_128::new(),
+        };
+        out.write_all(HEAD)?;
+        postcard::to_io(identity, &mut out).map_err(io::Error::other)?;
+        postcard::to_io(progress, &mut out).map_err(io::Error::other)?;
+        let sum = out.sum.finish_128();
+        out.inner.write_all(&sum.to_le_bytes())
+    })
+}
+
+/// The bytes of a checkpoint that is whole.
+pub struct Stored {
+    bytes: Vec<u8>,
+    /// Where the progress begins.
+    start: usize,
+    /// What it belongs to.
+    pub identity: Identity,
+}
+
+/// Reads a checkpoint; none if there is no such file.
+///
+/// # Errors
+/// If it cannot be read, is damaged, or of another format.
+pub fn read(path: &Path) -> Result<Option<Stored>, Defect> {
+    let place = path.display().to_string();
+    let mut bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => {
+            let problem = format!("the checkpoint cannot be read: {error}");
+            let remedy = format!("check the permissions, or {AFRESH}");
+            return Err(Defect::new(place, problem, remedy));
+        }
+    };
+    let refused = |problem: &str| Defect::new(&place, problem, AFRESH);
+    let damaged = || refused("the checkpoint is damaged");
+    if bytes.starts_with(&HEAD[..KIND]) && !bytes.starts_with(HEAD) && is_whole(&bytes) {
+        return Err(refused(
+            "the checkpoint is of another version of the program",
+        ));
+    }
+    if !bytes.starts_with(HEAD) || !is_whole(&bytes) {
+        return Err(damaged());
+    }
+    bytes.truncate(bytes.len() - SUM);
+    let (identity, rest) =
+        postcard::take_from_bytes::<Identity>(&bytes[HEAD.len()..]).map_err(|_| damaged())?;
+    let start = bytes.len() - rest.len();
+    Ok(Some(Stored {
+        bytes,
+        start,
+        identity,
+    }))
+}
+
+/// Whether the sum at the end is that of all before it.
+fn is_whole(bytes: &[u8]) -> bool {
+    let Some(length) = bytes.len().checked_sub(SUM) else {
+        return false;
+    };
+    let (content, sum) = bytes.split_at(length);
+    sum == XxHash3_128::oneshot(content).to_le_bytes()
+}
+
+impl Stored {
+    /// What it holds.
+    ///
+    /// # Errors
+    /// If that cannot be told, although the file is whole.
+    pub fn progress(&self, path: &Path) -> Result<Progress<'static>, Defect> {
+        postcard::from_bytes(&self.bytes[self.start..]).map_err(|_| other_build(path))
+    }
+}
+
+/// A checkpoint whose content makes no sense to this program.
+pub fn other_build(path: &Path) -> Defect {
+    let problem = "the checkpoint is of another build of the program";
+    Defect::new(path.display().to_string(), problem, AFRESH)
+}
+
+impl Identity {
+    /// What keeps a run of `self` from going on where one of `former` stopped; the mesh is told by
+    /// [`other_mesh`].
+    pub fn differences(&self, former: &Self, scene: &Path, geometry: Option<&Path>) -> Vec<Defect> {
+        let changed = |path: &Path, what: &str| {
+            let problem = format!("the {what} has changed since the run was interrupted");
+            let remedy = format!("undo the change, or {AFRESH}");
+            Defect::new(path.display().to_string(), problem, remedy)
+        };
+        let version = (self.version != former.version).then(|| {
+            let problem = format!(
+                "the run was interrupted in version {} of the program, and this is {}",
+                former.version, self.version
+            );
+            let remedy = format!("use that version, or {AFRESH}");
+            Defect::new(NAME, problem, remedy)
+        });
+        let scene = (self.scene != former.scene).then(|| changed(scene, "scene"));
+        let geometry = geometry.filter(|_| self.geometry != former.geometry);
+        let geometry = geometry.map(|path| changed(path, "geometry"));
+        [version, scene, geometry].into_iter().flatten().collect()
+    }
+}
+
+/// A mesh that is not the one of the interrupted run.
+pub fn other_mesh(path: &Path, is_made: bool) -> Defect {
+    let (problem, remedy) = match is_made {
+        true => (
+            "gmsh now makes another mesh than that of the interrupted run",
+            "use the same gmsh and the same files that the geometry includes, or put the former mesh.msh back",
+        ),
+        false => (
+            "the mesh has changed since the run was interrupted",
+            "put the former mesh back",
+        ),
+    };
+    let remedy = format!("{remedy}; or {AFRESH}");
+    Defect::new(path.display().to_string(), problem, remedy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity() -> Identity {
+        Identity {
+            version: "1.2.3".into(),
+            scene: fingerprint("scene"),
+            geometry: Some(1 << 127),
+            mesh: 7,
+        }
+    }
+
+    fn progress() -> Progress<'static> {
+        Progress {
+            choice: ("direct".into(), "why".into()),
+            steps: Vec::new(),
+            fractures: Vec::new(),
+            seconds: Seconds::default(),
+            peak_memory_bytes: 5,
+            bookmark: None,
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join(NAME);
+        assert!(read(&path).expect("no defect").is_none());
+        write(&path, &identity(), &progress()).expect("written");
+        let stored = read(&path).expect("no defect").expect("a checkpoint");
+        assert_eq!(stored.identity, identity());
+        let found = stored.progress(&path).expect("progress");
+        assert_eq!(
+            (found.choice, found.peak_memory_bytes),
+            (progress().choice, 5)
+        );
+    }
+
+    #[test]
+    fn any_changed_or_missing_byte_is_noticed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join(NAME);
+        write(&path, &identity(), &progress()).expect("written");
+        let whole = std::fs::read(&path).expect("bytes");
+        for at in 0..whole.len() {
+            let mut changed = whole.clone();
+            changed[at] ^= 0x10;
+            for bytes in [&changed[..], &whole[..at]] {
+                std::fs::write(&path, bytes).expect("written");
+                let defect = read(&path).err().expect("a defect");
+                assert!(defect.problem.contains("damaged"), "{defect}");
+            }
+        }
+    }
+
+    #[test]
+    fn another_format_is_told_from_a_damaged_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join(NAME);
+        let mut bytes = b"kluft checkpoint 977\nwhatever that means".to_vec();
+        let sum = XxHash3_128::oneshot(&bytes);
+        bytes.extend(sum.to_le_bytes());
+        std::fs::write(&path, bytes).expect("written");
+        let defect = read(&path).err().expect("a defect");
+        assert!(defect.problem.contains("another version"), "{defect}");
+        assert!(defect.remedy.contains("without --resume"), "{defect}");
+    }
+
+    #[test]
+    fn every_difference_is_named() {
+        let mut other = identity();
+        let compare = |other: &Identity| {
+            let (scene, geometry) = (Path::new("a/scene.toml"), Path::new("a/b.geo"));
+            identity().differences(other, scene, Some(geometry))
+        };
+        assert_eq!(compare(&other), Vec::new());
+        other.version = "1.2.2".into();
+        other.scene ^= 1;
+        other.geometry = None;
+        let defects = compare(&other);
+        let said: Vec<String> = defects.iter().map(ToString::to_string).collect();
+        assert_eq!(said.len(), 3, "{said:?}");
+        assert!(said[0].contains("version 1.2.2") && said[0].contains("this is 1.2.3"));
+        assert!(
+            said[1].starts_with("a/scene.toml: the scene has changed"),
+            "{}",
+            said[1]
+        );
+        assert!(
+            said[2].starts_with("a/b.geo: the geometry has changed"),
+            "{}",
+            said[2]
+        );
+    }
+
+    #[test]
+    fn a_file_has_the_sum_of_its_text() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("text");
+        let text = "0123456789".repeat(100_000);
+        std::fs::write(&path, &text).expect("written");
+        assert_eq!(fingerprint_of(&path).expect("a sum"), fingerprint(&text));
+        assert!(fingerprint_of(&folder.path().join("none")).is_err());
+    }
+}
