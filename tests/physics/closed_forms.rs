@@ -2,27 +2,11 @@
 
 use glam::DVec3;
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
-use lie_mesh::structured::Patch;
 use lie_solver::{Fracture, Problem, Solution, Support};
 
+use crate::closing::column;
 use crate::oracles::{LOG_LAW_TABLE, closed_aperture};
-use crate::scenes::{self, EXACT, joint};
-
-/// A column with a horizontal joint at mid-height under the closing load `q K_n0 b0`.
-pub fn column(kind: ClosureKind, q: f64) -> Problem {
-    let middle = |x: [f64; 3]| x[2] == 1.0;
-    let patch = Patch {
-        name: "joint",
-        contains: &middle,
-    };
-    let draft = scenes::box_draft([2, 2, 4], [1.0, 1.0, 2.0], &[patch]);
-    let mut problem = scenes::problem(scenes::build(draft), joint(kind));
-    for face in ["left", "front", "bottom"] {
-        scenes::support(&mut problem, face, Support::Symmetry);
-    }
-    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -q * 50e9 * 1e-4));
-    problem
-}
+use crate::scenes::{self, EXACT};
 
 #[test]
 fn log_law_table_by_simulation_of_a_column() {

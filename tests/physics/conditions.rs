@@ -8,7 +8,7 @@ use lie_solver::{
     Support, SurfaceLoad, System, solution,
 };
 
-use crate::closed_forms::column;
+use crate::closing::column;
 use crate::oracles::closed_aperture;
 use crate::scenes::{self, EXACT, joint};
 

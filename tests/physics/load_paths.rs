@@ -11,7 +11,7 @@ use lie_solver::{
     Support, System, solution,
 };
 
-use crate::closed_forms::column;
+use crate::closing::column;
 use crate::scenes::{self, EXACT, joint};
 
 /// Loads that grow, hold, turn and vanish, each case for itself: time and factors.

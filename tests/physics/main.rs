@@ -5,8 +5,10 @@
 )]
 
 mod closed_forms;
+mod closing;
 mod conditions;
 mod contact;
+mod crack_front;
 mod dice;
 mod families;
 mod friction;
@@ -24,8 +26,13 @@ mod patch;
 mod random_networks;
 mod scenes;
 mod sphere;
+mod spherical_joint;
 mod split_nodes;
+mod stability;
 mod stiff_limit;
+#[path = "../../benches/stability/studies/mod.rs"]
+#[allow(dead_code, reason = "the benchmark also writes what the studies say")]
+mod studies;
 mod tangent;
 mod torture;
 mod voigt;

@@ -6,12 +6,10 @@
 
 use glam::DVec3;
 use lie_core::ClosureKind;
-use lie_mesh::Draft;
-use lie_mesh::structured::Patch;
 use lie_solver::{Linearisation, NewtonSettings, Problem, StepRecord, Support};
 
-use crate::closed_forms::column;
-use crate::scenes::{self, EXACT, joint};
+use crate::closing::{column, inclined_joint, three_planes};
+use crate::scenes::{self, EXACT};
 
 const LOADS: [f64; 9] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
 const CUTOFFS: [Option<f64>; 12] = [
@@ -28,35 +26,6 @@ const CUTOFFS: [Option<f64>; 12] = [
     Some(1e-11),
     Some(1e-12),
 ];
-
-fn inclined_joint(draft: &Draft, kind: ClosureKind, q: f64) -> Problem {
-    let mut problem = scenes::problem(scenes::build(draft.clone()), joint(kind));
-    for face in ["left", "front", "bottom"] {
-        scenes::support(&mut problem, face, Support::Symmetry);
-    }
-    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, -q * 50e9 * 1e-4));
-    problem
-}
-
-fn three_planes(kind: ClosureKind, q: f64) -> Problem {
-    let planes: [&dyn Fn([f64; 3]) -> bool; 3] =
-        [&|x| x[0] == 0.5, &|x| x[1] == 0.5, &|x| x[2] == 0.5];
-    let patches: Vec<Patch<'_>> = ["x", "y", "z"]
-        .iter()
-        .zip(planes)
-        .map(|(name, contains)| Patch { name, contains })
-        .collect();
-    let draft = scenes::box_draft([4; 3], [1.0; 3], &patches);
-    let mut problem = scenes::problem(scenes::build(draft), joint(kind));
-    for face in ["left", "front", "bottom"] {
-        scenes::support(&mut problem, face, Support::Symmetry);
-    }
-    let s = -q * 50e9 * 1e-4;
-    scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, s));
-    scenes::load(&mut problem, "right", DVec3::new(0.5 * s, 0.0, 0.0));
-    scenes::load(&mut problem, "back", DVec3::new(0.0, 0.25 * s, 0.0));
-    problem
-}
 
 fn solve(problem: &Problem, linearisation: Linearisation) -> StepRecord {
     let settings = NewtonSettings {

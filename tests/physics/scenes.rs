@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
 use lie_io::{Meshing, load_msh, mesh_geometry};
 use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Draft, Mesh, SurfaceRole, TaggedElements};
+use lie_mesh::{Draft, Faces, Mesh, SurfaceRole, TaggedElements};
 use lie_solver::{
     Condition, Discretisation, FixedPoint, Fracture, Load, Newton, NewtonSettings, Problem,
     Schedule, Solution, State, StepRecord, Support, SurfaceLoad, System, solution,
@@ -148,6 +148,39 @@ pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> 
     })
     .unwrap_or_else(|defects| panic!("{defects:?}"));
     load_msh(&file, folder.path()).unwrap_or_else(|defects| panic!("{defects:?}"))
+}
+
+/// The problem of `geometries/NAME/scene.toml` on a mesh with these parameters.
+pub fn scene_file(name: &str, parameters: &[(&str, f64)]) -> Problem {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = root.join(format!("geometries/{name}/scene.toml"));
+    let scene = kluft::Scene::read(&file).unwrap_or_else(|defects| panic!("{defects:?}"));
+    let draft = geometry(name, parameters);
+    let faces = Faces::of(&draft);
+    let inner = faces.inner_surfaces(&draft);
+    let roles = kluft::surface_roles(&scene, &draft, |group| inner[group]);
+    let roles = roles.unwrap_or_else(|defects| panic!("{defects:?}"));
+    let mesh = Mesh::build_on(draft, faces, &roles).unwrap_or_else(|d| panic!("{d:?}"));
+    let bound = kluft::bind(&scene, mesh).unwrap_or_else(|defects| panic!("{defects:?}"));
+    bound.problem
+}
+
+/// Solves load steps one after the other, from the state before any load; the record and the
+/// solution of each.
+pub fn solve_path(
+    problem: &Problem,
+    settings: NewtonSettings,
+    loads: impl IntoIterator<Item = f64>,
+) -> Vec<(StepRecord, Solution)> {
+    let discretisation = Discretisation::of(problem).unwrap_or_else(|d| panic!("{d:?}"));
+    let system = System::assemble(problem, discretisation);
+    let mut newton = Newton::new(&system, settings).expect("analysis");
+    let mut state = system.initial_state();
+    let solved = loads.into_iter().map(|load| {
+        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
+        (record, solution(&system, &state))
+    });
+    solved.collect()
 }
 
 /// The same mesh with nodes, cells and facets in another order, and other first nodes.

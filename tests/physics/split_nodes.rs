@@ -200,8 +200,8 @@ impl<'a> Split<'a> {
         }
     }
 
-    /// Eliminates what is held and solves for the rest.
-    fn solve(self) -> Vec<DVec3> {
+    /// The equations of what is not held.
+    fn reduced(&self) -> Reduced {
         let mut number = vec![usize::MAX; self.held.len()];
         let free: Vec<usize> = (0..self.held.len())
             .filter(|&i| self.held[i].is_none())
@@ -209,7 +209,7 @@ impl<'a> Split<'a> {
         free.iter()
             .enumerate()
             .for_each(|(new, &old)| number[old] = new);
-        let mut right = faer::Mat::from_fn(free.len(), 1, |i, _| self.force[free[i]]);
+        let mut right: Vec<f64> = free.iter().map(|&i| self.force[i]).collect();
         let mut triplets = Vec::new();
         for &(i, j, value) in self
             .triplets
@@ -217,20 +217,45 @@ impl<'a> Split<'a> {
             .filter(|(i, _, _)| self.held[*i].is_none())
         {
             match self.held[j] {
-                Some(held) => right[(number[i], 0)] -= value * held,
+                Some(held) => right[number[i]] -= value * held,
                 None => triplets.push(Triplet::new(number[i], number[j], value)),
             }
         }
-        let matrix =
-            SparseColMat::<usize, f64>::try_new_from_triplets(free.len(), free.len(), &triplets);
-        let factor = matrix.expect("indices in range").sp_cholesky(Side::Lower);
+        let matrix = SparseColMat::try_new_from_triplets(free.len(), free.len(), &triplets);
+        Reduced {
+            matrix: matrix.expect("indices in range"),
+            right,
+            number,
+        }
+    }
+
+    /// Displacement of every copy.
+    fn solve(self) -> Vec<DVec3> {
+        let reduced = self.reduced();
+        let right = faer::Mat::from_fn(reduced.right.len(), 1, |i, _| reduced.right[i]);
+        let factor = reduced.matrix.sp_cholesky(Side::Lower);
         let found = factor.expect("a positive definite matrix").solve(&right);
-        let value = |i: usize| self.held[i].unwrap_or_else(|| found[(number[i], 0)]);
+        let value = |i: usize| self.held[i].unwrap_or_else(|| found[(reduced.number[i], 0)]);
         let unknowns = (0..self.held.len()).step_by(3);
         unknowns
             .map(|i| DVec3::new(value(i), value(i + 1), value(i + 2)))
             .collect()
     }
+}
+
+/// A linear system of what is not held.
+pub struct Reduced {
+    /// Its matrix.
+    pub matrix: SparseColMat<usize, f64>,
+    /// Its right-hand side.
+    pub right: Vec<f64>,
+    /// Number of each component of each copy in it.
+    number: Vec<usize>,
+}
+
+/// The linear system of a problem on split nodes.
+pub fn system(problem: &Problem) -> Reduced {
+    Split::of(problem).reduced()
 }
 
 /// Largest difference between the two solutions anywhere, and of the jumps, against the largest

@@ -1,0 +1,305 @@
+//! Draws a chart.
+
+use plotters::chart::{ChartBuilder, ChartContext};
+use plotters::coord::Shift;
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
+use plotters::element::{PathElement, Polygon, Text};
+use plotters::prelude::SVGBackend;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle};
+
+use super::axis::Spanned;
+use super::names::apart;
+use super::style::{COLOURS, INK, UNIT, marker};
+use super::{Chart, Rate, Scale, Series};
+
+/// Of the area inside the axes (pixels).
+const SIZE: (i32, i32) = (600, 400);
+/// Room left of it, above and below (pixels).
+const ROOM: (i32, i32, i32) = (80, 50, 52);
+/// Free edge left of it (pixels).
+const EDGE: i32 = 5;
+/// Height of text (pixels).
+const TEXT: f64 = 15.0;
+/// Distance between names (pixels).
+const LINE: i32 = 19;
+/// Length of a rate's triangle along x (decades).
+const TRIANGLE: f64 = 0.5;
+
+type Place = (i32, i32);
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Context<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<Spanned, Spanned>>;
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// The chart as a document.
+pub(super) fn svg(chart: &Chart) -> String {
+    let (width, height) = size(chart);
+    let mut text = String::new();
+    let backend =
+        SVGBackend::with_string(&mut text, ((width * UNIT) as u32, (height * UNIT) as u32));
+    // A backend that writes into memory has no error to report.
+    let drawn = draw(chart, &backend.into_drawing_area());
+    debug_assert!(drawn.is_ok(), "{drawn:?}");
+    let units = format!("width=\"{}\" height=\"{}\"", width * UNIT, height * UNIT);
+    text.replacen(&units, &format!("width=\"{width}\" height=\"{height}\""), 1)
+}
+
+/// Width and height (pixels), with room for the longest name.
+fn size(chart: &Chart) -> Place {
+    let names = chart
+        .series
+        .iter()
+        .map(|series| series.name.chars().count());
+    let notes = [FRONT.chars().count()];
+    let longest = names.chain(notes).max().unwrap_or(0) as f64;
+    let names = 45 + (0.53 * TEXT * longest).ceil() as i32;
+    (ROOM.0 + SIZE.0 + names, ROOM.1 + SIZE.1 + ROOM.2)
+}
+
+/// Name of the front.
+const FRONT: &str = "best of all";
+
+fn text_style(size: f64) -> TextStyle<'static> {
+    // The backend divides by 1.24.
+    let units = 1.24 * size * f64::from(UNIT);
+    ("sans-serif", units).into_font().color(&INK)
+}
+
+fn stroke(colour: RGBColor, pixels: f64) -> ShapeStyle {
+    colour.stroke_width((pixels * f64::from(UNIT)) as u32)
+}
+
+/// Behind the lines of the series.
+fn front_style() -> ShapeStyle {
+    ShapeStyle {
+        color: INK.mix(0.5),
+        ..stroke(INK, 5.0)
+    }
+}
+
+fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
+    let points = || chart.series.iter().flat_map(|series| &series.points);
+    let x = chart.x.over(points().map(|point| point.0));
+    let shown = points().filter(|&&point| chart.shows(point));
+    let y = chart.y.over(shown.map(|point| point.1));
+    let (width, _) = size(chart);
+    let mut context = ChartBuilder::on(area)
+        .margin_left(EDGE * UNIT)
+        .margin_top(ROOM.1 * UNIT)
+        .margin_right((width - ROOM.0 - SIZE.0) * UNIT)
+        .x_label_area_size(ROOM.2 * UNIT)
+        .y_label_area_size((ROOM.0 - EDGE) * UNIT)
+        .build_cartesian_2d(x, y)?;
+    draw_axes(chart, &mut context)?;
+    let title = text_style(1.1 * TEXT).pos(Pos::new(HPos::Left, VPos::Center));
+    area.draw(&Text::new(
+        chart.title.as_str(),
+        (ROOM.0 * UNIT, 15 * UNIT),
+        title,
+    ))?;
+    let sheet = Sheet {
+        chart,
+        area,
+        top: y.top(),
+        place: &|x, y| context.backend_coord(&(x, y)),
+    };
+    sheet.draw_front()?;
+    for (number, series) in chart.series.iter().enumerate() {
+        sheet.draw_series(number, series)?;
+    }
+    for rate in &chart.rates {
+        sheet.draw_rate(rate)?;
+    }
+    sheet.draw_names()?;
+    sheet.note_failures()
+}
+
+fn draw_axes(chart: &Chart, context: &mut Context<'_, '_>) -> Drawn {
+    context
+        .configure_mesh()
+        .axis_style(stroke(INK, 1.0))
+        .bold_line_style(ShapeStyle {
+            color: INK.mix(0.3),
+            ..stroke(INK, 0.7)
+        })
+        .label_style(text_style(0.9 * TEXT))
+        .axis_desc_style(text_style(TEXT))
+        .set_all_tick_mark_size(5 * UNIT)
+        .x_desc(chart.x.title.as_str())
+        .y_desc(chart.y.title.as_str())
+        .draw()
+}
+
+/// What is drawn on.
+struct Sheet<'a, 'b> {
+    chart: &'a Chart,
+    area: &'a Area<'b>,
+    /// Value of `y` at the upper edge.
+    top: f64,
+    /// From values to units.
+    place: &'a dyn Fn(f64, f64) -> Place,
+}
+
+impl Sheet<'_, '_> {
+    /// Where a point is drawn; none if its place is not on the chart.
+    fn at(&self, (x, y): (f64, f64)) -> Option<Place> {
+        let Chart {
+            x: across, y: up, ..
+        } = self.chart;
+        self.chart
+            .shows((x, y))
+            .then(|| (self.place)(across.at(x), up.at(y)))
+    }
+
+    /// Where the cross of a failed point of a series is drawn.
+    fn cross_of(&self, number: usize, (x, y): (f64, f64)) -> Option<Place> {
+        let failed = !y.is_finite() && self.chart.x.takes(x);
+        failed.then(|| {
+            let (across, up) = (self.place)(self.chart.x.at(x), self.top);
+            (across, up + self.row(number) * 11 * UNIT)
+        })
+    }
+
+    /// Row of the crosses of a series: the next one for each series that failed somewhere.
+    fn row(&self, number: usize) -> i32 {
+        let before = self.chart.series[..number].iter();
+        let fails = |series: &&Series| series.points.iter().any(|point| !point.1.is_finite());
+        before.filter(fails).count() as i32
+    }
+
+    fn path(&self, points: Vec<Place>, style: ShapeStyle) -> Drawn {
+        self.area.draw(&PathElement::new(points, style))
+    }
+
+    fn text(&self, text: &str, at: Place, style: TextStyle<'_>) -> Drawn {
+        self.area.draw(&Text::new(text, at, style))
+    }
+
+    fn marker(&self, number: usize, at: Place) -> Drawn {
+        let colour = COLOURS[number % COLOURS.len()].filled();
+        self.area.draw(&Polygon::new(marker(number, at), colour))
+    }
+
+    fn cross(&self, (x, y): Place, colour: RGBColor) -> Drawn {
+        let arm = 5 * UNIT;
+        for slope in [arm, -arm] {
+            let ends = vec![(x - arm, y - slope), (x + arm, y + slope)];
+            self.path(ends, stroke(colour, 2.5))?;
+        }
+        Ok(())
+    }
+
+    fn draw_series(&self, number: usize, series: &Series) -> Drawn {
+        let colour = COLOURS[number % COLOURS.len()];
+        // A failure between two points interrupts the line.
+        let stretches = series.points.split(|&point| self.at(point).is_none());
+        for stretch in stretches.filter(|stretch| series.line && stretch.len() > 1) {
+            let places = stretch.iter().filter_map(|&point| self.at(point));
+            self.path(places.collect(), stroke(colour, 2.0))?;
+        }
+        for &point in &series.points {
+            if let Some(at) = self.at(point) {
+                self.marker(number, at)?;
+            } else if let Some(at) = self.cross_of(number, point) {
+                self.cross(at, colour)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Names right of the chart, as high as the last points are, each with its marker.
+    fn draw_names(&self) -> Drawn {
+        let last = |number: usize| {
+            let mut points = self.chart.series[number].points.iter().rev();
+            points.find_map(|&point| self.at(point).or(self.cross_of(number, point)))
+        };
+        let bottom = (ROOM.1 + SIZE.1) * UNIT;
+        let mut ends: Vec<(Option<usize>, &str, i32)> = Vec::new();
+        for (number, series) in self.chart.series.iter().enumerate() {
+            let height = last(number).map_or(bottom, |place| place.1);
+            ends.push((Some(number), &series.name, height));
+        }
+        if let (true, Some(&end)) = (self.chart.front, self.chart.front_points().last()) {
+            ends.push((None, FRONT, self.at(end).map_or(bottom, |place| place.1)));
+        }
+        let wanted: Vec<i32> = ends.iter().map(|end| end.2).collect();
+        let heights = apart(&wanted, LINE * UNIT, ROOM.1 * UNIT, bottom);
+        let left = (ROOM.0 + SIZE.0 + 18) * UNIT;
+        for ((number, name, _), height) in ends.into_iter().zip(heights) {
+            let sample = vec![(left - 9 * UNIT, height), (left + 9 * UNIT, height)];
+            match number {
+                Some(number) => {
+                    if self.chart.series[number].line {
+                        self.path(sample, stroke(COLOURS[number % COLOURS.len()], 2.0))?;
+                    }
+                    self.marker(number, (left, height))?;
+                }
+                None => self.path(sample, front_style())?,
+            }
+            let style = text_style(TEXT).pos(Pos::new(HPos::Left, VPos::Center));
+            self.text(name, (left + 15 * UNIT, height), style)?;
+        }
+        Ok(())
+    }
+
+    /// Says above the chart what a cross means.
+    fn note_failures(&self) -> Drawn {
+        let mut points = self.chart.series.iter().flat_map(|series| &series.points);
+        if !points.any(|&point| self.cross_of(0, point).is_some()) {
+            return Ok(());
+        }
+        let at = ((ROOM.0 + 8) * UNIT, (ROOM.1 - 14) * UNIT);
+        self.cross(at, INK)?;
+        let style = text_style(0.9 * TEXT).pos(Pos::new(HPos::Left, VPos::Center));
+        self.text(&self.chart.failure, (at.0 + 12 * UNIT, at.1), style)
+    }
+
+    fn draw_front(&self) -> Drawn {
+        if !self.chart.front {
+            return Ok(());
+        }
+        let points = self.chart.front_points().into_iter();
+        let places: Vec<Place> = points.filter_map(|point| self.at(point)).collect();
+        // Between two points nothing better is known than the left one.
+        let stairs = places.windows(2);
+        let mut line: Vec<Place> = stairs
+            .flat_map(|pair| [pair[0], (pair[1].0, pair[0].1)])
+            .collect();
+        line.extend(places.last());
+        self.path(line, front_style())
+    }
+
+    /// Below the middle point of the series, where it ends.
+    fn draw_rate(&self, rate: &Rate) -> Drawn {
+        let logarithmic = Scale::Logarithmic;
+        let Some(series) = self.chart.series.get(rate.series) else {
+            return Ok(());
+        };
+        let shown = series
+            .points
+            .iter()
+            .filter(|&&point| self.chart.shows(point));
+        let shown: Vec<(f64, f64)> = shown.copied().collect();
+        let both = [self.chart.x.scale, self.chart.y.scale] == [logarithmic; 2];
+        if shown.is_empty() || !both {
+            return Ok(());
+        }
+        let (x, y) = shown[shown.len() / 2];
+        let further = x * 10.0_f64.powf(TRIANGLE);
+        let (start, end) = (
+            (self.place)(x, y),
+            (self.place)(further, y * 10.0_f64.powf(TRIANGLE * rate.rate)),
+        );
+        let down = 14 * UNIT;
+        let (start, end) = ((start.0, start.1 + down), (end.0, end.1 + down));
+        // The right angle lies on the side away from the series.
+        let low = start.1.max(end.1);
+        let foot = if end.1 > start.1 { start.0 } else { end.0 };
+        let corners = vec![start, end, (foot, low), start];
+        self.path(corners, stroke(INK, 1.5))?;
+        let style = text_style(0.9 * TEXT).pos(Pos::new(HPos::Center, VPos::Top));
+        let middle = ((start.0 + end.0) / 2, low + 3 * UNIT);
+        self.text(&format!("{}", rate.rate).replace('-', "−"), middle, style)
+    }
+}

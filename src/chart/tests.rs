@@ -1,0 +1,121 @@
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use super::*;
+
+fn sample() -> Chart {
+    let line = |factor: f64, rate: i32| -> Vec<(f64, f64)> {
+        let sizes = [1e2_f64, 1e3, 1e4, 1e5];
+        sizes
+            .iter()
+            .map(|n| (*n, factor * n.powi(rate).recip()))
+            .collect()
+    };
+    let mut fails = line(3.0, 1);
+    fails[3].1 = f64::NAN;
+    Chart {
+        series: vec![
+            Series::line("ours <linear> & exact", line(1.0, 1)),
+            Series::line("theirs", fails),
+            Series::scatter("exact", vec![(1e3, 0.0)]),
+        ],
+        failure: "no convergence".into(),
+        rates: vec![Rate {
+            series: 0,
+            rate: -1.0,
+        }],
+        front: true,
+        ..Chart::new(
+            "Error over unknowns",
+            Axis::logarithmic("unknowns"),
+            Axis::logarithmic("error of the aperture (relative)").from(1e-8),
+        )
+    }
+}
+
+/// All texts, and all attributes by name.
+fn parsed(svg: &str) -> (Vec<String>, Vec<(String, String)>) {
+    let mut reader = Reader::from_str(svg);
+    let (mut texts, mut attributes) = (Vec::new(), Vec::new());
+    loop {
+        match reader.read_event().expect("well-formed XML") {
+            Event::Start(tag) | Event::Empty(tag) => {
+                for attribute in tag.attributes() {
+                    let attribute = attribute.expect("an attribute");
+                    let name = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
+                    let value = attribute.unescape_value().expect("a value").into_owned();
+                    attributes.push((name, value));
+                }
+            }
+            Event::Text(text) => texts.push(text.unescape().expect("text").trim().to_owned()),
+            Event::Eof => return (texts, attributes),
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn the_document_is_xml_with_all_texts_and_finite_coordinates() {
+    let svg = sample().svg();
+    let (texts, attributes) = parsed(&svg);
+    for wanted in [
+        "Error over unknowns",
+        "unknowns",
+        "error of the aperture (relative)",
+        "ours <linear> & exact",
+        "theirs",
+        "exact",
+        "no convergence",
+        "best of all",
+        "−1",
+        "10³",
+        "10⁻⁴",
+        "≤ 10⁻⁸",
+    ] {
+        assert!(
+            texts.iter().any(|text| text == wanted),
+            "{wanted}: {texts:?}"
+        );
+    }
+    for (name, value) in attributes {
+        if ["x", "y", "points", "x1", "y1", "x2", "y2"].contains(&name.as_str()) {
+            let numbers = value.split([' ', ',']).filter(|part| !part.is_empty());
+            for number in numbers {
+                let number: f64 = number.parse().expect("a number");
+                assert!(
+                    number.is_finite() && (0.0..20_000.0).contains(&number),
+                    "{number}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn failures_are_crosses_only_where_something_failed() {
+    let mut chart = sample();
+    chart.series[1].points.pop();
+    assert!(!chart.svg().contains("no convergence"));
+}
+
+#[test]
+fn the_front_is_what_nothing_beats() {
+    let mut chart = sample();
+    chart.series[2].points = vec![(2e3, 1e-7), (9e4, 1e-3), (f64::NAN, 1.0)];
+    assert_eq!(
+        chart.front_points(),
+        [(1e2, 1e-2), (1e3, 1e-3), (2e3, 1e-7)]
+    );
+}
+
+#[test]
+fn charts_without_data_are_charts() {
+    let empty = Chart::new("Nothing", Axis::linear("x"), Axis::logarithmic("y"));
+    parsed(&empty.svg());
+    let mut alone = empty.clone();
+    alone.series = vec![Series::line(
+        "alone",
+        vec![(1.0, f64::NAN), (f64::NAN, 1.0)],
+    )];
+    parsed(&alone.svg());
+}
