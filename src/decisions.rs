@@ -58,6 +58,12 @@ pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
     if nothing_acts(problem) {
         lines.push("nothing acts: no load, no pressure, no prescribed displacement".into());
     }
+    if let Some(rock) = locking(problem) {
+        lines.push(format!(
+            "linear cells lock at a Poisson's ratio of {}: the rock will seem too stiff; order = 2 under [mesh] does not",
+            rock.poisson_ratio
+        ));
+    }
     let rubbing = names(&lie_core::FractureLaw::is_path_dependent);
     if !rubbing.is_empty() {
         let accuracy = settings.path;
@@ -77,6 +83,15 @@ pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
         }
     }
     lines
+}
+
+/// A rock whose volume hardly changes, meshed with cells that cannot follow.
+fn locking(problem: &Problem) -> Option<&lie_core::Rock> {
+    const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+    let shapes = &problem.mesh.cells.shapes;
+    let linear = shapes.first().is_some_and(|shape| !shape.is_quadratic());
+    let mut rocks = problem.rocks.iter();
+    rocks.find(|rock| linear && rock.poisson_ratio > NEARLY_INCOMPRESSIBLE)
 }
 
 /// Which linear solver, and what the others would have cost.

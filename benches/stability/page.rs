@@ -117,7 +117,7 @@ pub fn write(folder: &Path) -> io::Result<()> {
     page += "\n## What did not\n\n";
     page += &wrapped(&format!(
         "Promised is: every case with a solution converges with default settings in at most {PROMISE} Newton iterations \
-         a step, {PROMISE_WITH_FRICTION} with friction, all parts of a divided step together; every case without one \
+         a step, {PROMISE_WITH_FRICTION} with friction in each part that it divides a step into; every case without one \
          ends with exit code 1 and the name of a fracture or block; and what the studies compare agrees as they say."
     ));
     page += "\n\n";

@@ -1,6 +1,6 @@
 //! Short forms of the studies of the stability map: what docs/stability.md says must hold.
 
-use crate::studies::{Effort, Finding, PROMISE, PROMISE_WITH_FRICTION, Study};
+use crate::studies::{Effort, Finding, Study};
 use crate::studies::{contact, contrast, cutoff, cycles, front, hopeless, increments};
 use crate::studies::{locking, opening, sliding, slivers, steps, units};
 
@@ -130,38 +130,20 @@ fn contact_needs_no_penalty() {
 /// Every law keeps the promise on the iterations; what it leaves over a cycle is Newton's error.
 #[test]
 fn joints_without_tension_open_and_close() {
-    let finding = (opening::STUDY.run)(Effort::Quick);
-    let counts = column(&finding, "most Newton iterations of a step");
-    assert!(
-        counts.iter().all(|count| *count <= PROMISE as f64),
-        "{counts:?}"
-    );
-    let errors = column(&finding, "error against the closed form");
-    assert!(errors[..4].iter().all(|error| *error < 1e-9), "{errors:?}");
-    let hysteresis = column(&finding, "hysteresis");
-    assert!(hysteresis.iter().all(|rest| *rest < 1e-9), "{hysteresis:?}");
+    hold(&opening::STUDY);
 }
 
 /// A step of shear is divided into many parts, each of which keeps the promise.
 #[test]
 fn friction_converges_and_keeps_its_limit() {
-    let finding = (sliding::STUDY.run)(Effort::Quick);
-    let counts = column(&finding, "most Newton iterations of a step");
-    assert!(counts.iter().all(|count| count.is_finite()), "{counts:?}");
-    let parts = column(&finding, "most iterations of a part");
-    assert!(
-        parts
-            .iter()
-            .all(|count| *count <= PROMISE_WITH_FRICTION as f64),
-        "{parts:?}"
-    );
+    let finding = hold(&sliding::STUDY);
     let beyond = column(&finding, "shear beyond the limit");
     assert!(beyond.iter().all(|excess| *excess < 1e-9), "{beyond:?}");
 }
 
 #[test]
 fn a_block_pulled_off_its_joint_is_named() {
-    let finding = (hopeless::STUDY.run)(Effort::Quick);
+    let finding = hold(&hopeless::STUDY);
     let pulled = &finding.table.rows[0];
     assert_eq!(pulled[1], "1", "{pulled:?}");
     assert!(pulled[2].contains("`joint`"), "{pulled:?}");

@@ -135,19 +135,22 @@ pub fn entry(count: Option<usize>) -> String {
 
 /// Notes a step that did not converge within the promise.
 pub fn hold_promise(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
-    hold(misses, case, record, PROMISE);
-}
-
-/// Notes a step with friction that did not converge within the promise.
-pub fn hold_promise_with_friction(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
-    hold(misses, case, record, PROMISE_WITH_FRICTION);
-}
-
-fn hold(misses: &mut Vec<String>, case: &str, record: &StepRecord, most: usize) {
     match count(record) {
-        Some(count) if count <= most => {}
+        Some(count) if count <= PROMISE => {}
         Some(count) => misses.push(format!("{case}: {count} Newton iterations")),
         None => misses.push(format!("{case}: {:?}", record.outcome)),
+    }
+}
+
+/// Notes a step with friction that did not converge within the promise: each of the parts that the
+/// program divides it into is a step of its own.
+pub fn hold_promise_with_friction(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
+    match record.parts.iter().max() {
+        Some(&most) if record.converged() && most > PROMISE_WITH_FRICTION => {
+            misses.push(format!("{case}: {most} Newton iterations in one part"));
+        }
+        _ if record.converged() => {}
+        _ => misses.push(format!("{case}: {:?}", record.outcome)),
     }
 }
 

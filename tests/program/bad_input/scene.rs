@@ -345,7 +345,7 @@ pub(super) const CASES: &[Case] = &[
         scene: &[("aperture = 1e-4", "aperture = 1e-4\ncutoff_aperture = 1e-6")],
         says: &[
             "scene.toml:12: a linear closure has no cutoff",
-            "remove it or write closure",
+            "remove cutoff_aperture or write closure",
         ],
         ..SOUND
     },
