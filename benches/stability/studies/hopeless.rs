@@ -13,8 +13,7 @@ pub const STUDY: Study = Study {
     run,
 };
 
-/// A column cut by a joint that dips by 50 degrees; `fracture`, `load` and `more` are lines of the
-/// scene.
+/// A column cut by a joint that dips by 50 degrees; `fracture` and `load` are lines of the scene.
 struct Scene {
     name: &'static str,
     fracture: &'static str,
@@ -28,9 +27,10 @@ const SCENES: [Scene; 6] = [
         load: "traction = [0.0, 0.0, 1e6]",
     },
     Scene {
-        name: "pulled off, contact",
+        name: "pulled off between rollers, contact",
         fracture: "closure = \"contact\"",
-        load: "traction = [0.0, 0.0, 1e6]",
+        load: "traction = [0.0, 0.0, 1e6]\n[boundary.left]\nsymmetry = true\n[boundary.right]\nsymmetry = true\n\
+               [boundary.front]\nsymmetry = true",
     },
     Scene {
         name: "pulled off, logarithmic without tension",

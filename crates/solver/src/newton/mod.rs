@@ -14,6 +14,7 @@
 
 mod bookmark;
 mod extrapolation;
+mod line_search;
 mod loose;
 mod march;
 mod record;
@@ -64,6 +65,7 @@ pub struct Newton {
 }
 
 /// What a step works on.
+#[derive(Clone)]
 struct Trial {
     state: State,
     landed: Vec<Landed>,
@@ -73,6 +75,8 @@ struct Trial {
     sizes: Sizes,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
+    /// Errors after the last iteration, see `line_search`.
+    merit: Option<f64>,
 }
 
 impl Newton {
@@ -154,7 +158,7 @@ impl Newton {
     ) -> Outcome {
         let mut flights = 0;
         for count in 1..=self.settings.max_iterations {
-            let iteration = match self.iterate(system, trial, record) {
+            let iteration = match self.iterate(system, trial, count, record) {
                 Ok(iteration) => iteration,
                 Err(outcome) => return outcome,
             };
@@ -199,6 +203,7 @@ impl Newton {
             } else {
                 0.1 * self.settings.force
             },
+            merit: None,
             state: guess,
         }
     }
@@ -220,6 +225,7 @@ impl Newton {
         &mut self,
         system: &System<'_>,
         trial: &mut Trial,
+        count: usize,
         record: &mut StepRecord,
     ) -> Result<Iteration, Outcome> {
         let tangents = walls::tangents(system, &trial.state);
@@ -238,28 +244,14 @@ impl Newton {
             .linear
             .solve(system, &residual, self.tolerance(trial, &residual));
         let solution = solution.map_err(Outcome::Linear)?;
-        let correction = &solution.unknowns;
-        for (unknown, change) in trial.state.unknowns.iter_mut().zip(correction) {
-            *unknown += *change;
-        }
-        if !trial
-            .state
-            .unknowns
-            .iter()
-            .all(|unknown| unknown.is_finite())
-        {
-            return Err(Outcome::NotFinite(None));
-        }
-        trial.rock_forces = system.rock_forces(&trial.state.unknowns);
-        let errors = walls::follow(
+        let former = (count, trial.merit);
+        let mut iteration = self.advance(
             system,
-            self.settings.linearisation,
-            &mut trial.state,
-            &mut trial.landed,
-            &interface(system).jumps(correction, &Load::NONE),
-            &tangents,
-        );
-        let mut iteration = assess(system, trial, correction, &errors, record)?;
+            trial,
+            (&solution.unknowns, &tangents),
+            former,
+            record,
+        )?;
         iteration.linear_iterations = solution.iterations;
         trial.looseness = iteration.increment.clamp(1e-8, LOOSEST_SOLVE);
         Ok(iteration)
