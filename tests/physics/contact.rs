@@ -4,8 +4,7 @@ use glam::DVec3;
 use lie_core::{Closure, FractureLaw, Tension};
 use lie_mesh::structured::Patch;
 use lie_solver::{
-    Discretisation, Fracture, Load, Newton, NewtonSettings, Outcome, Problem, Solution, StepRecord,
-    Support, System, solution,
+    Discretisation, Fracture, NewtonSettings, Outcome, Problem, Solution, StepRecord, Support,
 };
 
 use crate::scenes::{self, EXACT};
@@ -20,17 +19,9 @@ fn fracture(closure: Closure) -> Fracture {
     }
 }
 
-/// Walks through load factors; the records and solutions of all steps.
+/// The records and solutions of steps through load factors.
 fn walk(problem: &Problem, loads: &[f64]) -> Vec<(StepRecord, Solution)> {
-    let discretisation = Discretisation::of(problem).unwrap_or_else(|d| panic!("{d:?}"));
-    let system = System::assemble(problem, discretisation);
-    let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
-    let mut state = system.initial_state();
-    let steps = loads.iter().map(|&load| {
-        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
-        (record, solution(&system, &state))
-    });
-    steps.collect()
+    scenes::solve_path(problem, NewtonSettings::default(), loads.iter().copied())
 }
 
 /// A cube with a square crack inside, pressed from above.

@@ -90,12 +90,7 @@ fn an_inclined_crack_slides_as_far_as_in_closed_form() {
     let (pressure, psi) = (100e6, 20_f64.to_radians());
     let along = DVec3::new(psi.cos(), 0.0, psi.sin());
     let stress = -pressure * DMat3::from_cols(along * along.x, along * along.y, along * along.z);
-    for name in ["left", "right", "bottom", "top"] {
-        let boundary = &problem.mesh.boundaries[scenes::boundary(&problem, name)];
-        let corners = problem.mesh.corners(&boundary.elements, 0);
-        let normal = lie_mesh::facet_area_vector(&corners).normalize();
-        scenes::load(&mut problem, name, stress * normal);
-    }
+    scenes::load_faces_with_stress(&mut problem, &["left", "right", "bottom", "top"], stress);
     for side in ["front", "back"] {
         scenes::support(&mut problem, side, Support::Symmetry);
     }

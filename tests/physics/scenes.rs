@@ -226,7 +226,12 @@ fn permutation(count: usize, seed: u64) -> Vec<usize> {
 
 /// Tractions of a uniform stress on all six faces, which must be flat.
 pub fn load_with_stress(problem: &mut Problem, stress: DMat3) {
-    for name in FACES {
+    load_faces_with_stress(problem, &FACES, stress);
+}
+
+/// Tractions of a uniform stress on some faces, which must be flat.
+pub fn load_faces_with_stress(problem: &mut Problem, faces: &[&str], stress: DMat3) {
+    for name in faces {
         let boundary = &problem.mesh.boundaries[boundary(problem, name)];
         let corners = problem.mesh.corners(&boundary.elements, 0);
         let normal = lie_mesh::facet_area_vector(&corners).normalize();

@@ -18,7 +18,7 @@
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::closure::{Separation, Tension};
+use crate::closure::{NormalBalance, Separation, Tension};
 use crate::fracture_law::{FractureLaw, Friction, Hold, outer};
 
 /// Where the walls are and what they carry.
@@ -116,24 +116,18 @@ impl FractureLaw {
 
     /// The state of the law where a linear solve has put the walls, of a law that is smooth.
     pub fn landed(&self, landing: &Landing) -> Walls {
-        let opening = landing.separation;
-        let hold = self.hold(opening);
-        let thrust = 0.5 * hold.slope * self.shear_stiffness * landing.slip.length_squared();
-        Walls {
-            separation: opening,
-            slip: landing.slip,
-            normal_traction: self.closure.at(opening).traction + thrust,
-            shear: hold.share * self.shear_stiffness * landing.slip,
-            ..Walls::default()
-        }
+        let across = NormalBalance {
+            separation: landing.separation,
+            traction: self.closure.at(landing.separation).traction,
+        };
+        self.held(across, landing.slip, self.shear_stiffness)
     }
 
     fn balance_elastic(&self, landing: &Landing, springs: Springs, memory: &Memory) -> Walls {
         let load = landing.normal_traction + springs.normal * landing.separation.opening;
         let slip = landing.slip;
         let stiffness = self.shear_stiffness * (1.0 - self.damage(memory));
-        let energy = 0.5 * stiffness * slip.length_squared();
-        let thrust = |separation: Separation| self.hold(separation).slope * energy;
+        let thrust = |separation: Separation| self.thrust(separation, slip, stiffness);
         let mut balance = self
             .closure
             .balanced_after(springs.normal, load, memory.largest_opening);
@@ -144,13 +138,23 @@ impl FractureLaw {
             let excess = |way: f64| springs.normal * way + thrust(from.moved(way));
             balance.separation = from.moved(root(excess, reach));
         }
+        self.held(balance, slip, stiffness)
+    }
+
+    /// Walls without friction: `across` is where they are and what the closure law carries there.
+    fn held(&self, across: NormalBalance, slip: DVec3, stiffness: f64) -> Walls {
         Walls {
-            separation: balance.separation,
+            separation: across.separation,
             slip,
-            normal_traction: balance.traction + thrust(balance.separation),
-            shear: self.hold(balance.separation).share * stiffness * slip,
+            normal_traction: across.traction + self.thrust(across.separation, slip, stiffness),
+            shear: self.hold(across.separation).share * stiffness * slip,
             ..Walls::default()
         }
+    }
+
+    /// Normal traction (Pa) by which a fracture that lets go of its shear pushes its walls apart.
+    fn thrust(&self, separation: Separation, slip: DVec3, stiffness: f64) -> f64 {
+        self.hold(separation).slope * (0.5 * stiffness * slip.length_squared())
     }
 
     /// Share of a cohesive bond that former steps broke.
