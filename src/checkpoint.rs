@@ -14,6 +14,7 @@ use lie_solver::Bookmark;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
+use crate::oracle::Measure;
 use crate::summary::{FractureSummary, Seconds, StepMeasures};
 
 /// Its name in the folder of the results.
@@ -51,6 +52,8 @@ pub struct Progress<'a> {
     pub steps: Vec<StepMeasures>,
     /// The fractures after the last of them.
     pub fractures: Vec<(String, FractureSummary)>,
+    /// The measures after the last of them.
+    pub measures: Vec<Measure>,
     /// Where the time went so far.
     pub seconds: Seconds,
     /// Largest resident memory so far (bytes).
@@ -253,6 +256,7 @@ mod tests {
             choice: ("direct".into(), "why".into()),
             steps: Vec::new(),
             fractures: Vec::new(),
+            measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,
             bookmark: None,

@@ -12,11 +12,12 @@ use lie_solver::{
 use crate::checkpoint::{self, Identity, Progress};
 use crate::decisions;
 use crate::memory;
+use crate::oracle::{Oracle, measures};
 use crate::output::Output;
 use crate::prepare::{self, MeshFile};
 use crate::report::{Failure, Report};
 use crate::resume::Former;
-use crate::scene::{MeshSource, Scene, SolverEntry, bind};
+use crate::scene::{Binding, MeshSource, Scene, SolverEntry, bind};
 use crate::summary::{self, StepMeasures, StepSummary, Summary};
 
 /// A run under way.
@@ -37,6 +38,8 @@ pub struct Run<'a> {
     finished: Vec<StepMeasures>,
     /// Name of the linear solver, and why it was chosen.
     choice: (String, String),
+    /// Closed form of each fracture that has one.
+    oracles: Vec<Option<Oracle>>,
 }
 
 impl<'a> Run<'a> {
@@ -70,6 +73,7 @@ impl<'a> Run<'a> {
             start,
             finished: Vec::new(),
             choice: Default::default(),
+            oracles: Vec::new(),
         }
     }
 
@@ -89,14 +93,15 @@ impl<'a> Run<'a> {
             build_problem(self.scene, draft, &mut self.summary)
         });
         self.summary.seconds.read += took.as_secs_f64();
-        let problem = problem?;
+        let binding = problem?;
+        self.oracles = binding.oracles;
         let mesh = &self.summary.mesh;
         let size = format!(
             "{} nodes, {} cells, {} fracture facets, at most {} sectors at a node",
             mesh.nodes, mesh.cells, mesh.fracture_facets, mesh.max_sectors
         );
         self.report.entry("read", &timed(&size, took));
-        Ok(problem)
+        Ok(binding.problem)
     }
 
     /// The mesh file; gmsh makes it if it has to.
@@ -228,6 +233,7 @@ impl<'a> Run<'a> {
         let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
         self.summary.steps = summaries.collect();
         self.summary.fractures = former.fractures;
+        self.summary.measures = former.measures;
         self.finished = former.steps;
         let mut newton = self.set_up(system, plan)?;
         let bookmark = former.bookmark.filter(|bookmark| bookmark.fits(system));
@@ -285,6 +291,7 @@ impl<'a> Run<'a> {
             let solution = solution(system, state);
             let interface = &system.discretisation.interface;
             self.summary.fractures = summary::fractures(system.problem, interface, &solution);
+            self.summary.measures = measures(system, &solution, &self.oracles);
             self.output.write_step(system, &solution, state.load.time)
         });
         self.summary.seconds.write += took.as_secs_f64();
@@ -316,6 +323,7 @@ impl<'a> Run<'a> {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
             fractures: self.summary.fractures.clone(),
+            measures: self.summary.measures.clone(),
             seconds: self.summary.seconds.clone(),
             peak_memory_bytes: self.summary.peak_memory_bytes,
             bookmark: is_left.then(|| newton.bookmark(state)),
@@ -331,12 +339,12 @@ fn build_problem(
     scene: &Scene,
     draft: Draft,
     summary: &mut Summary,
-) -> Result<Problem, Vec<Defect>> {
+) -> Result<Binding, Vec<Defect>> {
     let faces = Faces::of(&draft);
     let roles = prepare::roles(scene, &draft, &faces.inner_surfaces(&draft))?;
     summary.decisions.extend(roles.decisions);
-    let binding = bind(scene, Mesh::build_on(draft, faces, &roles.of_group)?)?;
-    summary.decisions.extend(binding.decisions);
+    let mut binding = bind(scene, Mesh::build_on(draft, faces, &roles.of_group)?)?;
+    summary.decisions.append(&mut binding.decisions);
     let mesh = &binding.problem.mesh;
     let counts = mesh.sectors.count.iter();
     summary.mesh = summary::MeshSummary {
@@ -345,7 +353,7 @@ fn build_problem(
         fracture_facets: mesh.facets.elements.len(),
         max_sectors: counts.copied().max().unwrap_or(0),
     };
-    Ok(binding.problem)
+    Ok(binding)
 }
 
 /// A single defect as a failure.

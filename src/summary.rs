@@ -7,6 +7,8 @@ use lie_mesh::Defect;
 use lie_solver::{FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
+use crate::oracle::Measure;
+
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
@@ -165,6 +167,8 @@ pub struct Summary {
     /// The fractures after the last converged step, by name.
     #[serde(serialize_with = "as_map")]
     pub fractures: Vec<(String, FractureSummary)>,
+    /// Numbers by which runs are compared, after the last converged step.
+    pub measures: Vec<Measure>,
     /// The load steps.
     pub steps: Vec<StepSummary>,
     /// Where the time went.
