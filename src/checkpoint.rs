@@ -52,6 +52,8 @@ pub struct Progress<'a> {
     pub steps: Vec<StepMeasures>,
     /// The fractures after the last of them.
     pub fractures: Vec<(String, FractureSummary)>,
+    /// Estimated error of the stress after the last of them.
+    pub stress_error: f64,
     /// The measures after the last of them.
     pub measures: Vec<Measure>,
     /// Where the time went so far.
@@ -256,6 +258,7 @@ mod tests {
             choice: ("direct".into(), "why".into()),
             steps: Vec::new(),
             fractures: Vec::new(),
+            stress_error: 0.0,
             measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,

@@ -1,5 +1,6 @@
 //! A run of Kluft, told as a story: read the scene, mesh, enrich, assemble, solve, write.
 
+mod accuracy;
 pub mod chart;
 mod checkpoint;
 mod decisions;

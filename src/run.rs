@@ -9,6 +9,7 @@ use lie_solver::{
     System, Workload, solution,
 };
 
+use crate::accuracy;
 use crate::checkpoint::{self, Identity, Progress};
 use crate::decisions;
 use crate::memory;
@@ -150,7 +151,7 @@ impl<'a> Run<'a> {
                 return Err(Failure::NotConverged(why));
             }
             self.finished.push((&record).into());
-            self.write_step(&system, &state)?;
+            self.write_step(&system, &mut newton, &state)?;
             one(self.write_summary())?;
             self.write_checkpoint(problem, &newton, &state)?;
         }
@@ -234,6 +235,7 @@ impl<'a> Run<'a> {
         self.summary.steps = summaries.collect();
         self.summary.fractures = former.fractures;
         self.summary.measures = former.measures;
+        self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
         let mut newton = self.set_up(system, plan)?;
         let bookmark = former.bookmark.filter(|bookmark| bookmark.fits(system));
@@ -286,15 +288,31 @@ impl<'a> Run<'a> {
         record
     }
 
-    fn write_step(&mut self, system: &System<'_>, state: &State) -> Result<(), Failure> {
+    /// Estimates the error of a step and writes its results.
+    fn write_step(
+        &mut self,
+        system: &System<'_>,
+        newton: &mut Newton,
+        state: &State,
+    ) -> Result<(), Failure> {
+        let is_last = self.finished.len() == system.problem.schedule.steps.len();
+        let solution = solution(system, state);
+        let (accuracy, took) = self.report.stage("estimating the error", |_| {
+            accuracy::of(system, newton, &solution, is_last)
+        });
+        self.summary.seconds.estimate += took.as_secs_f64();
         let (written, took) = self.report.stage("writing", |_| {
-            let solution = solution(system, state);
-            let interface = &system.discretisation.interface;
-            self.summary.fractures = summary::fractures(system.problem, interface, &solution);
-            self.summary.measures = measures(system, &solution, &self.oracles);
-            self.output.write_step(system, &solution, state.load.time)
+            self.output
+                .write_step(system, &solution, &accuracy, state.load.time)
         });
         self.summary.seconds.write += took.as_secs_f64();
+        let interface = &system.discretisation.interface;
+        self.summary.fractures = summary::fractures(system.problem, interface, &solution);
+        self.summary.stress_error = accuracy.relative;
+        accuracy.note_in(&mut self.summary.fractures);
+        // Closed forms speak of the end of the loads.
+        let oracles = if is_last { &self.oracles[..] } else { &[] };
+        self.summary.measures = measures(system, &solution, oracles);
         self.summary.warnings = decisions::warnings(&self.summary.fractures);
         Ok(one(written)?)
     }
@@ -324,6 +342,7 @@ impl<'a> Run<'a> {
             steps: self.finished.clone(),
             fractures: self.summary.fractures.clone(),
             measures: self.summary.measures.clone(),
+            stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),
             peak_memory_bytes: self.summary.peak_memory_bytes,
             bookmark: is_left.then(|| newton.bookmark(state)),

@@ -41,6 +41,11 @@ pub struct FractureSummary {
     pub below_cutoff_facets: usize,
     /// Area whose walls overlap (negative aperture) (m^2).
     pub overlap_area: f64,
+    /// What the mean aperture may be off for the sake of the mesh (m); none if it could not be
+    /// estimated.
+    pub aperture_uncertainty: Option<f64>,
+    /// The same of the mean slip; none also if nothing slips.
+    pub slip_uncertainty: Option<f64>,
 }
 
 /// Numbers of the mesh.
@@ -143,6 +148,8 @@ pub struct Seconds {
     pub factorise: f64,
     /// Everything else of the nonlinear solution.
     pub solve: f64,
+    /// Estimating the error.
+    pub estimate: f64,
     /// Writing results.
     pub write: f64,
     /// The whole run.
@@ -167,6 +174,8 @@ pub struct Summary {
     /// The fractures after the last converged step, by name.
     #[serde(serialize_with = "as_map")]
     pub fractures: Vec<(String, FractureSummary)>,
+    /// Estimated error of the stress in the rock, as a share of it in the energy norm.
+    pub stress_error: f64,
     /// Numbers by which runs are compared, after the last converged step.
     pub measures: Vec<Measure>,
     /// The load steps.
@@ -262,5 +271,7 @@ fn fracture_summary(
         below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
         below_cutoff_facets: below.count(),
         overlap_area: area_where(&|result| result.aperture < 0.0),
+        aperture_uncertainty: None,
+        slip_uncertainty: None,
     }
 }

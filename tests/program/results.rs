@@ -154,7 +154,11 @@ fn check_rock(found: &Value, said: &Value, expected: &Expected) {
         1e-12,
         "volume",
     );
-    check_finite(found, &["displacement"], &["rock", "stress"]);
+    check_finite(
+        found,
+        &["displacement"],
+        &["rock", "stress", "stress_error"],
+    );
     if let Some(stress) = expected.stress {
         check_stress(&found["cell_data"]["stress"], stress);
     }
@@ -200,7 +204,11 @@ fn check_fractures(found: &Value, said: &Value, folder: &Path) {
         "state",
         "traction",
     ];
-    check_finite(found, &points, &["fracture", "normal"]);
+    check_finite(
+        found,
+        &points,
+        &["aperture_uncertainty", "fracture", "normal"],
+    );
     let names = names_in_order(folder, said);
     assert_eq!(
         found["fractures"].as_object().expect("fractures").len(),
