@@ -7,6 +7,7 @@ use lie_mesh::Defect;
 use lie_solver::{FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
+use crate::adapt::Round;
 use crate::oracle::Measure;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
@@ -169,6 +170,9 @@ pub struct Summary {
     pub warnings: Vec<String>,
     /// The mesh.
     pub mesh: MeshSummary,
+    /// The meshes on the way to this one, if the scene adapts it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub meshes: Vec<Round>,
     /// The unknowns.
     pub unknowns: UnknownSummary,
     /// The fractures after the last converged step, by name.

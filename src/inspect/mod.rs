@@ -68,7 +68,7 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
         return load_msh(input, &scratch);
     };
     let mut silent = Report::new(Verbosity::Quiet);
-    let file = mesh_file(scene, output, &mut silent)?;
+    let file = mesh_file(scene, output, None, &mut silent)?;
     load_msh(&file.path, &scratch)
 }
 

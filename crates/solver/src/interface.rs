@@ -28,7 +28,7 @@ pub struct FacetPoint {
     pub fracture: u32,
     /// Place (m).
     pub position: DVec3,
-    /// Area it stands for (m^2).
+    /// Area it stands for (m^2); negative at the tip of a quarter-point facet, where nothing moves.
     pub area: f64,
     /// Unit normal, from minus to plus.
     pub normal: DVec3,
@@ -39,6 +39,8 @@ pub struct FacetPoint {
     pub initial: Walls,
 }
 
+/// Share of a facet below which the area of a point has no direction of its own.
+const TURNED: f64 = 1e-9;
 /// Stiffness of the rock along a facet, as a share of that across.
 const SHEAR_SHARE: f64 = 0.3;
 
@@ -314,11 +316,11 @@ fn draw(
         .map(|&node| mesh.nodes[node as usize])
         .collect();
     let rule = facet_points(elements.shapes[facet], &positions, problem.facet_quadrature);
-    let area: f64 = rule.iter().map(|point| point.area.length()).sum();
-    let spring = spring(problem, facet, area);
+    let mean: DVec3 = rule.iter().map(|point| point.area).sum();
+    let spring = spring(problem, facet, mean.length());
     let mut drawn: Vec<Drawn> = rule
         .iter()
-        .map(|point| draw_point(problem, points, supports, (facet, spring), point))
+        .map(|point| draw_point(problem, points, supports, (facet, spring, mean), point))
         .collect();
     let nodal = match problem.facet_quadrature {
         FacetQuadrature::Nodal => nodes.len(),
@@ -332,7 +334,7 @@ fn draw_point(
     problem: &Problem,
     points: &Points,
     supports: &Supports,
-    (facet, spring): (usize, f64),
+    (facet, spring, mean): (usize, f64, DVec3),
     rule: &FacetRulePoint,
 ) -> Drawn {
     let facets = &problem.mesh.facets;
@@ -353,13 +355,18 @@ fn draw_point(
         terms.extend(jump_terms(points, supports, plus, minus, value));
     }
     let fracture = facets.fracture[facet];
-    let normal = rule.area.normalize();
+    // At the tip of a quarter-point facet the share of the tip is negative or nothing; nothing moves there.
+    let own = rule.area.length();
+    let (area, normal) = match own > TURNED * mean.length() && rule.area.dot(mean) > 0.0 {
+        true => (own, rule.area / own),
+        false => (rule.area.dot(mean.normalize()), mean.normalize()),
+    };
     let law = &problem.fractures[fracture as usize].law;
     let point = FacetPoint {
         facet: facet as u32,
         fracture,
         position: rule.position,
-        area: rule.area.length(),
+        area,
         normal,
         spring,
         initial: initial_walls(problem, law, rule.position, normal),
