@@ -14,6 +14,7 @@ use lie_solver::Bookmark;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
+use crate::oracle::Measure;
 use crate::summary::{FractureSummary, Seconds, StepMeasures};
 
 /// Its name in the folder of the results.
@@ -51,6 +52,10 @@ pub struct Progress<'a> {
     pub steps: Vec<StepMeasures>,
     /// The fractures after the last of them.
     pub fractures: Vec<(String, FractureSummary)>,
+    /// Estimated error of the stress after the last of them.
+    pub stress_error: f64,
+    /// The measures after the last of them.
+    pub measures: Vec<Measure>,
     /// Where the time went so far.
     pub seconds: Seconds,
     /// Largest resident memory so far (bytes).
@@ -253,6 +258,8 @@ mod tests {
             choice: ("direct".into(), "why".into()),
             steps: Vec::new(),
             fractures: Vec::new(),
+            stress_error: 0.0,
+            measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,
             bookmark: None,

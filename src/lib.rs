@@ -1,11 +1,13 @@
 //! A run of Kluft, told as a story: read the scene, mesh, enrich, assemble, solve, write.
 
+mod accuracy;
 pub mod chart;
 mod checkpoint;
 mod decisions;
 mod inspect;
 mod memory;
 mod network;
+mod oracle;
 mod output;
 mod prepare;
 mod reader;
@@ -20,6 +22,7 @@ use std::path::{Path, PathBuf};
 pub use inspect::{InspectOptions, inspect};
 pub use lie_network::{Domain, Grouping};
 pub use network::{NetworkOptions, make_network};
+pub use oracle::{Measure, Oracle};
 pub use report::{Failure, Verbosity, print_failure};
 pub use scene::{
     Binding, BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, History, MeshSource, Named,
@@ -108,6 +111,7 @@ fn what_is_left(former: Option<&Former>, output: &Output) -> String {
 
 fn closing_lines(report: &Report, summary: &Summary, output: &Output) {
     report.fractures(&summary.fractures);
+    report.comparisons(&summary.measures);
     for warning in &summary.warnings {
         report.entry("warning", warning);
     }

@@ -6,6 +6,7 @@ use lie_io::{Field, Grid, Values, write_pvd, write_vtu};
 use lie_mesh::Defect;
 use lie_solver::{Solution, System};
 
+use crate::accuracy::Accuracy;
 use crate::checkpoint;
 
 /// Writes the results of a run into one folder, step by step; the collections always list exactly
@@ -110,11 +111,14 @@ impl Output {
         &mut self,
         system: &System<'_>,
         solution: &Solution,
+        accuracy: &Accuracy,
         time: f64,
     ) -> Result<(), Defect> {
         let [rock, fractures] = names(self.rock.len() + 1);
-        write_vtu(&self.path(&rock), &rock_grid(system, solution))?;
-        write_vtu(&self.path(&fractures), &fracture_grid(system, solution))?;
+        let rock_grid = rock_grid(system, solution, accuracy);
+        write_vtu(&self.path(&rock), &rock_grid)?;
+        let fracture_grid = fracture_grid(system, solution, accuracy);
+        write_vtu(&self.path(&fractures), &fracture_grid)?;
         self.rock.push((time, rock));
         self.fractures.push((time, fractures));
         write_pvd(&self.path("rock.pvd"), &self.rock)?;
@@ -160,7 +164,7 @@ fn is_step(name: &str) -> bool {
 }
 
 /// The rock, with one copy of a node for each of its sectors.
-fn rock_grid(system: &System<'_>, solution: &Solution) -> Grid {
+fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
     let mesh = &system.problem.mesh;
     let points = &system.discretisation.points;
     let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
@@ -178,12 +182,13 @@ fn rock_grid(system: &System<'_>, solution: &Solution) -> Grid {
         cell_fields: vec![
             real("stress", 6, solution.stresses.iter().flatten().copied()),
             integer("rock", rocks),
+            real("stress_error", 1, accuracy.stress_errors.iter().copied()),
         ],
     }
 }
 
 /// The fractures; every facet has its own points, so that fields may jump between facets.
-fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
+fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
     let mesh = &system.problem.mesh;
     let elements = &mesh.facets.elements;
     let results = &solution.facet_points[..elements.nodes.len()];
@@ -194,7 +199,7 @@ fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
         .facet_areas()
         .into_iter()
         .flat_map(|area| area.normalize().to_array());
-    Grid {
+    let mut grid = Grid {
         points: elements
             .nodes
             .iter()
@@ -223,7 +228,14 @@ fn fracture_grid(system: &System<'_>, solution: &Solution) -> Grid {
                 mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
             ),
         ],
+    };
+    if let Some(jumps) = &accuracy.jumps {
+        let of_facets = mesh.facets.fracture.iter();
+        let of_facets = of_facets.map(|&fracture| jumps.aperture[fracture as usize]);
+        let field = real("aperture_uncertainty", 1, of_facets);
+        grid.cell_fields.push(field);
     }
+    grid
 }
 
 pub(crate) fn real(

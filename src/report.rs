@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lie_mesh::Defect;
 use lie_solver::Iteration;
 
+use crate::oracle::Measure;
 use crate::summary::FractureSummary;
 
 /// How much a run tells.
@@ -174,5 +175,19 @@ impl Report {
             ));
         }
         self.line("");
+    }
+
+    /// Prints the errors against closed forms, one line a fracture and kind.
+    pub fn comparisons(&self, measures: &[Measure]) {
+        for measure in measures {
+            let (Some(error), Some(fracture)) = (measure.error, &measure.fracture) else {
+                continue;
+            };
+            let what = measure.name.replace('_', " ");
+            self.entry(
+                "compared",
+                &format!("{fracture}: {what} {:.3} % off", 100.0 * error),
+            );
+        }
     }
 }

@@ -9,14 +9,16 @@ use lie_solver::{
     System, Workload, solution,
 };
 
+use crate::accuracy;
 use crate::checkpoint::{self, Identity, Progress};
 use crate::decisions;
 use crate::memory;
+use crate::oracle::{Oracle, measures};
 use crate::output::Output;
 use crate::prepare::{self, MeshFile};
 use crate::report::{Failure, Report};
 use crate::resume::Former;
-use crate::scene::{MeshSource, Scene, SolverEntry, bind};
+use crate::scene::{Binding, MeshSource, Scene, SolverEntry, bind};
 use crate::summary::{self, StepMeasures, StepSummary, Summary};
 
 /// A run under way.
@@ -37,6 +39,8 @@ pub struct Run<'a> {
     finished: Vec<StepMeasures>,
     /// Name of the linear solver, and why it was chosen.
     choice: (String, String),
+    /// Closed form of each fracture that has one.
+    oracles: Vec<Option<Oracle>>,
 }
 
 impl<'a> Run<'a> {
@@ -70,6 +74,7 @@ impl<'a> Run<'a> {
             start,
             finished: Vec::new(),
             choice: Default::default(),
+            oracles: Vec::new(),
         }
     }
 
@@ -89,14 +94,15 @@ impl<'a> Run<'a> {
             build_problem(self.scene, draft, &mut self.summary)
         });
         self.summary.seconds.read += took.as_secs_f64();
-        let problem = problem?;
+        let binding = problem?;
+        self.oracles = binding.oracles;
         let mesh = &self.summary.mesh;
         let size = format!(
             "{} nodes, {} cells, {} fracture facets, at most {} sectors at a node",
             mesh.nodes, mesh.cells, mesh.fracture_facets, mesh.max_sectors
         );
         self.report.entry("read", &timed(&size, took));
-        Ok(problem)
+        Ok(binding.problem)
     }
 
     /// The mesh file; gmsh makes it if it has to.
@@ -145,7 +151,7 @@ impl<'a> Run<'a> {
                 return Err(Failure::NotConverged(why));
             }
             self.finished.push((&record).into());
-            self.write_step(&system, &state)?;
+            self.write_step(&system, &mut newton, &state)?;
             one(self.write_summary())?;
             self.write_checkpoint(problem, &newton, &state)?;
         }
@@ -228,6 +234,8 @@ impl<'a> Run<'a> {
         let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
         self.summary.steps = summaries.collect();
         self.summary.fractures = former.fractures;
+        self.summary.measures = former.measures;
+        self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
         let mut newton = self.set_up(system, plan)?;
         let bookmark = former.bookmark.filter(|bookmark| bookmark.fits(system));
@@ -280,14 +288,31 @@ impl<'a> Run<'a> {
         record
     }
 
-    fn write_step(&mut self, system: &System<'_>, state: &State) -> Result<(), Failure> {
+    /// Estimates the error of a step and writes its results.
+    fn write_step(
+        &mut self,
+        system: &System<'_>,
+        newton: &mut Newton,
+        state: &State,
+    ) -> Result<(), Failure> {
+        let is_last = self.finished.len() == system.problem.schedule.steps.len();
+        let solution = solution(system, state);
+        let (accuracy, took) = self.report.stage("estimating the error", |_| {
+            accuracy::of(system, newton, &solution, is_last)
+        });
+        self.summary.seconds.estimate += took.as_secs_f64();
         let (written, took) = self.report.stage("writing", |_| {
-            let solution = solution(system, state);
-            let interface = &system.discretisation.interface;
-            self.summary.fractures = summary::fractures(system.problem, interface, &solution);
-            self.output.write_step(system, &solution, state.load.time)
+            self.output
+                .write_step(system, &solution, &accuracy, state.load.time)
         });
         self.summary.seconds.write += took.as_secs_f64();
+        let interface = &system.discretisation.interface;
+        self.summary.fractures = summary::fractures(system.problem, interface, &solution);
+        self.summary.stress_error = accuracy.relative;
+        accuracy.note_in(&mut self.summary.fractures);
+        // Closed forms speak of the end of the loads.
+        let oracles = if is_last { &self.oracles[..] } else { &[] };
+        self.summary.measures = measures(system, &solution, oracles);
         self.summary.warnings = decisions::warnings(&self.summary.fractures);
         Ok(one(written)?)
     }
@@ -316,6 +341,8 @@ impl<'a> Run<'a> {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
             fractures: self.summary.fractures.clone(),
+            measures: self.summary.measures.clone(),
+            stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),
             peak_memory_bytes: self.summary.peak_memory_bytes,
             bookmark: is_left.then(|| newton.bookmark(state)),
@@ -331,12 +358,12 @@ fn build_problem(
     scene: &Scene,
     draft: Draft,
     summary: &mut Summary,
-) -> Result<Problem, Vec<Defect>> {
+) -> Result<Binding, Vec<Defect>> {
     let faces = Faces::of(&draft);
     let roles = prepare::roles(scene, &draft, &faces.inner_surfaces(&draft))?;
     summary.decisions.extend(roles.decisions);
-    let binding = bind(scene, Mesh::build_on(draft, faces, &roles.of_group)?)?;
-    summary.decisions.extend(binding.decisions);
+    let mut binding = bind(scene, Mesh::build_on(draft, faces, &roles.of_group)?)?;
+    summary.decisions.append(&mut binding.decisions);
     let mesh = &binding.problem.mesh;
     let counts = mesh.sectors.count.iter();
     summary.mesh = summary::MeshSummary {
@@ -345,7 +372,7 @@ fn build_problem(
         fracture_facets: mesh.facets.elements.len(),
         max_sectors: counts.copied().max().unwrap_or(0),
     };
-    Ok(binding.problem)
+    Ok(binding)
 }
 
 /// A single defect as a failure.

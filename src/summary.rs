@@ -7,6 +7,8 @@ use lie_mesh::Defect;
 use lie_solver::{FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
+use crate::oracle::Measure;
+
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
@@ -39,6 +41,11 @@ pub struct FractureSummary {
     pub below_cutoff_facets: usize,
     /// Area whose walls overlap (negative aperture) (m^2).
     pub overlap_area: f64,
+    /// What the mean aperture may be off for the sake of the mesh (m); none if it could not be
+    /// estimated.
+    pub aperture_uncertainty: Option<f64>,
+    /// The same of the mean slip; none also if nothing slips.
+    pub slip_uncertainty: Option<f64>,
 }
 
 /// Numbers of the mesh.
@@ -141,6 +148,8 @@ pub struct Seconds {
     pub factorise: f64,
     /// Everything else of the nonlinear solution.
     pub solve: f64,
+    /// Estimating the error.
+    pub estimate: f64,
     /// Writing results.
     pub write: f64,
     /// The whole run.
@@ -165,6 +174,10 @@ pub struct Summary {
     /// The fractures after the last converged step, by name.
     #[serde(serialize_with = "as_map")]
     pub fractures: Vec<(String, FractureSummary)>,
+    /// Estimated error of the stress in the rock, as a share of it in the energy norm.
+    pub stress_error: f64,
+    /// Numbers by which runs are compared, after the last converged step.
+    pub measures: Vec<Measure>,
     /// The load steps.
     pub steps: Vec<StepSummary>,
     /// Where the time went.
@@ -258,5 +271,7 @@ fn fracture_summary(
         below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
         below_cutoff_facets: below.count(),
         overlap_area: area_where(&|result| result.aperture < 0.0),
+        aperture_uncertainty: None,
+        slip_uncertainty: None,
     }
 }

@@ -7,6 +7,7 @@ use lie_solver::{Condition, FixedPoint, Problem};
 
 use super::cases::{Bound, schedule};
 use super::{FixedPointEntry, FractureEntry, Named, Scene};
+use crate::oracle::Oracle;
 
 /// Name under which a section serves all groups without one of their own.
 const DEFAULT: &str = "default";
@@ -17,6 +18,8 @@ pub struct Binding {
     pub problem: Problem,
     /// One line a decision, for the user.
     pub decisions: Vec<String>,
+    /// Closed form of each fracture that has one.
+    pub oracles: Vec<Option<Oracle>>,
 }
 
 /// What each group of the draft is, going by the scene. Surfaces that the scene does not name are
@@ -137,6 +140,7 @@ pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         defects.extend(missing_densities(scene));
     }
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
+    let oracles = bind_oracles(scene, &mesh, &mut defects);
     if !defects.is_empty() {
         return Err(defects);
     }
@@ -174,7 +178,30 @@ pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
             mesh,
         },
         decisions,
+        oracles,
     })
+}
+
+/// Closed form of each fracture.
+fn bind_oracles(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<Option<Oracle>> {
+    let strangers = scene
+        .oracles
+        .iter()
+        .filter(|entry| !mesh.fractures.contains(&entry.name));
+    defects.extend(strangers.map(|entry| {
+        let known = mesh.fractures.iter().map(String::as_str);
+        let remedy = match nearest(&entry.name, known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("fractures of the mesh: {}", mesh.fractures.join(", ")),
+        };
+        let problem = format!("`{}` is no fracture of the mesh", entry.name);
+        Defect::new(&entry.place, problem, remedy)
+    }));
+    let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
+    let names = mesh.fractures.iter();
+    names
+        .map(|name| of(name).map(|entry| entry.value))
+        .collect()
 }
 
 /// Rock of each cell, decided once for each set of groups that cells belong to.

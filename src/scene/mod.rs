@@ -19,6 +19,7 @@ pub(crate) use fracture::read_fracture;
 pub use history::{History, StepEnd, Timetable};
 pub(crate) use load::Clock;
 
+use crate::oracle::{self, Oracle};
 use crate::reader::{Accept, Section, Source};
 use conditions::{read_body, read_boundary, read_fixed_point};
 use load::read_timetable;
@@ -85,6 +86,8 @@ pub struct Scene {
     pub timetable: Timetable,
     /// What is asked of the linear solver.
     pub solver: SolverEntry,
+    /// Closed forms by fracture.
+    pub oracles: Vec<Named<Oracle>>,
 }
 
 impl Scene {
@@ -194,7 +197,10 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
             entry(source, name, section, |s| read_fixed_point(s, clock))
         })
         .collect();
+    let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
+    let oracles = oracles.collect();
     Some(Scene {
+        oracles,
         body: read_body(root, clock),
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         timetable,

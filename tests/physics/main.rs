@@ -10,6 +10,7 @@ mod conditions;
 mod contact;
 mod crack_front;
 mod dice;
+mod estimate;
 mod families;
 mod friction;
 mod geometries;

@@ -114,7 +114,7 @@ fn times_alone_repeat_the_full_load() {
     let untimed = Workshop::new("inclined-joint", &[]);
     let plain = untimed.solve("plain", &[]);
     let (timed, said, plain) = (files(&timed), summary(&timed), files(&plain));
-    assert_eq!(timed["fractures_0001.vtu"], plain["fractures_0001.vtu"]);
+    assert_eq!(timed["rock_0001.vtu"], plain["rock_0001.vtu"]);
     let steps = said["steps"].as_array().expect("steps");
     assert_eq!(column(steps, "load"), [&json!(1.0), &json!(1.0)]);
     assert_eq!(column(steps, "time"), [&json!(2.0), &json!(3.0)]);

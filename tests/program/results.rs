@@ -48,6 +48,29 @@ fn six_joints() {
     });
 }
 
+#[test]
+fn errors_against_a_closed_form_are_in_the_summary() {
+    let workshop = Workshop::new("inclined-joint", &[("h = 0.2", "h = 0.4")]);
+    let said = summary(&workshop.solve("out", &[]));
+    let measures = said["measures"].as_array().expect("measures");
+    let of = |name: &str| {
+        let found = measures.iter().find(|measure| measure["name"] == name);
+        found.unwrap_or_else(|| panic!("{name}")).clone()
+    };
+    for name in [
+        "opening_l2",
+        "opening_max",
+        "slip_max",
+        "normal_traction_l2",
+    ] {
+        let error = of(name)["error"].as_f64().expect("an error");
+        assert!(error < 1e-9, "{name} {error}");
+    }
+    let mean = said["fractures"]["joint"]["aperture"]["mean"].as_f64();
+    assert_eq!(of("mean_aperture")["value"].as_f64(), mean);
+    assert_eq!(of("volume")["fracture"], "joint");
+}
+
 fn check(expected: &Expected) {
     let workshop = Workshop::new(expected.geometry, expected.edits);
     let one = workshop.solve("one", &["--threads", "1"]);
@@ -131,7 +154,11 @@ fn check_rock(found: &Value, said: &Value, expected: &Expected) {
         1e-12,
         "volume",
     );
-    check_finite(found, &["displacement"], &["rock", "stress"]);
+    check_finite(
+        found,
+        &["displacement"],
+        &["rock", "stress", "stress_error"],
+    );
     if let Some(stress) = expected.stress {
         check_stress(&found["cell_data"]["stress"], stress);
     }
@@ -177,7 +204,11 @@ fn check_fractures(found: &Value, said: &Value, folder: &Path) {
         "state",
         "traction",
     ];
-    check_finite(found, &points, &["fracture", "normal"]);
+    check_finite(
+        found,
+        &points,
+        &["aperture_uncertainty", "fracture", "normal"],
+    );
     let names = names_in_order(folder, said);
     assert_eq!(
         found["fractures"].as_object().expect("fractures").len(),

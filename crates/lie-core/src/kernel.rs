@@ -157,7 +157,16 @@ pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
     sum / whole
 }
 
-fn position(point: &RulePoint, nodes: &[DVec3]) -> DVec3 {
+/// Displacement gradient `H = sum_a u_a (x) grad N_a` at a point of a cell, and the volume (m^3) of that
+/// point.
+pub fn gradient_at(point: &RulePoint, nodes: &[DVec3], displacement: &[DVec3]) -> (DMat3, f64) {
+    let Gradients { of_node, volume } = gradients(point, nodes);
+    let terms = displacement.iter().zip(of_node);
+    (terms.map(|(u, gradient)| outer(*u, gradient)).sum(), volume)
+}
+
+/// Place (m) of a point of a cell.
+pub fn position(point: &RulePoint, nodes: &[DVec3]) -> DVec3 {
     nodes
         .iter()
         .zip(&point.shape)

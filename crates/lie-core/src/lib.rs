@@ -31,6 +31,7 @@ mod facet;
 mod fracture_law;
 pub mod kernel;
 mod quadrature;
+mod recovery;
 mod rock;
 mod walls;
 
@@ -39,5 +40,6 @@ pub use closure::{Closure, ClosureKind, NormalBalance, NormalResponse, Separatio
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};
 pub use fracture_law::{FractureLaw, Friction, Response};
+pub use recovery::{FinePoint, RecoveryRule, recovery_rule};
 pub use rock::{Rock, SymmetricStress};
 pub use walls::{Landing, Memory, Springs, Tangent, Walls};

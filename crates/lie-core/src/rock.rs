@@ -32,6 +32,16 @@ impl Rock {
         lambda + 2.0 * mu
     }
 
+    /// Energy density of a stress, `sigma : C^-1 : sigma` (J/m^3), twice what the rock stores:
+    /// `((1 + nu) sigma : sigma - nu tr(sigma)^2) / E`.
+    pub fn energy_density(&self, stress: &SymmetricStress) -> f64 {
+        let [xx, yy, zz, xy, yz, xz] = *stress;
+        let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz);
+        let trace = xx + yy + zz;
+        let nu = self.poisson_ratio;
+        ((1.0 + nu) * square - nu * trace * trace) / self.young_modulus
+    }
+
     /// Stress at the displacement gradient `H_ij = du_i/dx_j`:
     /// `sigma = lambda tr(eps) I + 2 mu eps`, `eps = (H + H^T) / 2`.
     pub fn stress(&self, gradient: DMat3) -> DMat3 {

@@ -9,6 +9,7 @@
 mod assembly;
 mod cell_forces;
 mod conjugate_gradients;
+mod estimate;
 mod folded;
 mod gmres;
 mod interface;
@@ -30,6 +31,7 @@ pub use conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
     conjugate_gradients,
 };
+pub use estimate::{Estimator, MeanError, StressError};
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
     Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,

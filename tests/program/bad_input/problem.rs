@@ -33,6 +33,18 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "closed form of an unknown fracture",
+        scene: &[(
+            "[fracture.joint]",
+            "[oracle.jiont]\nform = \"uniform\"\nopening = 1.0\n[fracture.joint]",
+        )],
+        says: &[
+            "[oracle.jiont]: `jiont` is no fracture of the mesh",
+            "did you mean `joint`?",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "unknown boundary",
         scene: &[("[boundary.bottom]", "[boundary.botom]")],
         says: &[

@@ -48,6 +48,21 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "closed forms that say nothing, or nothing known",
+        scene: &[(
+            "[fracture.joint]",
+            "[oracle.a]\nform = \"penny\"\ncentre = [0, 0, 0]\nradius = 1\n[oracle.b]\nform = \"disc\"\n[oracle.c]\nform = \"line\"\npressure = 1e6\ncentre = [0, 0, 0]\nhalf_length = 1\nalong = [0, 0, 0]\n[fracture.joint]",
+        )],
+        defects: 3,
+        says: &[
+            "the closed form says nothing",
+            "give at least one of `pressure`, `stress_drop` (Pa) and `normal_traction`",
+            "unknown closed form \"disc\"",
+            "`along` has no direction",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "unknown linear solver",
         scene: &[(
             "[fracture.joint]",

@@ -45,6 +45,19 @@ impl AnyTangent {
         self.inner.update(system, positive)
     }
 
+    /// Solves with the positive tangents for the forces `right` (N), to `tolerance` times their norm.
+    ///
+    /// # Errors
+    /// If the solver fails.
+    pub fn solve_positive(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
+        self.inner.solve(system, right, tolerance)
+    }
+
     /// What later solves depend on beside the tangents and the forces.
     pub fn history(&self) -> SolverHistory {
         self.inner.history()

@@ -14,7 +14,7 @@ mod cycle;
 mod galerkin;
 mod prolongation;
 mod scaling;
-mod small;
+pub(crate) mod small;
 mod smoother;
 mod sparse;
 mod spectrum;

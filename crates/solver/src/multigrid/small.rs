@@ -4,7 +4,7 @@
 ///
 /// A pivot not above `least` times the largest diagonal entry counts as zero: its row and column
 /// are left out of the factor, and the inverse has zeros there. The flags tell which were kept.
-pub(super) fn inverse_factor<const N: usize>(
+pub(crate) fn inverse_factor<const N: usize>(
     block: &[[f64; N]; N],
     least: f64,
 ) -> ([[f64; N]; N], [bool; N]) {

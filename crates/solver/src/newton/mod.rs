@@ -138,6 +138,23 @@ impl Newton {
         record
     }
 
+    /// Unknowns (m) in answer to small `forces` (N) on top of the last state, to `tolerance` times their
+    /// norm; friction keeps its limit.
+    ///
+    /// # Errors
+    /// If the linear solve fails.
+    pub fn respond(
+        &mut self,
+        system: &System<'_>,
+        forces: &[DVec3],
+        tolerance: f64,
+    ) -> Result<Vec<DVec3>, LinearFailure> {
+        Ok(self
+            .linear
+            .solve_positive(system, forces, tolerance)?
+            .unknowns)
+    }
+
     /// Solves from one state to a load without dividing the way.
     fn attempt(
         &mut self,

@@ -1,0 +1,61 @@
+//! A cell with what moves it.
+
+use glam::{DMat3, DVec3};
+use lie_core::kernel::MAX_NODES;
+use lie_core::{Rock, SymmetricStress};
+use lie_mesh::Shape;
+
+use crate::points::Points;
+use crate::problem::Problem;
+
+/// Nodes and displacements of one cell.
+pub(super) struct Cell<'a> {
+    pub(super) shape: Shape,
+    pub(super) rock: &'a Rock,
+    count: usize,
+    nodes: [DVec3; MAX_NODES],
+    moved: [DVec3; MAX_NODES],
+}
+
+impl<'a> Cell<'a> {
+    pub(super) fn of(
+        problem: &'a Problem,
+        points: &Points,
+        displacements: &[DVec3],
+        cell: usize,
+    ) -> Self {
+        let mesh = &problem.mesh;
+        let mut nodes = [DVec3::ZERO; MAX_NODES];
+        let mut moved = [DVec3::ZERO; MAX_NODES];
+        let range = mesh.cells.range(cell);
+        let count = range.len();
+        for (local, slot) in range.enumerate() {
+            nodes[local] = mesh.nodes[mesh.cells.nodes[slot] as usize];
+            moved[local] = displacements[points.of_cell_node[slot] as usize];
+        }
+        Self {
+            shape: mesh.cells.shapes[cell],
+            rock: problem.rock(cell),
+            count,
+            nodes,
+            moved,
+        }
+    }
+
+    /// Places of the nodes (m).
+    pub(super) fn nodes(&self) -> &[DVec3] {
+        &self.nodes[..self.count]
+    }
+
+    /// Displacements of the nodes (m).
+    pub(super) fn moved(&self) -> &[DVec3] {
+        &self.moved[..self.count]
+    }
+}
+
+/// Components of a symmetric tensor.
+pub(super) fn components(s: DMat3) -> SymmetricStress {
+    [
+        s.x_axis.x, s.y_axis.y, s.z_axis.z, s.x_axis.y, s.y_axis.z, s.x_axis.z,
+    ]
+}

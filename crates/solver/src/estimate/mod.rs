@@ -1,0 +1,147 @@
+//! How wrong a solution is, estimated from itself.
+//!
+//! The error of the stress is taken for the difference between the stress of the elements and a smoother
+//! one recovered from it (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 24, 1987). What it does
+//! to jumps follows from the solution `z` under a unit traction on their walls: with `e` and `e_z` the errors of
+//! both solutions, the error of the mean jump is `a(e, e_z) / A <= sum |e|_K |e_z|_K / A`, in energy norms
+//! (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
+
+mod cell;
+mod patches;
+mod reach;
+
+use glam::DVec3;
+use lie_core::{kernel, recovery_rule};
+use rayon::prelude::*;
+
+use crate::linear::LinearFailure;
+use crate::newton::Newton;
+use crate::schedule::Load;
+use crate::system::System;
+use cell::{Cell, components};
+use patches::Patches;
+
+/// Error of the linear solve for `z`, as a share of its forces: enough for an estimate.
+const ROUGH: f64 = 1e-2;
+
+/// Recovers stresses on one mesh, for any number of states.
+pub struct Estimator {
+    patches: Patches,
+    /// The fracture nearest to each cell; beyond all numbers where there is none.
+    pub nearest_fracture: Vec<u32>,
+}
+
+/// Error of the stress of one state.
+#[derive(Debug, Clone)]
+pub struct StressError {
+    /// `|e|_K^2`, the square of the energy norm of the error in each cell (J), twice the energy that it
+    /// would store.
+    pub of_cell: Vec<f64>,
+    /// Volume of each cell (m^3).
+    pub volumes: Vec<f64>,
+    /// The same of the solution itself.
+    pub energy: f64,
+}
+
+impl StressError {
+    /// `|e| / |u|`: the error as a share of the solution, in the energy norm.
+    pub fn relative(&self) -> f64 {
+        let error: f64 = self.of_cell.iter().sum();
+        if self.energy > 0.0 {
+            (error / self.energy).sqrt()
+        } else {
+            0.0
+        }
+    }
+}
+
+/// What the error does to a mean over each fracture.
+#[derive(Debug, Clone)]
+pub struct MeanError {
+    /// Error of the mean over each fracture (m).
+    pub of_fracture: Vec<f64>,
+    /// Part of each cell in the error of its nearest fracture (m): where to refine.
+    pub of_cell: Vec<f64>,
+}
+
+impl Estimator {
+    /// Prepares for a system.
+    pub fn of(system: &System<'_>) -> Self {
+        Self {
+            patches: Patches::of(system.problem, &system.discretisation.points),
+            nearest_fracture: reach::nearest_fracture(&system.problem.mesh),
+        }
+    }
+
+    /// Estimates the error of the stresses of `displacements` (m), one a point.
+    pub fn stress_error(&self, system: &System<'_>, displacements: &[DVec3]) -> StressError {
+        let problem = system.problem;
+        let points = &system.discretisation.points;
+        let recovered = self.patches.recover(problem, points, displacements);
+        let of_cell = |cell: usize| {
+            let first = problem.mesh.cells.range(cell).start;
+            let cell = Cell::of(problem, points, displacements, cell);
+            let (mut error, mut energy, mut whole) = (0.0, 0.0, 0.0);
+            for fine in &recovery_rule(cell.shape).fine {
+                let place = kernel::position(&fine.point, cell.nodes());
+                let (gradient, volume) =
+                    kernel::gradient_at(&fine.point, cell.nodes(), cell.moved());
+                let found = components(cell.rock.stress(gradient));
+                let smooth = self.patches.stress(&recovered, first, &fine.corners, place);
+                let difference = std::array::from_fn(|i| smooth[i] - found[i]);
+                error += volume * cell.rock.energy_density(&difference);
+                energy += volume * cell.rock.energy_density(&found);
+                whole += volume;
+            }
+            (error, (energy, whole))
+        };
+        let cells = (0..problem.mesh.cells.len()).into_par_iter();
+        let (of_cell, others): (Vec<f64>, Vec<(f64, f64)>) = cells.map(of_cell).unzip();
+        StressError {
+            of_cell,
+            energy: others.iter().map(|(energy, _)| energy).sum(),
+            volumes: others.into_iter().map(|(_, volume)| volume).collect(),
+        }
+    }
+
+    /// Estimates the error of the mean over each fracture of the jump along `directions`, one for each
+    /// facet point: with normals of the mean opening, with those of slip of the mean slip. It costs one
+    /// rough linear solve with the tangent that `newton` used last.
+    ///
+    /// # Errors
+    /// If that solve fails.
+    pub fn mean_error(
+        &self,
+        system: &System<'_>,
+        newton: &mut Newton,
+        directions: &[DVec3],
+        stress: &StressError,
+    ) -> Result<MeanError, LinearFailure> {
+        let interface = &system.discretisation.interface;
+        let mut forces = vec![DVec3::ZERO; system.discretisation.points.len()];
+        interface.add_forces(directions, 1.0, &mut forces);
+        let pressed = newton.respond(system, &forces, ROUGH)?;
+        let pressed = system.displacements(&pressed, &Load::NONE);
+        let dual = self.stress_error(system, &pressed);
+        let mut areas = vec![0.0; system.problem.fractures.len()];
+        for point in &interface.points {
+            areas[point.fracture as usize] += point.area;
+        }
+        let mut of_fracture = vec![0.0; areas.len()];
+        let products = stress.of_cell.iter().zip(&dual.of_cell);
+        let of_cell = products
+            .zip(&self.nearest_fracture)
+            .map(|((e, z), &fracture)| {
+                let Some(area) = areas.get(fracture as usize) else {
+                    return 0.0;
+                };
+                let part = (e * z).sqrt() / area;
+                of_fracture[fracture as usize] += part;
+                part
+            });
+        Ok(MeanError {
+            of_cell: of_cell.collect(),
+            of_fracture,
+        })
+    }
+}

@@ -1,0 +1,250 @@
+//! Recovered stresses: around each corner of the cells a polynomial is fitted to the stresses sampled in
+//! the cells there that are of one rock and in one sector, so that stresses may jump at fractures and
+//! between rocks (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 33, 1992).
+
+use glam::DVec3;
+use lie_core::{SymmetricStress, kernel, recovery_rule};
+use lie_mesh::Elements;
+use rayon::prelude::*;
+
+use crate::multigrid::small::inverse_factor;
+use crate::pattern::Lists;
+use crate::points::Points;
+use crate::problem::Problem;
+
+use super::cell::{Cell, components};
+
+/// Terms of a complete linear and a complete quadratic polynomial in space.
+const LINEAR: usize = 4;
+const QUADRATIC: usize = 10;
+/// A term that depends on the ones before it but for this share is left out: what is extrapolated with it
+/// would be noise.
+const DEPENDENT: f64 = 1e-4;
+/// Samples for each term, below which cells farther away help, and then a polynomial of lower degree is
+/// fitted.
+const SAMPLES_PER_TERM: f64 = 1.5;
+
+/// The corner of a cell belongs to one patch.
+pub(super) struct Patches {
+    /// Patch of each corner of the cells, by slot in their flat node list; `NONE` for other nodes.
+    pub(super) of_slot: Vec<u32>,
+    /// Slots of each patch.
+    slots: Lists,
+    /// Cell of each slot.
+    cell_of_slot: Vec<u32>,
+    /// Middle (m) and size (m) of each patch.
+    frames: Vec<(DVec3, f64)>,
+    /// Number of terms of the polynomials: quadratic ones if any cell is quadratic.
+    terms: usize,
+}
+
+/// No patch.
+const NONE: u32 = u32::MAX;
+
+/// A recovered stress: for each patch the coefficients of each component (Pa), term by term.
+pub(super) struct Recovered {
+    coefficients: Vec<SymmetricStress>,
+}
+
+impl Patches {
+    /// The patches of a mesh: one for each point that is a corner and each rock around it.
+    pub(super) fn of(problem: &Problem, points: &Points) -> Self {
+        let cells = &problem.mesh.cells;
+        let mut cell_of_slot = vec![0; cells.nodes.len()];
+        let mut corners: Vec<(u64, u32)> = Vec::with_capacity(4 * cells.len());
+        for cell in 0..cells.len() {
+            let range = cells.range(cell);
+            cell_of_slot[range.clone()].fill(cell as u32);
+            let rock = u64::from(problem.rock_of_cell[cell]);
+            let count = cells.shapes[cell].corner_count();
+            let keys = range.take(count).map(|slot| {
+                let point = u64::from(points.of_cell_node[slot]);
+                (point << 32 | rock, slot as u32)
+            });
+            corners.extend(keys);
+        }
+        corners.par_sort_unstable();
+        let mut of_slot = vec![NONE; cells.nodes.len()];
+        let mut slots = Lists {
+            offset: vec![0],
+            entries: Vec::with_capacity(corners.len()),
+        };
+        for (patch, group) in corners.chunk_by(|a, b| a.0 == b.0).enumerate() {
+            for &(_, slot) in group {
+                of_slot[slot as usize] = patch as u32;
+                slots.entries.push(slot);
+            }
+            slots.offset.push(slots.entries.len());
+        }
+        let mut patches = Self {
+            of_slot,
+            slots,
+            cell_of_slot,
+            frames: Vec::new(),
+            terms: match cells.shapes.iter().any(|shape| shape.is_quadratic()) {
+                true => QUADRATIC,
+                false => LINEAR,
+            },
+        };
+        patches.frames = (0..patches.len())
+            .into_par_iter()
+            .map(|patch| patches.frame(problem, patch))
+            .collect();
+        patches
+    }
+
+    fn len(&self) -> usize {
+        self.slots.offset.len() - 1
+    }
+
+    fn cells_of(&self, patch: usize) -> impl Iterator<Item = usize> + '_ {
+        let slots = self.slots.of(patch).iter();
+        slots.map(|&slot| self.cell_of_slot[slot as usize] as usize)
+    }
+
+    fn frame(&self, problem: &Problem, patch: usize) -> (DVec3, f64) {
+        let mesh = &problem.mesh;
+        let slot = self.slots.of(patch)[0] as usize;
+        let middle = mesh.nodes[mesh.cells.nodes[slot] as usize];
+        let corners = self.cells_of(patch).flat_map(|cell| {
+            let count = mesh.cells.shapes[cell].corner_count();
+            &mesh.cells.nodes_of(cell)[..count]
+        });
+        let distance = corners.map(|&node| mesh.nodes[node as usize].distance(middle));
+        (middle, distance.fold(0.0, f64::max))
+    }
+
+    /// Fits a polynomial to the stresses of `displacements` in every patch.
+    pub(super) fn recover(
+        &self,
+        problem: &Problem,
+        points: &Points,
+        displacements: &[DVec3],
+    ) -> Recovered {
+        let source = Source {
+            problem,
+            points,
+            displacements,
+        };
+        let mut coefficients = vec![[0.0; 6]; self.terms * self.len()];
+        let patches = coefficients.par_chunks_mut(self.terms).enumerate();
+        patches.for_each(|(patch, coefficients)| match self.terms {
+            QUADRATIC => coefficients.copy_from_slice(&self.fit::<QUADRATIC>(&source, patch)),
+            _ => coefficients.copy_from_slice(&self.fit::<LINEAR>(&source, patch)),
+        });
+        Recovered { coefficients }
+    }
+
+    /// The cells whose stresses a patch is fitted to, and the terms that they suffice for: its own, and at
+    /// corners of the body those of the patches beside it too.
+    fn around(&self, cells: &Elements, patch: usize) -> (Vec<usize>, usize) {
+        let mut around: Vec<usize> = self.cells_of(patch).collect();
+        let quadratic = around.iter().any(|&cell| cells.shapes[cell].is_quadratic());
+        let wanted = if quadratic { QUADRATIC } else { LINEAR };
+        let suffices = |around: &[usize], terms: usize| {
+            let samples = around.iter();
+            let samples = samples.map(|&cell| recovery_rule(cells.shapes[cell]).samples.len());
+            samples.sum::<usize>() as f64 >= SAMPLES_PER_TERM * terms as f64
+        };
+        if !suffices(&around, wanted) {
+            let corners = around.iter().flat_map(|&cell| {
+                let corners = cells.shapes[cell].corner_count();
+                cells.range(cell).take(corners)
+            });
+            let beside = corners.flat_map(|slot| self.cells_of(self.of_slot[slot] as usize));
+            around = beside.collect();
+            around.sort_unstable();
+            around.dedup();
+        }
+        let fitting = [wanted, LINEAR].into_iter();
+        let terms = fitting.into_iter().find(|&terms| suffices(&around, terms));
+        (around, terms.unwrap_or(1))
+    }
+
+    fn fit<const TERMS: usize>(&self, source: &Source<'_>, patch: usize) -> [[f64; 6]; TERMS] {
+        let mut normal = [[0.0; TERMS]; TERMS];
+        let mut right = [[0.0; 6]; TERMS];
+        let (around, used) = self.around(&source.problem.mesh.cells, patch);
+        for cell in around {
+            let cell = Cell::of(source.problem, source.points, source.displacements, cell);
+            for sample in &recovery_rule(cell.shape).samples {
+                let terms = self.terms(patch, kernel::position(sample, cell.nodes()));
+                let (gradient, _) = kernel::gradient_at(sample, cell.nodes(), cell.moved());
+                let stress = components(cell.rock.stress(gradient));
+                for i in 0..TERMS {
+                    for j in 0..=i {
+                        normal[i][j] += terms[i] * terms[j];
+                    }
+                    add(&mut right[i], terms[i], &stress);
+                }
+            }
+        }
+        // Rows of zeros have no pivot.
+        normal[used..].fill([0.0; TERMS]);
+        solve(&normal, &right)
+    }
+
+    /// `1, x, y, z, x^2, y^2, z^2, xy, yz, xz` in the frame of a patch.
+    fn terms(&self, patch: usize, place: DVec3) -> [f64; QUADRATIC] {
+        let (middle, size) = self.frames[patch];
+        let DVec3 { x, y, z } = (place - middle) / size;
+        [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z]
+    }
+
+    /// Recovered stress (Pa) at a place in the cell whose first slot is `first`: the polynomials of its
+    /// corners, blended by the linear shape functions `shares`.
+    pub(super) fn stress(
+        &self,
+        recovered: &Recovered,
+        first: usize,
+        shares: &[f64],
+        place: DVec3,
+    ) -> SymmetricStress {
+        let mut stress = [0.0; 6];
+        for (local, share) in shares.iter().enumerate() {
+            let patch = self.of_slot[first + local] as usize;
+            let coefficients = &recovered.coefficients[self.terms * patch..][..self.terms];
+            for (term, coefficients) in self.terms(patch, place).iter().zip(coefficients) {
+                for (sum, coefficient) in stress.iter_mut().zip(coefficients) {
+                    *sum += share * term * coefficient;
+                }
+            }
+        }
+        stress
+    }
+}
+
+/// What stresses follow from.
+struct Source<'a> {
+    problem: &'a Problem,
+    points: &'a Points,
+    displacements: &'a [DVec3],
+}
+
+/// `A c = b` for positive semidefinite `A`, given by its lower triangle, with zeros for terms that depend
+/// on those before them.
+fn solve<const TERMS: usize>(
+    normal: &[[f64; TERMS]; TERMS],
+    right: &[[f64; 6]; TERMS],
+) -> [[f64; 6]; TERMS] {
+    let (inverse, _) = inverse_factor(normal, DEPENDENT);
+    let mut half = [[0.0; 6]; TERMS];
+    let mut solution = [[0.0; 6]; TERMS];
+    for i in 0..TERMS {
+        for j in 0..=i {
+            add(&mut half[i], inverse[i][j], &right[j]);
+        }
+    }
+    for i in 0..TERMS {
+        for j in i..TERMS {
+            add(&mut solution[i], inverse[j][i], &half[j]);
+        }
+    }
+    solution
+}
+
+fn add(sum: &mut [f64; 6], factor: f64, terms: &[f64; 6]) {
+    for (sum, term) in sum.iter_mut().zip(terms) {
+        *sum += factor * term;
+    }
+}

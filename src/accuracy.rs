@@ -1,0 +1,121 @@
+//! How accurate a run says it is.
+
+use glam::DVec3;
+use lie_solver::{Estimator, MeanError, Newton, Solution, StressError, System};
+
+use crate::summary::FractureSummary;
+
+/// Estimated errors of one load step.
+pub struct Accuracy {
+    /// Error of the stress as a share of it, in the energy norm.
+    pub relative: f64,
+    /// Error of the stress in each cell (Pa): the uniaxial stress with the same energy.
+    pub stress_errors: Vec<f64>,
+    /// Errors of the jumps, if they were asked for.
+    pub jumps: Option<JumpAccuracy>,
+}
+
+/// Estimated errors of the jumps.
+pub struct JumpAccuracy {
+    /// What the mean aperture of each fracture may be off (m).
+    pub aperture: Vec<f64>,
+    /// What the mean slip of each fracture may be off (m), if any slips.
+    pub slip: Option<Vec<f64>>,
+    /// For each cell the sum of its parts in both, as shares of the mean jump of its fracture.
+    pub of_cell: Vec<f64>,
+}
+
+/// The estimate is between 0.4 and 1 times the error on the closed forms of `docs/book`.
+pub const SAFETY: f64 = 3.0;
+/// Share of the largest jump that the iterations may leave.
+const ITERATION: f64 = 1e-9;
+/// Slip, as a share of the largest jump, from which on it has an error of its own.
+const SLIPS: f64 = 1e-3;
+
+/// Estimates the errors of a step; those of the jumps too if asked.
+pub fn of(
+    system: &System<'_>,
+    newton: &mut Newton,
+    solution: &Solution,
+    of_jumps: bool,
+) -> Accuracy {
+    let estimator = Estimator::of(system);
+    let error = estimator.stress_error(system, &solution.displacements);
+    let stress_errors = (0..error.of_cell.len()).map(|cell| {
+        let modulus = system.problem.rock(cell).young_modulus;
+        (modulus * error.of_cell[cell] / error.volumes[cell]).sqrt()
+    });
+    let has_jumps = !solution.facet_points.is_empty();
+    Accuracy {
+        relative: error.relative(),
+        stress_errors: stress_errors.collect(),
+        jumps: (of_jumps && has_jumps)
+            .then(|| of_all_jumps(&estimator, system, newton, solution, &error))
+            .flatten(),
+    }
+}
+
+fn of_all_jumps(
+    estimator: &Estimator,
+    system: &System<'_>,
+    newton: &mut Newton,
+    solution: &Solution,
+    stress: &StressError,
+) -> Option<JumpAccuracy> {
+    let points = &system.discretisation.interface.points;
+    let results = &solution.facet_points;
+    let largest =
+        |of: fn(&lie_solver::FacetResult) -> f64| results.iter().map(of).fold(0.0, f64::max);
+    let largest_jump = largest(|result| result.jump.length());
+    let floor = ITERATION * largest_jump;
+    let mut mean_error = |directions: &[DVec3]| {
+        estimator
+            .mean_error(system, newton, directions, stress)
+            .ok()
+    };
+    let normals: Vec<DVec3> = points.iter().map(|point| point.normal).collect();
+    let opening = mean_error(&normals)?;
+    let slips = largest(|result| result.slip.length()) > SLIPS * largest_jump;
+    let along: Vec<DVec3> = results.iter().map(|r| r.slip.normalize_or_zero()).collect();
+    let slip = if slips {
+        Some(mean_error(&along)?)
+    } else {
+        None
+    };
+    let mut mean_jump = vec![(0.0, 0.0); system.problem.fractures.len()];
+    for (point, result) in points.iter().zip(results) {
+        let (sum, area) = &mut mean_jump[point.fracture as usize];
+        *sum += point.area * result.jump.length();
+        *area += point.area;
+    }
+    let of_cell = (0..stress.of_cell.len()).map(|cell| {
+        let fracture = estimator.nearest_fracture[cell] as usize;
+        let Some((sum, area)) = mean_jump.get(fracture).filter(|(sum, _)| *sum > 0.0) else {
+            return 0.0;
+        };
+        let of_slip = slip.as_ref().map_or(0.0, |slip| slip.of_cell[cell]);
+        SAFETY * (opening.of_cell[cell] + of_slip) * area / sum
+    });
+    let uncertainty = |error: &MeanError| -> Vec<f64> {
+        let errors = error.of_fracture.iter();
+        errors.map(|error| SAFETY * error + floor).collect()
+    };
+    Some(JumpAccuracy {
+        of_cell: of_cell.collect(),
+        aperture: uncertainty(&opening),
+        slip: slip.as_ref().map(uncertainty),
+    })
+}
+
+impl Accuracy {
+    /// Adds the errors of jumps to the numbers of the fractures.
+    pub fn note_in(&self, fractures: &mut [(String, FractureSummary)]) {
+        let Some(jumps) = &self.jumps else {
+            return;
+        };
+        for (index, (_, summary)) in fractures.iter_mut().enumerate() {
+            summary.aperture_uncertainty = Some(jumps.aperture[index]);
+            summary.slip_uncertainty = jumps.slip.as_ref().map(|slip| slip[index]);
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! Closed forms that a scene may name for a fracture, and how far a run is from them.
+//!
+//! All of them have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance from
+//! the centre as a share of the radius: cracks in unbounded rock, opened by a pressure `p` or sheared by
+//! a stress drop `tau`. With `nu`, `E`, `mu = E / (2 (1 + nu))` of the rock:
+//!
+//! - disc ("penny"), opening `8 (1 - nu^2) p a / (pi E)` (I. N. Sneddon, Proc. R. Soc. A 187, 1946),
+//!   slip `8 (1 - nu) tau a / (pi (2 - nu) mu)` (C. M. Segedin, Proc. Camb. Phil. Soc. 47, 1951);
+//! - strip ("line"), opening and slip `4 (1 - nu^2) p a / E` (A. A. Griffith, Phil. Trans. R. Soc. A 221, 1921);
+//! - "uniform": the same everywhere, as given.
+
+mod front;
+mod measures;
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use lie_core::Rock;
+
+use crate::reader::{Accept, Section};
+pub use measures::{Measure, measures};
+
+/// Share of the radius next to the front that measures "inside" leave out, unless given.
+const RING: f64 = 0.1;
+
+/// The closed form of one fracture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oracle {
+    extent: Extent,
+    opening: Option<Amount>,
+    slip: Option<Amount>,
+    normal_traction: Option<f64>,
+    ring: f64,
+}
+
+/// Where the fracture lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Extent {
+    Disc {
+        centre: DVec3,
+        radius: f64,
+    },
+    /// Endless across `along` in its plane.
+    Strip {
+        centre: DVec3,
+        along: DVec3,
+        half_length: f64,
+    },
+    Everywhere,
+}
+
+/// What a closed form follows from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Amount {
+    /// A pressure or a stress drop (Pa).
+    Stress(f64),
+    /// The value itself (m).
+    Length(f64),
+}
+
+/// One component of a jump in closed form.
+#[derive(Debug, Clone, Copy)]
+struct Profile {
+    extent: Extent,
+    /// Value at the centre (m).
+    amplitude: f64,
+}
+
+impl Oracle {
+    /// Opening in closed form, in this rock.
+    fn opening(&self, rock: &Rock) -> Option<Profile> {
+        let (e, nu) = (rock.young_modulus, rock.poisson_ratio);
+        let per_stress = match self.extent {
+            Extent::Disc { radius, .. } => 8.0 * (1.0 - nu * nu) * radius / (PI * e),
+            Extent::Strip { half_length, .. } => 4.0 * (1.0 - nu * nu) * half_length / e,
+            Extent::Everywhere => 0.0,
+        };
+        self.profile(self.opening, per_stress)
+    }
+
+    /// Magnitude of the slip in closed form, in this rock.
+    fn slip(&self, rock: &Rock) -> Option<Profile> {
+        let (e, nu) = (rock.young_modulus, rock.poisson_ratio);
+        let mu = e / (2.0 * (1.0 + nu));
+        let per_stress = match self.extent {
+            Extent::Disc { radius, .. } => 8.0 * (1.0 - nu) * radius / (PI * (2.0 - nu) * mu),
+            Extent::Strip { half_length, .. } => 4.0 * (1.0 - nu * nu) * half_length / e,
+            Extent::Everywhere => 0.0,
+        };
+        self.profile(self.slip, per_stress)
+    }
+
+    fn profile(&self, amount: Option<Amount>, per_stress: f64) -> Option<Profile> {
+        let amplitude = match amount? {
+            Amount::Stress(stress) => stress * per_stress,
+            Amount::Length(length) => length,
+        };
+        Some(Profile {
+            extent: self.extent,
+            amplitude,
+        })
+    }
+
+    /// `K_I` of the opening pressure (Pa sqrt(m)): `2 p sqrt(a / pi)` of a disc, `p sqrt(pi a)` of a
+    /// strip.
+    fn stress_intensity(&self) -> Option<f64> {
+        let Some(Amount::Stress(p)) = self.opening else {
+            return None;
+        };
+        match self.extent {
+            Extent::Disc { radius, .. } => Some(2.0 * p * (radius / PI).sqrt()),
+            Extent::Strip { half_length, .. } => Some(p * (PI * half_length).sqrt()),
+            Extent::Everywhere => None,
+        }
+    }
+}
+
+impl Extent {
+    /// Distance from the centre as a share of the radius.
+    fn rho(&self, x: DVec3) -> f64 {
+        match *self {
+            Self::Disc { centre, radius } => (x - centre).length() / radius,
+            Self::Strip {
+                centre,
+                along,
+                half_length,
+            } => (x - centre).dot(along).abs() / half_length,
+            Self::Everywhere => 0.0,
+        }
+    }
+
+    /// Radius or half-length (m).
+    fn radius(&self) -> Option<f64> {
+        match *self {
+            Self::Disc { radius, .. } => Some(radius),
+            Self::Strip { half_length, .. } => Some(half_length),
+            Self::Everywhere => None,
+        }
+    }
+}
+
+impl Profile {
+    /// The value at a place.
+    fn at(&self, x: DVec3) -> f64 {
+        let rho = self.extent.rho(x);
+        self.amplitude * (1.0 - rho * rho).max(0.0).sqrt()
+    }
+
+    /// Integral over a fracture whose facets have this area (m^2).
+    fn volume(&self, area: f64) -> f64 {
+        match self.extent {
+            Extent::Disc { radius, .. } => 2.0 / 3.0 * PI * radius * radius * self.amplitude,
+            Extent::Strip { .. } => 0.25 * PI * area * self.amplitude,
+            Extent::Everywhere => area * self.amplitude,
+        }
+    }
+}
+
+const FORMS: [&str; 3] = ["penny", "line", "uniform"];
+
+/// Reads the section of one fracture.
+pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
+    section.require("form", "\"penny\"");
+    let name = section.text("form");
+    if let Some(name) = name.filter(|name| !FORMS.contains(name)) {
+        section.refuse(
+            "form",
+            format!("unknown closed form \"{name}\""),
+            "write \"penny\" (a disc), \"line\" (plane strain) or \"uniform\"",
+        );
+    }
+    let centre = || section.vector("centre").map(DVec3::from);
+    let extent = match name? {
+        "penny" => {
+            section.require("centre", "[0, 0, 0]");
+            section.require("radius", "1.0");
+            let (centre, radius) = (centre(), section.number("radius", Accept::Positive));
+            centre
+                .zip(radius)
+                .map(|(centre, radius)| Extent::Disc { centre, radius })
+        }
+        "line" => read_strip(section, centre),
+        "uniform" => Some(Extent::Everywhere),
+        _ => None,
+    };
+    let crack = name? != "uniform";
+    let stress = |key| section.number(key, Accept::Finite).map(Amount::Stress);
+    let length = |key| section.number(key, Accept::Finite).map(Amount::Length);
+    let (opening, slip) = match crack {
+        true => (stress("pressure"), stress("stress_drop")),
+        false => (length("opening"), length("slip")),
+    };
+    let normal_traction = section.number("normal_traction", Accept::Finite);
+    let ring = section.number("ring", Accept::Between(0.0, 1.0));
+    let is_known = FORMS.contains(&name?);
+    if is_known && opening.is_none() && slip.is_none() && normal_traction.is_none() {
+        let keys = match crack {
+            true => "`pressure`, `stress_drop` (Pa) and `normal_traction`",
+            false => "`opening`, `slip` (m) and `normal_traction`",
+        };
+        section.refuse(
+            "form",
+            "the closed form says nothing".into(),
+            format!("give at least one of {keys}"),
+        );
+        return None;
+    }
+    Some(Oracle {
+        extent: extent?,
+        opening,
+        slip,
+        normal_traction,
+        ring: if crack { ring.unwrap_or(RING) } else { 0.0 },
+    })
+}
+
+fn read_strip(section: &Section<'_, '_>, centre: impl Fn() -> Option<DVec3>) -> Option<Extent> {
+    for (key, example) in [
+        ("centre", "[0, 0, 0]"),
+        ("along", "[1, 0, 0]"),
+        ("half_length", "1.0"),
+    ] {
+        section.require(key, example);
+    }
+    let along = section.vector("along").map(DVec3::from);
+    let direction = along.and_then(DVec3::try_normalize);
+    if along.is_some() && direction.is_none() {
+        section.refuse(
+            "along",
+            "`along` has no direction".into(),
+            "give the direction from the middle of the crack to its front, in its plane",
+        );
+    }
+    Some(Extent::Strip {
+        centre: centre()?,
+        along: direction?,
+        half_length: section.number("half_length", Accept::Positive)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROCK: Rock = Rock {
+        young_modulus: 25e9,
+        poisson_ratio: 0.25,
+        density: 0.0,
+    };
+
+    fn disc() -> Oracle {
+        Oracle {
+            extent: Extent::Disc {
+                centre: DVec3::ZERO,
+                radius: 1.0,
+            },
+            opening: Some(Amount::Stress(2e6)),
+            slip: Some(Amount::Stress(2e6)),
+            normal_traction: None,
+            ring: RING,
+        }
+    }
+
+    fn near(found: f64, expected: f64) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+    }
+
+    /// Numbers of the literature for E = 25 GPa, nu = 0.25, 2 MPa, radius 1 m.
+    #[test]
+    fn a_disc_has_published_values() {
+        let opening = disc().opening(&ROCK).expect("an opening");
+        near(opening.at(DVec3::ZERO), 1.909859e-4);
+        near(opening.volume(0.0), 4.0e-4);
+        near(disc().stress_intensity().expect("K_I"), 2.256758e6);
+        near(
+            disc().slip(&ROCK).expect("a slip").at(DVec3::ZERO),
+            2.182696e-4,
+        );
+        assert_eq!(opening.at(DVec3::X), 0.0);
+    }
+
+    #[test]
+    fn a_strip_has_published_values() {
+        let extent = Extent::Strip {
+            centre: DVec3::ZERO,
+            along: DVec3::X,
+            half_length: 1.0,
+        };
+        let strip = Oracle { extent, ..disc() };
+        let opening = strip.opening(&ROCK).expect("an opening");
+        near(opening.at(DVec3::new(0.0, 7.0, 0.0)), 3.0e-4);
+        near(opening.volume(2.0), 4.712389e-4);
+        near(strip.stress_intensity().expect("K_I"), 3.544908e6);
+    }
+}
