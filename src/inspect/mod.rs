@@ -76,6 +76,7 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
 const ONE_STEP: Workload = Workload {
     steps: 1,
     is_nonlinear: true,
+    is_smooth: true,
     is_path_dependent: false,
 };
 

@@ -233,7 +233,15 @@ impl Interface {
 
     /// Adds the forces of the fractures with [`Self::stiffness`] to `product`: `K_ij v_j`.
     pub(crate) fn add_product(&self, stiffness: &[DMat3], vector: &[DVec3], product: &mut [DVec3]) {
-        let sums: Vec<DVec3> = (0..self.unknowns.len())
+        let sums = self.resistance(stiffness, vector);
+        for (&row, sum) in self.unknowns.iter().zip(sums) {
+            product[row as usize] += sum;
+        }
+    }
+
+    /// Forces of the fractures with [`Self::stiffness`] on each of `unknowns`: `K_ij v_j`.
+    pub(crate) fn resistance(&self, stiffness: &[DMat3], vector: &[DVec3]) -> Vec<DVec3> {
+        (0..self.unknowns.len())
             .into_par_iter()
             .map(|index| {
                 let range = self.columns.offset[index]..self.columns.offset[index + 1];
@@ -243,10 +251,7 @@ impl Interface {
                     .map(|(block, &column)| *block * vector[column as usize])
                     .sum()
             })
-            .collect();
-        for (&row, sum) in self.unknowns.iter().zip(sums) {
-            product[row as usize] += sum;
-        }
+            .collect()
     }
 
     fn stiffness_row(&self, row: usize, tangents: &[DMat3]) -> Vec<DMat3> {

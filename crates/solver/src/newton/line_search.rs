@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::{
-    Iteration, Linearisation, Newton, Outcome, StepRecord, Trial, assess, interface, walls,
+    Iteration, Linearisation, Newton, Outcome, StepRecord, Trial, assess, interface, largest, walls,
 };
 use crate::linear::Tangents;
 use crate::schedule::Load;
@@ -87,7 +87,8 @@ impl Newton {
             &interface(system).jumps(correction, &Load::NONE),
             tangents,
         );
-        let iteration = assess(system, trial, correction, &errors, record)?;
+        let change = largest(&system.displacements(correction, &Load::NONE));
+        let iteration = assess(system, trial, change, &errors, record)?;
         trial.merit = Some(merit(&iteration));
         Ok(iteration)
     }
