@@ -191,7 +191,7 @@ fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> G
 fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
     let mesh = &system.problem.mesh;
     let elements = &mesh.facets.elements;
-    let results = &solution.facet_points[..elements.nodes.len()];
+    let results = &solution.facet_nodes(system.problem, &system.discretisation.interface);
     let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
         results.iter().flat_map(move |result| of(result).to_array())
     };

@@ -3,8 +3,8 @@
 //! The jump of a facet point is `w = sum_i J_i y_i + sum_c f_c w_c`, over the unknowns `y_i` of its nodes,
 //! with `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))`, and over the load cases `c` with their
 //! factors `f_c` and the jumps `w_c` of their prescribed displacements.
-//! Facets are integrated at their nodes, so with few exceptions (see `lie_core::facet_points`) a
-//! facet point couples the unknowns of one node only. Without supports the coefficient of a
+//! Facets are integrated at their nodes, so with few exceptions (facets of second order, see
+//! `lie_core::facet_points`) a facet point couples the unknowns of one node only. Without supports the coefficient of a
 //! continuous displacement is zero and left out: the fractures act on the jumps alone.
 
 use glam::{DMat3, DVec3};
@@ -79,8 +79,8 @@ struct PrescribedJump {
 /// All facet points and how the unknowns move them.
 #[derive(Debug, Clone)]
 pub struct Interface {
-    /// The facet points. With the nodal rule the first ones are the nodes of the facets, in the
-    /// order of [`lie_mesh::Facets::elements`]' flat node list; middle points follow.
+    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
+    /// in the order of [`lie_mesh::Facets::elements`]' flat node list; middle points follow.
     pub points: Vec<FacetPoint>,
     /// Start of the terms of each facet point.
     term_offset: Vec<usize>,
@@ -131,7 +131,7 @@ impl Interface {
             interface.terms.extend(drawn.terms);
             interface.term_offset.push(interface.terms.len());
         }
-        if problem.facet_quadrature == FacetQuadrature::Nodal {
+        if problem.facet_quadrature != FacetQuadrature::Gauss {
             share_springs(problem, points, &mut interface.points);
         }
         interface.connect();
@@ -320,15 +320,16 @@ fn draw(
         .iter()
         .map(|&node| mesh.nodes[node as usize])
         .collect();
-    let rule = facet_points(elements.shapes[facet], &positions, problem.facet_quadrature);
+    let quadrature = problem.rule_of(mesh.facets.fracture[facet]);
+    let rule = facet_points(elements.shapes[facet], &positions, quadrature);
     let mean: DVec3 = rule.iter().map(|point| point.area).sum();
     let spring = spring(problem, facet, mean.length());
     let mut drawn: Vec<Drawn> = rule
         .iter()
         .map(|point| draw_point(problem, points, supports, (facet, spring, mean), point))
         .collect();
-    let nodal = match problem.facet_quadrature {
-        FacetQuadrature::Nodal => nodes.len(),
+    let nodal = match quadrature {
+        FacetQuadrature::Nodal | FacetQuadrature::Control => nodes.len(),
         FacetQuadrature::Gauss => 0,
     };
     let others = drawn.split_off(nodal);
