@@ -19,7 +19,7 @@ PROJECT = """<?xml version="1.0" encoding="ISO-8859-1"?>
         <process>
             <name>SD</name>
             <type>SMALL_DEFORMATION_WITH_LIE</type>
-            <integration_order>2</integration_order>
+            <integration_order>{integration_order}</integration_order>
             <process_variables>
                 <process_variable>displacement</process_variable>
                 <process_variable>displacement_jump1</process_variable>
@@ -99,7 +99,7 @@ PROJECT = """<?xml version="1.0" encoding="ISO-8859-1"?>
         <process_variable>
             <name>displacement</name>
             <components>3</components>
-            <order>1</order>
+            <order>{order}</order>
             <initial_condition>rest</initial_condition>
             <boundary_conditions>
 {displacement}
@@ -108,7 +108,7 @@ PROJECT = """<?xml version="1.0" encoding="ISO-8859-1"?>
         <process_variable>
             <name>displacement_jump1</name>
             <components>3</components>
-            <order>1</order>
+            <order>{order}</order>
             <initial_condition>rest</initial_condition>
             <boundary_conditions>
 {jump}
@@ -184,6 +184,8 @@ def project(problem, names, pressure):
     return PROJECT.format(
         meshes="\n".join(f"        <mesh>{name}.vtu</mesh>" for name in names),
         cutoff=problems.CUTOFF,
+        order=1,
+        integration_order=2,
         parameters="\n".join(PARAMETER.format(*item) for item in values.items()),
         displacement="\n".join(displacement),
         jump="\n".join(jump),
@@ -191,10 +193,10 @@ def project(problem, names, pressure):
 
 
 def write_patch(mesh, elements, path):
-    """Writes the elements of a face or a line with the numbers of their nodes and cells in the whole mesh."""
+    """Writes the elements of a face, a line or points with the numbers of their nodes and cells in the whole mesh."""
     nodes = np.unique(elements)
     own = np.searchsorted(nodes, elements)
-    dimension = 1 if elements.shape[1] == 2 else 2
+    dimension = {1: 0, 2: 1}.get(elements.shape[1], 2)
     point_data = {"bulk_node_ids": nodes.astype(np.uint64)}
     cell_data = {"bulk_element_ids": owners(mesh, elements).astype(np.uint64)}
     vtu.write(path, mesh.points[nodes], [(dimension, own)], point_data, cell_data)
@@ -220,7 +222,9 @@ def command(root, folder, case="closed"):
     """What to run: the package's `ogs`, writing its results into `folder`/out."""
     shutil.rmtree(folder / "out", ignore_errors=True)
     (folder / "out").mkdir()
-    return [root / "target/peers/venv/bin/ogs", "-o", folder / "out", folder / f"{case}.prj"]
+    # By its interpreter, because the first line of a script names the folder in which it was installed.
+    programs = root / "target/peers/venv/bin"
+    return [programs / "python", programs / "ogs", "-o", folder / "out", folder / f"{case}.prj"]
 
 
 def facets(folder):

@@ -5,8 +5,8 @@ import vtk
 from vtk.util import numpy_support
 
 TYPES = {1: vtk.VTK_VERTEX, 2: vtk.VTK_LINE, 3: vtk.VTK_TRIANGLE, 8: vtk.VTK_HEXAHEDRON}
-VOLUME_TYPES = TYPES | {4: vtk.VTK_TETRA}
-SURFACE_TYPES = TYPES | {4: vtk.VTK_QUAD}
+VOLUME_TYPES = TYPES | {4: vtk.VTK_TETRA, 10: vtk.VTK_QUADRATIC_TETRA}
+SURFACE_TYPES = TYPES | {4: vtk.VTK_QUAD, 6: vtk.VTK_QUADRATIC_TRIANGLE}
 
 
 def write(path, points, blocks, point_data, cell_data):
