@@ -1,0 +1,309 @@
+//! How far each setting is from the closed form, or from what finer and finer meshes approach.
+
+use lie_mesh::{Defect, nearest};
+
+use super::point::{Numbers, Record};
+use super::reference::{Limit, limit};
+use super::settings::{Kind, Plan, Setting};
+use crate::oracle::Measure;
+
+/// What is charted.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Target {
+    /// Name of the measure.
+    pub(super) name: String,
+    /// Its fracture; none for the whole body.
+    pub(super) fracture: Option<String>,
+    /// Whether closed forms give its errors.
+    pub(super) is_compared: bool,
+}
+
+/// What settings of one physics are compared with, where there is no closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Reference {
+    /// The physics: choices of closure and values.
+    key: Vec<usize>,
+    /// The settings it was extrapolated from.
+    pub(super) from: String,
+    /// The limit.
+    pub(super) limit: Limit,
+}
+
+/// What came out of a setting.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Verdict {
+    /// Value of the measure, if it is one number.
+    pub(super) value: Option<f64>,
+    /// What it should be.
+    pub(super) reference: Option<f64>,
+    /// Error as a share of that.
+    pub(super) error: Option<f64>,
+    /// Uncertainty of the reference as a share; 0 of a closed form.
+    pub(super) uncertainty: f64,
+}
+
+impl Verdict {
+    /// Largest error it may have.
+    pub(super) fn at_most(&self) -> Option<f64> {
+        self.error.map(|error| error + self.uncertainty)
+    }
+}
+
+/// All settings with the same choices but for the mesh, in the order of their unknowns.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Series {
+    /// What its settings share.
+    pub(super) name: String,
+    /// Indices of its settings.
+    pub(super) settings: Vec<usize>,
+}
+
+/// What is known of a study so far.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Assessment {
+    /// What is charted; none before a setting was solved.
+    pub(super) target: Option<Target>,
+    /// What it is compared with, where there is no closed form.
+    pub(super) references: Vec<Reference>,
+    /// One entry for each setting.
+    pub(super) verdicts: Vec<Verdict>,
+    /// All settings, by series.
+    pub(super) series: Vec<Series>,
+}
+
+/// Assesses what has been run; `records` has an entry for each setting.
+///
+/// # Errors
+/// A measure that no run knows.
+pub(super) fn assess(plan: &Plan, records: &[Option<Record>]) -> Result<Assessment, Defect> {
+    let done: Vec<Option<&Numbers>> = records
+        .iter()
+        .map(|record| record.as_ref().and_then(Record::numbers))
+        .collect();
+    let target = target(plan, &done)?;
+    let extrapolates = target.as_ref().filter(|target| !target.is_compared);
+    let references = extrapolates.map_or_else(Vec::new, |target| references(plan, &done, target));
+    let verdict = |(setting, numbers): (&Setting, &Option<&Numbers>)| {
+        let measure = numbers.and_then(|numbers| find(numbers, target.as_ref()?));
+        let key = reference_key(plan, setting);
+        let reference = references.iter().find(|reference| reference.key == key);
+        measure.map_or_else(Verdict::default, |measure| judged(measure, reference))
+    };
+    Ok(Assessment {
+        verdicts: plan.settings.iter().zip(&done).map(verdict).collect(),
+        series: series(plan, &done),
+        target,
+        references,
+    })
+}
+
+fn judged(measure: &Measure, reference: Option<&Reference>) -> Verdict {
+    let Some(Reference { limit, .. }) = reference else {
+        return Verdict {
+            value: measure.value,
+            reference: measure.exact,
+            error: measure.error,
+            uncertainty: 0.0,
+        };
+    };
+    let share =
+        |difference: f64| Some(difference.abs() / limit.value.abs()).filter(|e| e.is_finite());
+    Verdict {
+        value: measure.value,
+        reference: Some(limit.value),
+        error: measure.value.and_then(|value| share(value - limit.value)),
+        uncertainty: share(limit.uncertainty).unwrap_or(f64::INFINITY),
+    }
+}
+
+fn find<'a>(numbers: &'a Numbers, target: &Target) -> Option<&'a Measure> {
+    let fits =
+        |measure: &&Measure| measure.name == target.name && measure.fracture == target.fracture;
+    numbers.measures.iter().find(fits)
+}
+
+fn target(plan: &Plan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defect> {
+    let wish = &plan.wish;
+    let Some(first) = done.iter().flatten().next() else {
+        return Ok(None);
+    };
+    let all = || done.iter().flatten().flat_map(|numbers| &numbers.measures);
+    let on = |measure: &&Measure| wish.fracture.is_none() || measure.fracture == wish.fracture;
+    let named = |name: &str| all().filter(on).find(|measure| measure.name == name);
+    let compared = || all().filter(on).find(|measure| measure.error.is_some());
+    let of_largest = || {
+        let is_largest = |measure: &&Measure| {
+            wish.fracture.is_some() || measure.fracture == first.largest_fracture
+        };
+        let mean = |measure: &&Measure| measure.name == "mean_aperture";
+        all().filter(on).filter(is_largest).find(mean)
+    };
+    let found = match &wish.measure {
+        Some(name) => named(name),
+        None => compared().or_else(of_largest).or_else(|| all().find(on)),
+    };
+    let Some(found) = found else {
+        return Err(unknown(plan, first));
+    };
+    let alike = |other: &&Measure| other.name == found.name && other.fracture == found.fracture;
+    Ok(Some(Target {
+        name: found.name.clone(),
+        fracture: found.fracture.clone(),
+        is_compared: all().filter(alike).any(|measure| measure.error.is_some()),
+    }))
+}
+
+fn unknown(plan: &Plan, numbers: &Numbers) -> Defect {
+    let wish = &plan.wish;
+    let wanted = wish.measure.as_deref().unwrap_or("any");
+    let on = wish
+        .fracture
+        .as_ref()
+        .map_or_else(String::new, |name| format!(" on `{name}`"));
+    let known = numbers
+        .measures
+        .iter()
+        .map(|measure| match &measure.fracture {
+            Some(fracture) => format!("{} of {fracture}", measure.name),
+            None => measure.name.clone(),
+        });
+    let known = known.collect::<Vec<_>>().join(", ");
+    let near = nearest(
+        wanted,
+        numbers.measures.iter().map(|measure| measure.name.as_str()),
+    );
+    let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
+    let problem = format!("the runs have no measure `{wanted}`{on}");
+    Defect::new(
+        wish.place.as_str(),
+        problem,
+        format!("{near}measures of the runs: {known}"),
+    )
+}
+
+/// The physics that a setting is compared with: its own, or that of the closure asked for.
+fn reference_key(plan: &Plan, setting: &Setting) -> Vec<usize> {
+    let mut setting = setting.clone();
+    let closure = plan.dimensions.iter().position(|d| d.kind == Kind::Closure);
+    if let (Some(label), Some(closure)) = (&plan.wish.reference, closure) {
+        let choices = &plan.dimensions[closure].choices;
+        let named = choices.iter().position(|choice| choice.label == *label);
+        setting.choices[closure] = named.unwrap_or(setting.choices[closure]);
+    }
+    plan.key(&setting, Kind::is_physics)
+}
+
+/// The limit of every physics with three meshes of one series: of the highest order, and of the first
+/// facet rule and solver that have them.
+fn references(plan: &Plan, done: &[Option<&Numbers>], target: &Target) -> Vec<Reference> {
+    let mut found: Vec<(f64, Reference)> = Vec::new();
+    for series in series(plan, done) {
+        let numbers = series.settings.iter().filter_map(|&i| Some((i, done[i]?)));
+        let values = numbers.filter_map(|(i, n)| Some((i, n.cells, find(n, target)?.value?)));
+        let values: Vec<(usize, usize, f64)> = values.collect();
+        let sizes = values
+            .iter()
+            .map(|(_, cells, value)| ((*cells as f64).cbrt().recip(), *value));
+        let Some(limit) = limit(&sizes.collect::<Vec<_>>()) else {
+            continue;
+        };
+        let setting = &plan.settings[series.settings[0]];
+        let key = plan.key(setting, Kind::is_physics);
+        let order = order(plan, setting);
+        let cells = values
+            .iter()
+            .rev()
+            .take(3)
+            .map(|(_, cells, _)| cells.to_string());
+        let cells = cells.collect::<Vec<_>>().join(", ");
+        let reference = Reference {
+            from: format!("{} with {cells} cells", series.name),
+            key,
+            limit,
+        };
+        match found
+            .iter_mut()
+            .find(|(_, other)| other.key == reference.key)
+        {
+            Some(other) if other.0 < order => *other = (order, reference),
+            Some(_) => {}
+            None => found.push((order, reference)),
+        }
+    }
+    found.into_iter().map(|(_, reference)| reference).collect()
+}
+
+fn order(plan: &Plan, setting: &Setting) -> f64 {
+    let chosen = plan.dimensions.iter().zip(&setting.choices);
+    let mut orders = chosen.filter(|(dimension, _)| dimension.kind == Kind::Order);
+    let number = orders
+        .next()
+        .and_then(|(dimension, &choice)| dimension.choices[choice].number);
+    number.unwrap_or(1.0)
+}
+
+/// All settings by series, in the order of the dimensions.
+fn series(plan: &Plan, done: &[Option<&Numbers>]) -> Vec<Series> {
+    let but_mesh = |kind: Kind| kind != Kind::Mesh;
+    let mut found: Vec<(Vec<usize>, Series)> = Vec::new();
+    for (i, setting) in plan.settings.iter().enumerate() {
+        let key = plan.key(setting, but_mesh);
+        match found.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, series)) => series.settings.push(i),
+            None => {
+                let name = plan.name(setting, but_mesh);
+                let name = if name.is_empty() {
+                    "all meshes".into()
+                } else {
+                    name
+                };
+                let settings = vec![i];
+                found.push((key, Series { name, settings }));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    let mut all: Vec<Series> = found.into_iter().map(|(_, series)| series).collect();
+    for series in &mut all {
+        series
+            .settings
+            .sort_by_key(|&i| done[i].map_or(usize::MAX, |numbers| numbers.unknowns));
+    }
+    all
+}
+
+impl Assessment {
+    /// Points of a series that have an error, over some number of theirs.
+    pub(super) fn points(
+        &self,
+        series: &Series,
+        records: &[Option<Record>],
+        x: impl Fn(&Numbers) -> f64,
+    ) -> Vec<(f64, f64)> {
+        let point = |&i: &usize| {
+            let numbers = records[i].as_ref()?.numbers()?;
+            Some((x(numbers), self.drawn_error(i)?))
+        };
+        series.settings.iter().filter_map(point).collect()
+    }
+
+    /// Error of a setting to six digits: what differs by rounding beats nothing.
+    pub(super) fn drawn_error(&self, index: usize) -> Option<f64> {
+        let error = self.verdicts[index].error?;
+        format!("{error:.5e}").parse().ok()
+    }
+
+    /// Largest uncertainty of a reference, as a share; 0 where there is a closed form.
+    pub(super) fn uncertainty(&self) -> f64 {
+        let finite = self
+            .verdicts
+            .iter()
+            .filter(|verdict| verdict.error.is_some());
+        finite
+            .map(|verdict| verdict.uncertainty)
+            .fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests;
