@@ -204,12 +204,13 @@ fn references(plan: &Plan, done: &[Option<&Numbers>], target: &Target) -> Vec<Re
         let sizes = values
             .iter()
             .map(|(_, cells, value)| ((*cells as f64).cbrt().recip(), *value));
-        let Some(limit) = limit(&sizes.collect::<Vec<_>>()) else {
+        let setting = &plan.settings[series.settings[0]];
+        let order = order(plan, setting);
+        // Numbers that sum up a solution converge at most twice as fast as its order.
+        let Some(limit) = limit(&sizes.collect::<Vec<_>>(), 2.0 * order) else {
             continue;
         };
-        let setting = &plan.settings[series.settings[0]];
         let key = plan.key(setting, Kind::is_physics);
-        let order = order(plan, setting);
         let cells = values
             .iter()
             .rev()
@@ -239,7 +240,9 @@ fn order(plan: &Plan, setting: &Setting) -> f64 {
     let number = orders
         .next()
         .and_then(|(dimension, &choice)| dimension.choices[choice].number);
-    number.unwrap_or(1.0)
+    let own = plan.scene.get("mesh").and_then(|mesh| mesh.get("order"));
+    let own = own.and_then(toml::Value::as_integer).unwrap_or(1);
+    number.unwrap_or(own as f64)
 }
 
 /// All settings by series, in the order of the dimensions.

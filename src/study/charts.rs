@@ -5,7 +5,7 @@ use super::assess::{Assessment, Series};
 use super::point::Numbers;
 use super::reference::slope;
 use super::settings::Kind;
-use super::words::{percent, unit};
+use super::words::{or_the_scene, percent, unit};
 use crate::chart::{Axis, Band, Chart, Series as Line};
 
 /// Most series on a chart; more cannot be told apart.
@@ -72,11 +72,10 @@ fn errors(
 ) -> Named {
     let line = |series: &Series| {
         let points = found.points(series, &study.records, x);
-        // Times that fall from mesh to mesh are noise.
+        // Times that fall from mesh to mesh are noise, and errors that do not shrink have no rate.
         let grows = points.is_sorted_by(|a, b| a.0 < b.0);
-        let note = slope(&points)
-            .filter(|_| grows)
-            .map(|slope| format!("{slope:.2}").replace('-', "−"));
+        let slope = slope(&points).filter(|slope| grows && *slope < -0.005);
+        let note = slope.map(|slope| format!("{slope:.2}").replace('-', "−"));
         Line {
             note,
             ..Line::line(series.name.clone(), points)
@@ -139,58 +138,22 @@ fn keep_best(lines: &mut Vec<Line>) -> Option<String> {
 
 /// The measure over a value that is swept, or its error if the measure is no number.
 fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<Named> {
-    let plan = &study.plan;
-    let swept = &plan.dimensions[dimension];
+    let swept = &study.plan.dimensions[dimension];
     let is_number = found.verdicts.iter().any(|verdict| verdict.value.is_some());
-    let mut lines: Vec<(Vec<usize>, Line)> = Vec::new();
-    for (i, setting) in plan.settings.iter().enumerate() {
-        let verdict = found.verdicts[i];
-        let y = if is_number {
-            verdict.value
-        } else {
-            verdict.error
-        };
-        let x = swept.choices[setting.choices[dimension]].number;
-        let (Some(x), Some(y)) = (x, y) else {
-            continue;
-        };
-        let mut key = setting.choices.clone();
-        key.remove(dimension);
-        match lines.iter_mut().find(|(other, _)| *other == key) {
-            Some((_, line)) => line.points.push((x, y)),
-            None => {
-                let others = plan.dimensions.iter().enumerate();
-                let others = others.filter(|(i, d)| *i != dimension && d.choices.len() > 1);
-                let labels: Vec<&str> = others.map(|(i, _)| plan.label(setting, i)).collect();
-                let name = if labels.is_empty() {
-                    "the scene".into()
-                } else {
-                    labels.join(", ")
-                };
-                lines.push((key, Line::line(name, vec![(x, y)])));
-            }
-        }
-    }
-    lines.sort_by(|a, b| a.0.cmp(&b.0));
-    let count = lines.len();
-    let mut series: Vec<Line> = lines.into_iter().map(|(_, line)| line).collect();
-    for line in &mut series {
-        line.points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    }
-    // The last series are those of the finest meshes and highest orders.
-    series.drain(..count.saturating_sub(MOST_SERIES));
-    let left_out = (count > MOST_SERIES)
-        .then(|| format!("{} of {count} series are not shown.", count - MOST_SERIES));
-    if series.is_empty() {
-        return None;
-    }
+    let of = |i: usize| match is_number {
+        true => found.verdicts[i].value,
+        false => found.verdicts[i].error,
+    };
+    let mut series = lines_over(study, dimension, of);
+    // Finer meshes and higher orders are mostly listed last.
+    let too_many = series.len().saturating_sub(MOST_SERIES);
+    let left_out =
+        (too_many > 0).then(|| format!("{too_many} of {} series are not shown.", series.len()));
+    series.drain(..too_many);
+    let target = found.target.as_ref().filter(|_| !series.is_empty())?;
     let subject = capital(&subject(found));
-    let name = found
-        .target
-        .as_ref()
-        .map_or("", |target| target.name.as_str());
     let title = match is_number {
-        true => format!("{subject}{}", unit(name)),
+        true => format!("{subject}{}", unit(&target.name)),
         false => "relative error".into(),
     };
     let points = || series.iter().flat_map(|line| &line.points);
@@ -206,6 +169,37 @@ fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<Nam
         chart: Chart { series, ..chart },
         left_out,
     })
+}
+
+/// Something of each setting over its value in a dimension, one line for each combination of the others.
+fn lines_over(study: &Study, dimension: usize, of: impl Fn(usize) -> Option<f64>) -> Vec<Line> {
+    let plan = &study.plan;
+    let mut lines: Vec<(Vec<usize>, Line)> = Vec::new();
+    for (i, setting) in plan.settings.iter().enumerate() {
+        let number = plan.dimensions[dimension].choices[setting.choices[dimension]].number;
+        let (Some(x), Some(y)) = (number, of(i)) else {
+            continue;
+        };
+        let mut key = setting.choices.clone();
+        key.remove(dimension);
+        match lines.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, line)) => line.points.push((x, y)),
+            None => {
+                let others = plan.dimensions.iter().enumerate();
+                let others = others.filter(|(i, d)| *i != dimension && d.choices.len() > 1);
+                let labels: Vec<&str> = others.map(|(i, _)| plan.label(setting, i)).collect();
+                lines.push((
+                    key,
+                    Line::line(or_the_scene(labels.join(", ")), vec![(x, y)]),
+                ));
+            }
+        }
+    }
+    lines.sort_by(|a, b| a.0.cmp(&b.0));
+    for (_, line) in &mut lines {
+        line.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+    lines.into_iter().map(|(_, line)| line).collect()
 }
 
 /// Logarithmic where values differ by more than a factor of 20 and are positive.

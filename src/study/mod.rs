@@ -29,7 +29,7 @@ use assess::{Assessment, assess};
 use machine::Machine;
 use point::{Outcome, Record, Runner};
 use settings::Plan;
-use words::{duration, percent};
+use words::{duration, or_the_scene, percent};
 
 /// How to study a scene.
 #[derive(Debug, Clone)]
@@ -198,12 +198,7 @@ impl Study {
 
     /// What a setting is called.
     fn name(&self, index: usize) -> String {
-        let name = self.plan.name(&self.plan.settings[index], |_| true);
-        if name.is_empty() {
-            "the scene".into()
-        } else {
-            name
-        }
+        or_the_scene(self.plan.name(&self.plan.settings[index], |_| true))
     }
 
     /// Wall-clock time of a setting (s); infinite if it was not solved.

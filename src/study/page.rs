@@ -14,8 +14,8 @@ const STYLE: &str = include_str!("page.css");
 pub(super) fn page(study: &Study, found: &Assessment, charts: &[(&Named, String)]) -> String {
     let title = escaped(&study.title);
     let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
          <title>Accuracy against cost: {title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <h1>Accuracy against cost: {title}</h1>\n"
     );
@@ -145,34 +145,29 @@ fn numbers(study: &Study, found: &Assessment) -> String {
         let labels = told
             .iter()
             .map(|&d| format!("<td>{}</td>", escaped(plan.label(setting, d))));
-        let class = if front.contains(&i) {
-            " class=\"best\""
-        } else {
-            ""
-        };
-        let _ = write!(rows, "<tr{class}>{}", labels.collect::<String>());
+        let is_best = front.contains(&i);
+        let class = if is_best { " class=\"best\"" } else { "" };
         let record = study.records[i].as_ref();
-        rows += &match record.and_then(Record::numbers) {
-            Some(numbers) => cells(numbers, found, i),
-            None => {
-                let why = if record.is_some() {
-                    "failed"
-                } else {
-                    "not run"
-                };
-                format!(
-                    "<td class=\"failed\" colspan=\"{}\">{why}</td>",
-                    fixed.len()
-                )
-            }
+        let cells = match (record.and_then(Record::numbers), record) {
+            (Some(numbers), _) => cells(numbers, found, i),
+            (None, Some(_)) => no_cells("failed", fixed.len()),
+            (None, None) => no_cells("not run", fixed.len()),
         };
-        rows += "</tr>\n";
+        let _ = writeln!(
+            rows,
+            "<tr{class}>{}{cells}</tr>",
+            labels.collect::<String>()
+        );
     }
     format!(
         "<h2>Numbers</h2>\n<p class=\"soft\">Cheapest first, as predicted; shaded: beaten by none in both time and \
          error. <code>study.csv</code> has every measure.</p>\n\
          <div class=\"wide\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
     )
+}
+
+fn no_cells(why: &str, count: usize) -> String {
+    format!("<td class=\"failed\" colspan=\"{count}\">{why}</td>")
 }
 
 fn cells(numbers: &Numbers, found: &Assessment, index: usize) -> String {

@@ -150,8 +150,9 @@ impl Runner {
             fingerprint: self.fingerprint(scene),
             outcome: outcome(&output, &folder.join("out/summary.json"), seconds),
         };
-        // Who was killed, by hand or for want of memory, is tried again the next time.
-        if output.status.code().is_some() {
+        // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory); who was
+        // killed, by hand or for want of memory, may be luckier the next time.
+        if matches!(output.status.code(), Some(0 | 1)) {
             write_atomically(&folder.join(RECORD), |out| {
                 serde_json::to_writer_pretty(&mut *out, &record)?;
                 out.write_all(b"\n")

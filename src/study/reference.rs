@@ -16,19 +16,20 @@ pub(super) struct Limit {
 }
 
 /// The limit of values on the three finest of some meshes, each given by the size of its cells and the
-/// value; none of fewer than three sizes.
+/// value; none of fewer than three sizes. A rate above `most` is observed, but not believed: the
+/// extrapolation goes further with `most`, and so does its uncertainty.
 ///
 /// With `f_i = f + C s_i^p` on the sizes `s_1 > s_2 > s_3`, the rate solves
 /// `(f_1 - f_2) / (f_2 - f_3) = (s_1^p - s_2^p) / (s_2^p - s_3^p)`, and
 /// `f = f_3 + (f_3 - f_2) s_3^p / (s_2^p - s_3^p)` (Roache 1994, for refinements that differ).
-pub(super) fn limit(values: &[(f64, f64)]) -> Option<Limit> {
+pub(super) fn limit(values: &[(f64, f64)], most: f64) -> Option<Limit> {
     let mut values: Vec<(f64, f64)> = values.to_vec();
     values.retain(|(size, value)| size.is_finite() && value.is_finite() && *size > 0.0);
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     values.dedup_by(|a, b| a.0 == b.0);
     let &[(s3, f3), (s2, f2), (s1, f1)] = values.first_chunk()?;
     let rate = rate((s1 / s3, s2 / s3), (f1 - f2) / (f2 - f3));
-    let beyond = |rate: f64| (f3 - f2) / ((s2 / s3).powf(rate) - 1.0);
+    let beyond = |rate: f64| (f3 - f2) / ((s2 / s3).powf(rate.min(most)) - 1.0);
     Some(match rate.map(beyond).filter(|beyond| beyond.is_finite()) {
         Some(beyond) => Limit {
             value: f3 + beyond,
@@ -114,7 +115,7 @@ mod tests {
     fn powers_of_the_size_are_extrapolated_exactly() {
         for rate in [0.5, 1.0, 2.0, 3.3] {
             for sizes in [[0.4, 0.2, 0.1], [0.5, 0.31, 0.1], [0.1, 0.11, 0.13]] {
-                let limit = limit(&series(&sizes, rate)).expect("a limit");
+                let limit = limit(&series(&sizes, rate), 4.0).expect("a limit");
                 close(limit.value, 3.0, 1e-10);
                 close(limit.rate.expect("a rate"), rate, 1e-8);
                 let finest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
@@ -127,21 +128,33 @@ mod tests {
     fn only_the_three_finest_count() {
         let mut values = series(&[0.05, 0.2, 0.1], 1.0);
         values.push((0.9, -55.0));
-        close(limit(&values).expect("a limit").value, 3.0, 1e-10);
+        close(limit(&values, 4.0).expect("a limit").value, 3.0, 1e-10);
     }
 
     #[test]
     fn three_different_meshes_are_needed() {
-        assert_eq!(limit(&series(&[0.2, 0.1], 1.0)), None);
-        assert_eq!(limit(&series(&[0.2, 0.1, 0.1], 1.0)), None);
-        assert_eq!(limit(&[(0.4, 1.0), (0.2, f64::NAN), (0.1, 1.0)]), None);
+        assert_eq!(limit(&series(&[0.2, 0.1], 1.0), 4.0), None);
+        assert_eq!(limit(&series(&[0.2, 0.1, 0.1], 1.0), 4.0), None);
+        assert_eq!(limit(&[(0.4, 1.0), (0.2, f64::NAN), (0.1, 1.0)], 4.0), None);
+    }
+
+    #[test]
+    fn rates_that_are_too_good_make_the_limit_less_certain() {
+        let lucky = limit(&series(&[0.4, 0.2, 0.1], 6.0), 2.0).expect("a limit");
+        close(lucky.rate.expect("a rate"), 6.0, 1e-8);
+        let last = 0.7 * (0.2_f64.powi(6) - 0.1_f64.powi(6));
+        close(lucky.uncertainty, last / 3.0, 1e-8);
+        assert!(
+            (lucky.value - 3.0).abs() < lucky.uncertainty,
+            "it covers the limit"
+        );
     }
 
     #[test]
     fn values_that_do_not_settle_have_no_rate_but_an_uncertainty() {
         for values in [[1.0, 2.0, 1.5], [1.0, 1.1, 2.0], [1.0, 1.0, 1.0]] {
             let [coarse, middle, fine] = values;
-            let limit = limit(&[(0.4, coarse), (0.2, middle), (0.1, fine)]).expect("a limit");
+            let limit = limit(&[(0.4, coarse), (0.2, middle), (0.1, fine)], 4.0).expect("a limit");
             assert_eq!((limit.rate, limit.value), (None, fine));
             let spread = values
                 .iter()

@@ -66,15 +66,17 @@ pub(super) fn by_default(scene: &Table, name: &str) -> Result<Vec<Dimension>, Ve
         let remedy = "add a section [study], e.g. meshes = [{ h = 0.2 }, { h = 0.1 }]; `kluft study --help` shows all keys";
         return Err(vec![Defect::new(name, problem, remedy)]);
     }
-    let scaled = |factor: f64| {
+    let scaled = |factor: f64| -> Vec<(String, f64)> {
         let scaled = |(name, size): &(String, f64)| (name.clone(), rounded(factor * size));
-        mesh_choice(&sizes.iter().map(scaled).collect::<Vec<_>>(), scene)
+        sizes.iter().map(scaled).collect()
     };
+    let meshes = SIZES.map(scaled);
+    let choices = meshes.iter().map(|mesh| mesh_choice(mesh, &meshes, scene));
     Ok(vec![
         Dimension {
             name: "mesh".into(),
             kind: Kind::Mesh,
-            choices: SIZES.into_iter().map(scaled).collect(),
+            choices: choices.collect(),
         },
         Dimension {
             name: "order".into(),
@@ -107,42 +109,40 @@ fn is_size(name: &str) -> bool {
 
 fn meshes(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
     let wanted = "parameters of the mesh in braces, e.g. meshes = [{ h = 0.2 }, { h = 0.1 }]";
-    let mut choices = Vec::new();
+    let mut meshes = Vec::new();
     for entry in section.entries("meshes", wanted) {
         match entry {
-            Entry::Section(entry) => choices.push(mesh_choice(&entry.all_numbers(), scene)),
+            Entry::Section(entry) => meshes.push(entry.all_numbers()),
             Entry::Text(text) => {
                 let problem = format!("`meshes` in [study] holds the text \"{text}\"");
                 section.refuse("meshes", problem, format!("write {wanted}"));
             }
         }
     }
-    choices
+    let choices = meshes.iter().map(|mesh| mesh_choice(mesh, &meshes, scene));
+    choices.collect()
 }
 
-/// Cells grow in number with the third power of what their size shrinks by.
-fn mesh_choice(parameters: &[(String, f64)], scene: &Table) -> Choice {
+/// A mesh among others; only what differs is in its label. Cells grow in number with the third power of
+/// what their size shrinks by.
+fn mesh_choice(mesh: &[(String, f64)], all: &[Vec<(String, f64)>], scene: &Table) -> Choice {
     let own = own_sizes(scene);
     let finer = |(name, size): &(String, f64)| {
         let own = own.iter().find(|(own, _)| own == name);
-        let own = own.map_or(1.0, |(_, own)| *own);
-        is_size(name).then(|| own / size)
+        own.map_or(1.0, |(_, own)| *own) / size
     };
-    let finest = parameters
-        .iter()
-        .filter_map(finer)
-        .fold(None, |most, ratio| {
-            Some(f64::max(most.unwrap_or(ratio), ratio))
-        });
-    let labels: Vec<String> = parameters
-        .iter()
+    let sizes = || mesh.iter().filter(|(name, _)| is_size(name));
+    let finest = sizes().map(finer).reduce(f64::max);
+    let differs = |entry: &&(String, f64)| !all.iter().all(|other| other.contains(entry));
+    let told = mesh.iter().filter(|entry| all.len() == 1 || differs(entry));
+    let labels: Vec<String> = told
         .map(|(name, value)| format!("{name}={value}"))
         .collect();
     let set = |(name, value): &(String, f64)| Edit::set(&["mesh", "parameters", name], *value);
     Choice {
-        number: parameters.first().map(|(_, value)| *value),
+        number: sizes().next().map(|(_, size)| *size),
         cost: finest.unwrap_or(1.0).abs().powi(3),
-        ..plain(&labels.join(" "), parameters.iter().map(set).collect())
+        ..plain(&labels.join(" "), mesh.iter().map(set).collect())
     }
 }
 

@@ -47,6 +47,14 @@ pub(super) fn memory(bytes: f64) -> String {
     }
 }
 
+/// What settings are called that differ in nothing.
+pub(super) fn or_the_scene(name: String) -> String {
+    match name.is_empty() {
+        true => "the scene".into(),
+        false => name,
+    }
+}
+
 /// The unit of a measure or of a key of fractures, in brackets after a space; nothing if it has none.
 pub(super) fn unit(name: &str) -> &'static str {
     let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));

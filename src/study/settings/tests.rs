@@ -57,6 +57,17 @@ fn without_a_study_sizes_and_orders_are_swept() {
 }
 
 #[test]
+fn labels_tell_what_differs() {
+    let plan = plan(
+        "[study]\nmeshes = [{ dip = 50, h = 0.1, h_far = 3 }, { dip = 50, h = 0.05, h_far = 2 }]\n",
+    );
+    let mesh = &plan.dimensions[0].choices;
+    assert_eq!(mesh[0].label, "h=0.1 h_far=3");
+    assert_eq!((mesh[1].number, mesh[1].cost), (Some(0.05), 8.0));
+    assert_eq!(mesh[1].edits.len(), 3);
+}
+
+#[test]
 fn the_product_is_run_from_cheap_to_dear() {
     let plan = plan(
         "[study]\nmeshes = [{ h = 0.05 }, { h = 0.1 }]\norders = [2, 1]\nsolvers = ['direct', 'iterative']\n",
