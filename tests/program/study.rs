@@ -2,6 +2,7 @@
 //! meshes, a cube of 4 m instead of 20 m: half a second a setting.
 
 use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -241,6 +242,29 @@ fn a_killed_study_goes_on_where_it_was() {
         let told = format!(", {before} of them run before");
         assert!(run.out.contains(&told), "{told}: {}", run.out);
     }
+}
+
+#[test]
+fn a_run_of_a_study_that_died_ends() {
+    let workshop = workshop("");
+    let gmsh = workshop.path("gmsh");
+    fs::write(&gmsh, "#!/bin/sh\nsleep 20\n").expect("written");
+    fs::set_permissions(&gmsh, fs::Permissions::from_mode(0o755)).expect("a program");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_kluft"))
+        .args(["run", "--tied"])
+        .arg(workshop.scene())
+        .env("KLUFT_GMSH", &gmsh)
+        .stdin(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdin.take());
+    let status = child.wait().expect("gone");
+    assert_eq!(
+        status.code(),
+        Some(1),
+        "it waits for no gmsh that would fail"
+    );
 }
 
 #[test]
