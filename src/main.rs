@@ -63,6 +63,7 @@ the scene has it:
   closures = [                                        # names, or keys of all fractures
     \"logarithmic\",
     { label = \"cut at 1 um\", closure = \"logarithmic\", cutoff_aperture = 1e-6 },
+    { label = \"exact\", closure = \"logarithmic\", cutoff_aperture = false },   # without that key
   ]
   facets = [\"nodal\", \"gauss\"]
   solvers = [\"direct\", \"iterative\", \"condensed\"]

@@ -121,6 +121,13 @@ pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
     )
 }
 
+/// What meshes that are one and the same mean.
+pub(super) fn twins(labels: &str) -> String {
+    format!(
+        "{labels} are one and the same mesh: sweep a parameter that sizes the cells of the geometry"
+    )
+}
+
 /// The cell size at which a series should reach the tolerance, by the rate observed over cell sizes; of
 /// the series that needs the least time then.
 fn next(study: &Study, found: &Assessment, tolerance: f64) -> Option<String> {

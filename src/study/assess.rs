@@ -69,6 +69,8 @@ pub(super) struct Assessment {
     pub(super) verdicts: Vec<Verdict>,
     /// All settings, by series.
     pub(super) series: Vec<Series>,
+    /// Meshes that are one and the same, by their labels.
+    pub(super) twins: Option<String>,
 }
 
 /// Assesses what has been run; `records` has an entry for each setting.
@@ -91,6 +93,7 @@ pub(super) fn assess(plan: &Plan, records: &[Option<Record>]) -> Result<Assessme
     };
     Ok(Assessment {
         verdicts: plan.settings.iter().zip(&done).map(verdict).collect(),
+        twins: twins(plan, &done),
         series: series(plan, &done),
         target,
         references,
@@ -232,6 +235,18 @@ fn references(plan: &Plan, done: &[Option<&Numbers>], target: &Target) -> Vec<Re
         }
     }
     found.into_iter().map(|(_, reference)| reference).collect()
+}
+
+/// Two meshes of a series with as many cells and unknowns: the geometry does not heed what is swept.
+fn twins(plan: &Plan, done: &[Option<&Numbers>]) -> Option<String> {
+    let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;
+    let size = |i: usize| done[i].map(|numbers| (numbers.cells, numbers.unknowns));
+    let label = |i: usize| plan.label(&plan.settings[i], mesh);
+    series(plan, done).iter().find_map(|series| {
+        let mut pairs = series.settings.windows(2);
+        let pair = pairs.find(|pair| size(pair[0]).is_some() && size(pair[0]) == size(pair[1]))?;
+        Some(format!("{} and {}", label(pair[0]), label(pair[1])))
+    })
 }
 
 fn order(plan: &Plan, setting: &Setting) -> f64 {

@@ -301,6 +301,7 @@ fn summary(study: &Study, found: &Assessment) -> Vec<String> {
     if found.verdicts.iter().all(|verdict| verdict.error.is_none()) {
         lines.push(format!("no errors: {}", answer::no_errors(study, found)));
     }
+    lines.extend(found.twins.as_deref().map(answer::twins));
     for reference in &found.references {
         lines.push(page::told(reference));
     }

@@ -109,6 +109,10 @@ fn lead(study: &Study, found: &Assessment) -> String {
             .collect();
         let _ = write!(out, "<ul>\n{items}</ul>\n");
     }
+    if let Some(labels) = &found.twins {
+        let text = escaped(&answer::twins(labels));
+        let _ = writeln!(out, "<p class=\"failed\">{text}.</p>");
+    }
     if has_errors {
         out += "<p class=\"soft\">A number beside a line is its slope: error ~ (wall time or unknowns) to that power, \
             by least squares through its last three points. Wall time is that of a whole run, gmsh included. \

@@ -227,19 +227,23 @@ fn fractures(scene: &Table) -> impl Iterator<Item = (&String, &Value)> {
     fractures.into_iter().flatten()
 }
 
-/// Keys of all fractures; what a new law would refuse goes away.
+/// Keys of all fractures; what a new law would refuse goes away, and what is `false`.
 fn closure_edits(keys: &Table, scene: &Table) -> Vec<Edit> {
+    let is_off = |value: &Value| *value == Value::Boolean(false);
     let mut edits = Vec::new();
     for (name, fracture) in fractures(scene) {
         if let Some(law) = keys.get("closure").and_then(Value::as_str) {
-            let rubs = [keys.get("friction_angle"), fracture.get("friction_angle")];
-            let refused = refused_keys(law, rubs.iter().any(Option::is_some)).into_iter();
+            let angle = keys.get("friction_angle");
+            let angle = angle.or(fracture.get("friction_angle"));
+            let rubs = angle.is_some_and(|angle| !is_off(angle));
+            let refused = refused_keys(law, rubs).into_iter();
             let refused = refused.filter(|key| fracture.get(key).is_some());
             edits.extend(refused.map(|key| Edit::remove(&["fracture", name, key])));
         }
-        let set =
-            |(key, value): (&String, &Value)| Edit::set(&["fracture", name, key], value.clone());
-        edits.extend(keys.iter().map(set));
+        edits.extend(keys.iter().map(|(key, value)| match is_off(value) {
+            true => Edit::remove(&["fracture", name, key]),
+            false => Edit::set(&["fracture", name, key], value.clone()),
+        }));
     }
     edits
 }

@@ -111,6 +111,19 @@ fn closures_by_name_drop_the_keys_that_they_refuse() {
 }
 
 #[test]
+fn a_key_that_is_false_goes_away() {
+    let plan =
+        plan("[study]\nclosures = ['logarithmic', { label = 'exact', cutoff_aperture = false }]\n");
+    let cutoff = |label: &str| {
+        scene(&plan, label)["fracture"]["a"]
+            .get("cutoff_aperture")
+            .cloned()
+    };
+    assert_eq!(cutoff("logarithmic"), Some(Value::Float(1e-6)));
+    assert_eq!(cutoff("exact"), None);
+}
+
+#[test]
 fn values_are_of_all_fractures_that_have_the_key_or_of_one() {
     let plan = plan(
         "[study.values]\nshear_stiffness = [1e9, 2e9]\n'b.aperture' = { from = 1e-5, to = 1e-3, count = 3 }\n",
