@@ -6,6 +6,7 @@ use super::Study;
 use super::assess::{Assessment, Series};
 use super::charts::subject;
 use super::edits::difference;
+use super::page::told;
 use super::point::Record;
 use super::reference::slope;
 use super::settings::Kind;
@@ -112,6 +113,9 @@ pub(super) fn missed(study: &Study, found: &Assessment, tolerance: f64) -> Strin
 pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
     if found.target.is_none() {
         return "no setting was solved, see study.html for the reasons".into();
+    }
+    if let Some(reference) = found.references.first() {
+        return told(reference);
     }
     let meshes = study.plan.dimensions.iter().find(|d| d.kind == Kind::Mesh);
     let count = meshes.map_or(0, |dimension| dimension.choices.len());

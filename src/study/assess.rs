@@ -84,7 +84,8 @@ pub(super) fn assess(plan: &Plan, records: &[Option<Record>]) -> Result<Assessme
         .collect();
     let target = target(plan, &done)?;
     let extrapolates = target.as_ref().filter(|target| !target.is_compared);
-    let references = extrapolates.map_or_else(Vec::new, |target| references(plan, &done, target));
+    let references =
+        extrapolates.map_or_else(Vec::new, |target| references(plan, records, &done, target));
     let verdict = |(setting, numbers): (&Setting, &Option<&Numbers>)| {
         let measure = numbers.and_then(|numbers| find(numbers, target.as_ref()?));
         let key = reference_key(plan, setting);
@@ -109,13 +110,17 @@ fn judged(measure: &Measure, reference: Option<&Reference>) -> Verdict {
             uncertainty: 0.0,
         };
     };
-    let share =
-        |difference: f64| Some(difference.abs() / limit.value.abs()).filter(|e| e.is_finite());
+    let share = |difference: f64| {
+        let share = difference.abs() / limit.value.abs();
+        Some(share).filter(|share| share.is_finite())
+    };
+    let uncertainty = share(limit.uncertainty);
+    let error = measure.value.and_then(|value| share(value - limit.value));
     Verdict {
         value: measure.value,
-        reference: Some(limit.value),
-        error: measure.value.and_then(|value| share(value - limit.value)),
-        uncertainty: share(limit.uncertainty).unwrap_or(f64::INFINITY),
+        reference: uncertainty.map(|_| limit.value),
+        error: uncertainty.and(error),
+        uncertainty: uncertainty.unwrap_or(f64::INFINITY),
     }
 }
 
@@ -197,10 +202,29 @@ fn reference_key(plan: &Plan, setting: &Setting) -> Vec<usize> {
 }
 
 /// The limit of every physics with three meshes of one series: of the highest order, and of the first
-/// facet rule and solver that have them.
-fn references(plan: &Plan, done: &[Option<&Numbers>], target: &Target) -> Vec<Reference> {
+/// facet rule and solver that have them. As long as a higher order is still to be run, a lower one says
+/// nothing: coarse meshes of first order may settle far from the limit.
+fn references(
+    plan: &Plan,
+    records: &[Option<Record>],
+    done: &[Option<&Numbers>],
+    target: &Target,
+) -> Vec<Reference> {
+    let awaited = |series: &Series| {
+        let own = &plan.settings[series.settings[0]];
+        let same = |setting: &Setting| {
+            plan.key(setting, Kind::is_physics) == plan.key(own, Kind::is_physics)
+        };
+        let mut all = plan.settings.iter().zip(records);
+        all.any(|(setting, record)| {
+            record.is_none() && same(setting) && order(plan, setting) > order(plan, own)
+        })
+    };
     let mut found: Vec<(f64, Reference)> = Vec::new();
-    for series in series(plan, done) {
+    for series in series(plan, done)
+        .into_iter()
+        .filter(|series| !awaited(series))
+    {
         let numbers = series.settings.iter().filter_map(|&i| Some((i, done[i]?)));
         let values = numbers.filter_map(|(i, n)| Some((i, n.cells, find(n, target)?.value?)));
         let values: Vec<(usize, usize, f64)> = values.collect();
@@ -209,8 +233,8 @@ fn references(plan: &Plan, done: &[Option<&Numbers>], target: &Target) -> Vec<Re
             .map(|(_, cells, value)| ((*cells as f64).cbrt().recip(), *value));
         let setting = &plan.settings[series.settings[0]];
         let order = order(plan, setting);
-        // Numbers that sum up a solution converge at most twice as fast as its order.
-        let Some(limit) = limit(&sizes.collect::<Vec<_>>(), 2.0 * order) else {
+        // Numbers that sum up a smooth solution may converge twice as fast; at fronts they do not.
+        let Some(limit) = limit(&sizes.collect::<Vec<_>>(), order) else {
             continue;
         };
         let key = plan.key(setting, Kind::is_physics);
@@ -311,15 +335,11 @@ impl Assessment {
         format!("{error:.5e}").parse().ok()
     }
 
-    /// Largest uncertainty of a reference, as a share; 0 where there is a closed form.
-    pub(super) fn uncertainty(&self) -> f64 {
-        let finite = self
-            .verdicts
-            .iter()
-            .filter(|verdict| verdict.error.is_some());
-        finite
-            .map(|verdict| verdict.uncertainty)
-            .fold(0.0, f64::max)
+    /// Uncertainties of the references of all settings with an error, as shares; 0 of closed forms.
+    pub(super) fn uncertainties(&self) -> impl Iterator<Item = f64> {
+        let known = self.verdicts.iter();
+        let known = known.filter(|verdict| verdict.error.is_some());
+        known.map(|verdict| verdict.uncertainty)
     }
 }
 

@@ -85,21 +85,26 @@ fn errors(
     lines.retain(|line| !line.points.is_empty());
     let left_out = keep_best(&mut lines);
     let subject = subject(found);
-    let uncertainty = found.uncertainty();
+    let unsure = || found.uncertainties().filter(|share| *share > 0.0);
+    let band = unsure().reduce(f64::max).map(|below| Band {
+        below,
+        name: format!("reference unsure: {}", percent(below)),
+    });
+    // Where nothing is known, an error of nothing is as good as any.
+    let floor = unsure()
+        .reduce(f64::min)
+        .map_or(SMALLEST, |least| least / 3.0);
     let chart = Chart {
         series: lines,
         front: true,
-        band: (uncertainty > 0.0 && uncertainty.is_finite()).then(|| Band {
-            below: uncertainty,
-            name: format!("reference unsure: {}", percent(uncertainty)),
-        }),
+        band,
         ..Chart::new(
             format!(
                 "Error of {subject} against {}",
                 title.split(" (").next().unwrap_or(title)
             ),
             Axis::logarithmic(title),
-            Axis::logarithmic("relative error").from(SMALLEST),
+            Axis::logarithmic("relative error").from(floor),
         )
     };
     Named {

@@ -59,18 +59,19 @@ pub(super) fn escaped(text: &str) -> String {
 /// A reference in words.
 pub(super) fn told(reference: &Reference) -> String {
     let limit = &reference.limit;
+    let unsure = percent(limit.uncertainty / limit.value.abs());
+    let value = short(limit.value);
     let rate = match limit.rate {
         Some(rate) => format!(
-            "extrapolated to {}, uncertain by {}; errors shrink as cells^−{} there",
-            short(limit.value),
-            percent(limit.uncertainty / limit.value.abs()),
+            "extrapolated to {value}, uncertain by {unsure}; differences shrink as cells^−{}",
             short(rate / 3.0)
         ),
-        None => format!(
-            "the values do not settle at a rate, so the reference is the finest, {}, uncertain by {}",
-            short(limit.value),
-            percent(limit.uncertainty / limit.value.abs())
+        None if limit.uncertainty.is_finite() => format!(
+            "the values swing, so the reference is the finest, {value}, uncertain by {unsure}"
         ),
+        None => "the values drift: they differ no less from mesh to mesh, so nothing is known of \
+            their limit; finer meshes are needed"
+            .to_owned(),
     };
     format!("{}: {rate}", reference.from)
 }

@@ -3,13 +3,16 @@
 /// Rates that are looked for; what converges faster or slower does neither visibly.
 const RATES: (f64, f64) = (0.05, 20.0);
 
+/// Values that differ by less, as a share, are the same but for rounding.
+const SAME: f64 = 1e-9;
+
 /// What values on finer and finer meshes approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Limit {
     /// The extrapolated value; that of the finest mesh if there is no rate.
     pub(super) value: f64,
-    /// The extrapolation's distance from the value on the finest mesh; if there is no rate, the distance
-    /// between the largest and the smallest of the values.
+    /// The extrapolation's distance from the value on the finest mesh. If there is no rate, the distance
+    /// between the largest and the smallest of the values if they swing, and infinity if they drift.
     pub(super) uncertainty: f64,
     /// Observed rate `p` of `value + C size^p`; none if the differences do not shrink as they would.
     pub(super) rate: Option<f64>,
@@ -28,7 +31,11 @@ pub(super) fn limit(values: &[(f64, f64)], most: f64) -> Option<Limit> {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     values.dedup_by(|a, b| a.0 == b.0);
     let &[(s3, f3), (s2, f2), (s1, f1)] = values.first_chunk()?;
-    let rate = rate((s1 / s3, s2 / s3), (f1 - f2) / (f2 - f3));
+    let (sizes, ratio) = ((s1 / s3, s2 / s3), (f1 - f2) / (f2 - f3));
+    let rate = rate(sizes, ratio);
+    // Differences that do not shrink say nothing of the limit.
+    let drifts = ratio > 0.0 && ratio < ratio_at(sizes, RATES.0);
+    let spread = f1.max(f2).max(f3) - f1.min(f2).min(f3);
     let beyond = |rate: f64| (f3 - f2) / ((s2 / s3).powf(rate.min(most)) - 1.0);
     Some(match rate.map(beyond).filter(|beyond| beyond.is_finite()) {
         Some(beyond) => Limit {
@@ -38,24 +45,30 @@ pub(super) fn limit(values: &[(f64, f64)], most: f64) -> Option<Limit> {
         },
         None => Limit {
             value: f3,
-            uncertainty: f1.max(f2).max(f3) - f1.min(f2).min(f3),
+            uncertainty: match drifts && spread > SAME * f3.abs() {
+                true => f64::INFINITY,
+                false => spread,
+            },
             rate: None,
         },
     })
 }
 
-/// The rate at which the differences between three values have a ratio; `sizes` are those of the coarse
-/// and the middle mesh in units of the finest.
-fn rate((coarse, middle): (f64, f64), ratio: f64) -> Option<f64> {
-    // The ratio that a rate has; it grows with the rate.
-    let of = |rate: f64| (coarse.powf(rate) - middle.powf(rate)) / (middle.powf(rate) - 1.0);
+/// Ratio of the differences between three values at a rate; it grows with the rate. Sizes are those of the
+/// coarse and the middle mesh in units of the finest.
+fn ratio_at((coarse, middle): (f64, f64), rate: f64) -> f64 {
+    (coarse.powf(rate) - middle.powf(rate)) / (middle.powf(rate) - 1.0)
+}
+
+/// The rate at which the differences between three values have a ratio.
+fn rate(sizes: (f64, f64), ratio: f64) -> Option<f64> {
     let (mut low, mut high) = RATES;
-    if !(of(low) <= ratio && ratio <= of(high)) {
+    if !(ratio_at(sizes, low) <= ratio && ratio <= ratio_at(sizes, high)) {
         return None;
     }
     for _ in 0..100 {
         let half = f64::midpoint(low, high);
-        match of(half) < ratio {
+        match ratio_at(sizes, half) < ratio {
             true => low = half,
             false => high = half,
         }
@@ -151,15 +164,29 @@ mod tests {
     }
 
     #[test]
-    fn values_that_do_not_settle_have_no_rate_but_an_uncertainty() {
-        for values in [[1.0, 2.0, 1.5], [1.0, 1.1, 2.0], [1.0, 1.0, 1.0]] {
+    fn values_that_swing_have_no_rate_but_an_uncertainty() {
+        for values in [
+            [1.0, 2.0, 1.5],
+            [1.0, 1.0, 1.0],
+            [1.0, 1.0 + 1e-15, 1.0 + 3e-15],
+        ] {
             let [coarse, middle, fine] = values;
-            let limit = limit(&[(0.4, coarse), (0.2, middle), (0.1, fine)], 4.0).expect("a limit");
+            let limit = limit(&[(0.4, coarse), (0.2, middle), (0.1, fine)], 4.0);
+            let limit = limit.expect("a limit");
             assert_eq!((limit.rate, limit.value), (None, fine));
             let spread = values
-                .iter()
-                .fold(0.0, |most: f64, v| most.max((v - 1.0).abs()));
+                .map(|value| value - 1.0)
+                .into_iter()
+                .fold(0.0, f64::max);
             assert_eq!(limit.uncertainty, spread);
+        }
+    }
+
+    #[test]
+    fn nothing_is_known_of_the_limit_of_a_drift() {
+        for fine in [1.2, 2.0] {
+            let limit = limit(&[(0.4, 1.0), (0.2, 1.1), (0.1, fine)], 4.0).expect("a limit");
+            assert_eq!((limit.rate, limit.uncertainty), (None, f64::INFINITY));
         }
     }
 

@@ -130,7 +130,7 @@ fn without_closed_forms_the_mean_aperture_of_the_largest_fracture_is_extrapolate
         close(verdict.error.expect("an error"), 0.5 * size.powf(rate));
         close(verdict.uncertainty, 0.005);
     }
-    close(found.uncertainty(), 0.005);
+    assert_eq!(found.uncertainties().count(), 6);
 }
 
 #[test]
@@ -167,6 +167,42 @@ fn two_meshes_or_failures_leave_no_errors() {
     assert_eq!(found.verdicts[1], Verdict::default());
     let nothing = assess(&sweep, &[None, None, None]).expect("an assessment");
     assert_eq!(nothing.target, None);
+}
+
+#[test]
+fn lower_orders_wait_for_higher_ones_unless_these_fail() {
+    let plan = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]\norders = [1, 2]");
+    let mut records = extrapolated(&plan, |_| 3.0);
+    let finest = plan.settings.len() - 1;
+    records[finest] = None;
+    let found = assess(&plan, &records).expect("an assessment");
+    assert!(found.references.is_empty(), "{:?}", found.references);
+    records[finest] = Some(Record {
+        fingerprint: String::new(),
+        outcome: Outcome::Failed("for want of memory".into()),
+    });
+    let found = assess(&plan, &records).expect("an assessment");
+    assert!(
+        found.references[0].from.contains("order 1"),
+        "{:?}",
+        found.references
+    );
+}
+
+#[test]
+fn a_drift_has_a_reference_but_no_errors() {
+    let plan = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]");
+    let run = |cells, value| solved(cells, vec![measure("mean_aperture", "b", value, None)]);
+    let records = [run(10, 1.0), run(80, 1.1), run(640, 1.3)];
+    let found = assess(&plan, &records).expect("an assessment");
+    assert_eq!(found.references.len(), 1);
+    assert!(found.verdicts.iter().all(|verdict| verdict.error.is_none()));
+    assert!(
+        found
+            .verdicts
+            .iter()
+            .all(|verdict| verdict.at_most().is_none())
+    );
 }
 
 #[test]
