@@ -133,37 +133,31 @@ pub(super) fn twins(labels: &str) -> String {
 }
 
 /// The cell size at which a series should reach the tolerance, by the rate observed over cell sizes; of
-/// the series that needs the least time then.
+/// the series that needs the least time then, if time grows with the number of cells.
 fn next(study: &Study, found: &Assessment, tolerance: f64) -> Option<String> {
     let plan = &study.plan;
     let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;
-    let meshes = &plan.dimensions[mesh];
+    let choice = |i: usize| &plan.dimensions[mesh].choices[plan.settings[i].choices[mesh]];
     let guess = |series: &Series| -> Option<(f64, String)> {
-        let of = |x: &dyn Fn(usize) -> Option<f64>| -> Vec<(f64, f64)> {
-            let point = |&i: &usize| Some((x(i)?, found.verdicts[i].error?));
-            series.settings.iter().filter_map(point).collect()
-        };
-        let size = |i: usize| meshes.choices[plan.settings[i].choices[mesh]].number;
-        let (rate, times) = (slope(&of(&size))?, of(&|i| Some(study.seconds(i))));
-        let last = *series
-            .settings
+        let known = series.settings.iter().copied();
+        let known = known.filter_map(|i| Some((i, found.verdicts[i].error?)));
+        let known: Vec<(usize, f64)> = known.collect();
+        let sizes = known
             .iter()
-            .rev()
-            .find(|&&i| found.verdicts[i].error.is_some())?;
-        let verdict = found.verdicts[last];
-        let wanted = (tolerance - verdict.uncertainty).max(0.5 * tolerance);
-        let factor = (wanted / verdict.error?).powf(rate.recip());
-        let speed = slope(&times).filter(|speed| *speed < 0.0)?;
-        let seconds = study.seconds(last) * (wanted / verdict.error?).powf(speed.recip());
-        let sensible = rate > 0.1 && factor < 1.0 && seconds.is_finite();
-        let sizes = study.plan.label(&study.plan.settings[last], mesh);
+            .filter_map(|&(i, error)| Some((choice(i).number?, error)));
+        let rate = slope(&sizes.collect::<Vec<_>>()).filter(|rate| *rate > 0.1)?;
+        let &(last, error) = known.last()?;
+        let wanted = (tolerance - found.verdicts[last].uncertainty).max(0.5 * tolerance);
+        let finer = (error / wanted).powf(rate.recip());
+        let seconds = study.seconds(last) * finer.powi(3);
         let text = format!(
-            "{}: cells smaller by a factor of {} than {sizes} should do, in about {}",
+            "{}: cells smaller by a factor of {} than {} should do, in roughly {}",
             series.name,
-            short(factor.recip()),
+            short(finer),
+            choice(last).label,
             duration(seconds)
         );
-        sensible.then_some((seconds, text))
+        (finer > 1.0 && seconds.is_finite()).then_some((seconds, text))
     };
     let guesses = found.series.iter().filter_map(guess);
     guesses

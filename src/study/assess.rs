@@ -5,6 +5,7 @@ use lie_mesh::{Defect, nearest};
 use super::point::{Numbers, Record};
 use super::reference::{Limit, limit};
 use super::settings::{Kind, Plan, Setting};
+use super::words::or_the_scene;
 use crate::oracle::Measure;
 
 /// What is charted.
@@ -293,12 +294,7 @@ fn series(plan: &Plan, done: &[Option<&Numbers>]) -> Vec<Series> {
         match found.iter_mut().find(|(other, _)| *other == key) {
             Some((_, series)) => series.settings.push(i),
             None => {
-                let name = plan.name(setting, but_mesh);
-                let name = if name.is_empty() {
-                    "all meshes".into()
-                } else {
-                    name
-                };
+                let name = or_the_scene(plan.name(setting, but_mesh));
                 let settings = vec![i];
                 found.push((key, Series { name, settings }));
             }

@@ -308,6 +308,36 @@ fn too_few_meshes_without_a_closed_form_are_explained() {
 }
 
 #[test]
+fn values_are_swept_and_charted() {
+    let workshop = workshop("measure = 'volume'\nvalues = { fluid_pressure = [1e6, 2e6] }");
+    let run = study(&workshop, &["-q"]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    let folder = workshop.path("study");
+    let chart = fs::read_to_string(folder.join("over-fluid_pressure.svg")).expect("a chart");
+    assert_is_xml(&chart);
+    let volumes: Vec<f64> = table(&folder)
+        .iter()
+        .map(|row| row("value").parse().expect("a volume"))
+        .collect();
+    let ratio = volumes[1] / volumes[0];
+    assert!(
+        (ratio - 2.0).abs() < 1e-9,
+        "a free crack opens in proportion: {ratio}"
+    );
+}
+
+#[test]
+fn a_study_without_any_result_says_why() {
+    let workshop = workshop("meshes = [{ no_such_size = 1 }]");
+    let run = study(&workshop, &[]);
+    assert_eq!(run.code, Some(1));
+    for part in ["no setting was solved", "no_such_size"] {
+        assert!(run.err.contains(part), "{part}: {}", run.err);
+    }
+    assert!(workshop.path("study/study.html").exists());
+}
+
+#[test]
 fn a_measure_that_no_run_knows_is_refused_with_those_that_they_know() {
     let workshop = workshop("measure = 'opening_l3'");
     let run = study(&workshop, &[]);
