@@ -1,6 +1,7 @@
 //! A run of Kluft, told as a story: read the scene, mesh, enrich, assemble, solve, write.
 
 mod accuracy;
+mod adapt;
 pub mod chart;
 mod checkpoint;
 mod decisions;
@@ -26,8 +27,8 @@ pub use network::{NetworkOptions, make_network};
 pub use oracle::{Measure, Oracle};
 pub use report::{Failure, Verbosity, print_failure};
 pub use scene::{
-    Binding, BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, History, MeshSource, Named,
-    Scene, SolverEntry, StepEnd, Timetable, bind, surface_roles,
+    Adapt, Binding, BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, History, MeshSource,
+    Named, Scene, SolverEntry, StepEnd, Timetable, bind, surface_roles,
 };
 pub use study::{StudyOptions, study};
 pub use summary::{FractureSummary, Spread, StepSummary, Summary};
@@ -80,6 +81,9 @@ pub fn run(scene_file: &Path, options: &Options) -> Result<(), Failure> {
         return Ok(());
     }
     let mut run = Run::new(&scene, output, report, identity, former.as_ref());
+    if !former.as_ref().is_some_and(|former| former.mesh_is_kept) {
+        adapt::search(&mut run)?;
+    }
     let problem = run.prepare(former.as_ref())?;
     let result = run.solve(&problem, former);
     if !matches!(result, Err(Failure::BadInput(_))) {

@@ -140,10 +140,10 @@ fn is_result(name: &str) -> bool {
     let unfinished = name
         .strip_prefix('.')
         .and_then(|name| name.strip_suffix(".tmp"));
-    let of_gmsh = [".tmp.msh", ".msh41.msh"].iter();
+    let of_gmsh = [".tmp.msh", ".tmp.geo", ".msh41.msh"].iter();
     let is_mesh = name.starts_with('.') && of_gmsh.into_iter().any(|end| name.ends_with(end));
     let name = unfinished.unwrap_or(name);
-    let is_summary = unfinished.is_some() && name == "summary.json";
+    let is_summary = unfinished.is_some() && ["summary.json", "sizes.pos"].contains(&name);
     is_mesh || is_summary || name == checkpoint::NAME || is_step(name)
 }
 
@@ -191,7 +191,7 @@ fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> G
 fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
     let mesh = &system.problem.mesh;
     let elements = &mesh.facets.elements;
-    let results = &solution.facet_points[..elements.nodes.len()];
+    let results = &solution.facet_nodes(system.problem, &system.discretisation.interface);
     let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
         results.iter().flat_map(move |result| of(result).to_array())
     };

@@ -32,6 +32,7 @@ pub fn folder_for(file: &Path, asked: Option<&Path>) -> PathBuf {
 pub fn mesh_file(
     scene: &Scene,
     output: &Output,
+    sizes: Option<&Path>,
     report: &mut Report,
 ) -> Result<MeshFile, Vec<Defect>> {
     match &scene.mesh {
@@ -43,12 +44,14 @@ pub fn mesh_file(
             geometry,
             parameters,
             order,
+            ..
         } => {
             let path = output.path("mesh.msh");
             let meshing = Meshing {
                 geometry,
                 parameters,
                 order: *order,
+                sizes,
                 output: &path,
             };
             let (warnings, took) = report.stage("meshing (gmsh)", |_| mesh_geometry(&meshing));

@@ -1,5 +1,6 @@
 //! The stages of a run, and what it leaves behind after each load step.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use lie_io::load_msh;
@@ -9,7 +10,7 @@ use lie_solver::{
     System, Workload, solution,
 };
 
-use crate::accuracy;
+use crate::accuracy::{self, Accuracy};
 use crate::checkpoint::{self, Identity, Progress};
 use crate::decisions;
 use crate::memory;
@@ -41,6 +42,18 @@ pub struct Run<'a> {
     choice: (String, String),
     /// Closed form of each fracture that has one.
     oracles: Vec<Option<Oracle>>,
+    /// What the next mesh is made by.
+    meshing: Remeshing,
+}
+
+/// How a scene that adapts its mesh gets the next one.
+enum Remeshing {
+    /// As the geometry says.
+    Given,
+    /// With these sizes.
+    Sized(PathBuf),
+    /// Not at all: the last one stays.
+    Kept,
 }
 
 impl<'a> Run<'a> {
@@ -75,6 +88,7 @@ impl<'a> Run<'a> {
             finished: Vec::new(),
             choice: Default::default(),
             oracles: Vec::new(),
+            meshing: Remeshing::Given,
         }
     }
 
@@ -107,12 +121,19 @@ impl<'a> Run<'a> {
 
     /// The mesh file; gmsh makes it if it has to.
     fn mesh_file(&mut self, former: Option<&Former>) -> Result<MeshFile, Vec<Defect>> {
-        let file = match former.is_some_and(|former| former.mesh_is_kept) {
+        let is_kept = matches!(self.meshing, Remeshing::Kept);
+        let file = match is_kept || former.is_some_and(|former| former.mesh_is_kept) {
             true => MeshFile {
                 path: self.output.path("mesh.msh"),
                 meshing: None,
             },
-            false => prepare::mesh_file(self.scene, &self.output, &mut self.report)?,
+            false => {
+                let sizes = match &self.meshing {
+                    Remeshing::Sized(path) => Some(path.as_path()),
+                    _ => None,
+                };
+                prepare::mesh_file(self.scene, &self.output, sizes, &mut self.report)?
+            }
         };
         if let (Some(took), MeshSource::Geometry { geometry, .. }) =
             (file.meshing, &self.scene.mesh)
@@ -122,6 +143,41 @@ impl<'a> Run<'a> {
             self.report.entry("meshed", &timed(&geometry, took));
         }
         Ok(file)
+    }
+
+    /// Keeps the mesh for what follows.
+    pub fn keep_mesh(&mut self) {
+        self.meshing = Remeshing::Kept;
+    }
+
+    /// Makes the next mesh with the sizes of a file.
+    pub fn mesh_again_with(&mut self, sizes: PathBuf) {
+        self.meshing = Remeshing::Sized(sizes);
+        self.summary.decisions.clear();
+    }
+
+    /// Solves all load steps without writing anything: the number of unknowns and the estimated error at
+    /// the end.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn trial(&mut self, problem: &Problem) -> Result<(usize, Accuracy), Failure> {
+        let system = self.assemble(problem)?;
+        let plan = self.plan(&system, None)?;
+        let mut newton = self.set_up(&system, plan)?;
+        let mut state = system.initial_state();
+        for index in 0..problem.schedule.steps.len() {
+            let record = self.solve_step(&system, &mut newton, &mut state, index);
+            if !record.converged() {
+                let why = decisions::not_converged(problem, &system, index + 1, &record);
+                return Err(Failure::NotConverged(why));
+            }
+        }
+        self.summary.steps.clear();
+        let solution = solution(&system, &state);
+        let unknowns = system.discretisation.unknown_count();
+        let accuracy = accuracy::of(&system, &mut newton, &solution, true);
+        Ok((unknowns, accuracy))
     }
 
     /// From the problem to the written results of all load steps that are left.
@@ -362,7 +418,8 @@ fn build_problem(
     let faces = Faces::of(&draft);
     let roles = prepare::roles(scene, &draft, &faces.inner_surfaces(&draft))?;
     summary.decisions.extend(roles.decisions);
-    let mut binding = bind(scene, Mesh::build_on(draft, faces, &roles.of_group)?)?;
+    let mesh = Mesh::build_on(draft, faces, &roles.of_group)?;
+    let mut binding = bind(scene, mesh)?;
     summary.decisions.append(&mut binding.decisions);
     let mesh = &binding.problem.mesh;
     let counts = mesh.sectors.count.iter();

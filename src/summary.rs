@@ -4,9 +4,10 @@ use std::path::Path;
 
 use lie_io::write_atomically;
 use lie_mesh::Defect;
-use lie_solver::{FacetState, Interface, Problem, Solution, Step, StepRecord};
+use lie_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
+use crate::adapt::Round;
 use crate::oracle::Measure;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
@@ -169,6 +170,9 @@ pub struct Summary {
     pub warnings: Vec<String>,
     /// The mesh.
     pub mesh: MeshSummary,
+    /// The meshes on the way to this one, if the scene adapts it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub meshes: Vec<Round>,
     /// The unknowns.
     pub unknowns: UnknownSummary,
     /// The fractures after the last converged step, by name.
@@ -219,42 +223,47 @@ pub fn fractures(
 ) -> Vec<(String, FractureSummary)> {
     let mesh = &problem.mesh;
     let names = mesh.fractures.iter().enumerate();
+    let nodes = solution.facet_nodes(problem, interface);
     names
         .map(|(fracture, name)| {
-            let summary = fracture_summary(problem, interface, solution, fracture as u32);
+            let points = solution.facet_points.as_slice();
+            let summary = fracture_summary(problem, interface, [points, &nodes], fracture as u32);
             (name.clone(), summary)
         })
         .collect()
 }
 
+/// Means and areas are taken from the facet `points` (their control values have the right integral),
+/// extremes from the `nodes` of the facets and the points between them.
 fn fracture_summary(
     problem: &Problem,
     interface: &Interface,
-    solution: &Solution,
+    [points, nodes]: [&[FacetResult]; 2],
     fracture: u32,
 ) -> FractureSummary {
     let facets = &problem.mesh.facets;
     let own: Vec<usize> = (0..interface.points.len())
         .filter(|&i| interface.points[i].fracture == fracture)
         .collect();
-    let results = || own.iter().map(|&i| &solution.facet_points[i]);
+    let results = || own.iter().map(|&i| &points[i]);
+    let walls = || own.iter().map(|&i| nodes.get(i).unwrap_or(&points[i]));
     let weights = || own.iter().map(|&i| interface.points[i].area);
-    let area_where = |holds: &dyn Fn(&lie_solver::FacetResult) -> bool| -> f64 {
+    let area_where = |holds: &dyn Fn(&FacetResult) -> bool| -> f64 {
         let chosen = results().zip(weights()).filter(|(result, _)| holds(result));
         // An empty sum of floats is -0.0.
         chosen.fold(0.0, |sum, (_, weight)| sum + weight)
     };
     let area: f64 = weights().sum();
-    let spread = |value: &dyn Fn(&lie_solver::FacetResult) -> f64| Spread {
-        min: results().map(value).fold(f64::INFINITY, f64::min),
+    let spread = |value: &dyn Fn(&FacetResult) -> f64| Spread {
+        min: walls().map(value).fold(f64::INFINITY, f64::min),
         mean: results()
             .zip(weights())
             .map(|(r, w)| value(r) * w)
             .sum::<f64>()
             / area,
-        max: results().map(value).fold(f64::NEG_INFINITY, f64::max),
+        max: walls().map(value).fold(f64::NEG_INFINITY, f64::max),
     };
-    let is_below = |i: usize| solution.facet_points[i].state == FacetState::BelowCutoff;
+    let is_below = |i: usize| points[i].state == FacetState::BelowCutoff;
     let of_fracture = (0..facets.elements.len()).filter(|&f| facets.fracture[f] == fracture);
     let below = of_fracture
         .clone()
@@ -264,7 +273,7 @@ fn fracture_summary(
         area,
         aperture: spread(&|result| result.aperture),
         normal_traction: spread(&|result| result.normal_traction),
-        slip_max: results()
+        slip_max: walls()
             .map(|result| result.slip.length())
             .fold(0.0, f64::max),
         open_area: area_where(&|result| result.state == FacetState::Open),

@@ -68,7 +68,7 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
         return load_msh(input, &scratch);
     };
     let mut silent = Report::new(Verbosity::Quiet);
-    let file = mesh_file(scene, output, &mut silent)?;
+    let file = mesh_file(scene, output, None, &mut silent)?;
     load_msh(&file.path, &scratch)
 }
 
@@ -76,6 +76,7 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
 const ONE_STEP: Workload = Workload {
     steps: 1,
     is_nonlinear: true,
+    is_smooth: true,
     is_path_dependent: false,
 };
 

@@ -131,9 +131,12 @@ fn capital(word: &str) -> String {
 /// # Errors
 /// Volumes without or with several rocks, gravity without density, fixed points that are not in
 /// the body.
-pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
+pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut decisions = Vec::new();
+    if scene.quarter_points {
+        decisions.extend(quarter_points(mesh.move_to_quarter_points()));
+    }
     let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
     let fractures = bind_fractures(scene, &mesh, &mut decisions);
     if scene.body.gravity != DVec3::ZERO {
@@ -179,6 +182,15 @@ pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         },
         decisions,
         oracles,
+    })
+}
+
+fn quarter_points(moved: usize) -> Option<String> {
+    (moved > 0).then(|| {
+        format!(
+            "quarter points: the middles of {moved} edges at crack fronts moved towards the front, so that \
+             displacements follow the square root of the distance ([mesh] quarter_points = false leaves them)"
+        )
     })
 }
 

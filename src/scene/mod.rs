@@ -46,9 +46,22 @@ pub enum MeshSource {
         parameters: Vec<(String, f64)>,
         /// Order of the elements, 1 or 2.
         order: u32,
+        /// How far to refine it, if not as the geometry says.
+        adapt: Option<Adapt>,
     },
     /// A mesh file.
     File(PathBuf),
+}
+
+/// A mesh that follows the estimated error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adapt {
+    /// Largest estimated error of the mean jump of a fracture, as a share of it.
+    pub tolerance: f64,
+    /// Unknowns beyond which no mesh goes.
+    pub max_unknowns: f64,
+    /// Most meshes.
+    pub max_rounds: usize,
 }
 
 /// What is asked of the linear solver.
@@ -72,6 +85,8 @@ pub struct Scene {
     pub title: String,
     /// Its mesh.
     pub mesh: MeshSource,
+    /// Whether second-order cells at crack fronts become quarter-point elements.
+    pub quarter_points: bool,
     /// Rocks by physical volume.
     pub rocks: Vec<Named<Rock>>,
     /// Fractures by physical surface.
@@ -179,9 +194,11 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let (timetable, clock) = read_timetable(root);
     let title = root.text("title").unwrap_or("untitled").to_owned();
     root.require_section("mesh", "[mesh]");
-    let mesh = root
-        .section("mesh")
-        .and_then(|section| read_mesh(section, folder));
+    let section = root.section("mesh");
+    let quarter_points = section
+        .as_ref()
+        .and_then(|section| section.flag("quarter_points"));
+    let mesh = section.and_then(|section| read_mesh(section, folder));
     root.require_section("rock", "[rock.default]");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
@@ -214,6 +231,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fractures,
         boundaries,
         fixed_points,
+        quarter_points: quarter_points.unwrap_or(true),
         mesh: mesh?,
     })
 }
@@ -242,25 +260,27 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
             "write order = 1 (linear) or order = 2 (quadratic)",
         );
     }
+    let adapt = section.section("adapt").and_then(read_adapt);
     let mesh = match (geometry, file) {
         (Some(geometry), None) => Some(MeshSource::Geometry {
             geometry,
             parameters,
             order: if order == Some(2.0) { 2 } else { 1 },
+            adapt,
         }),
-        (None, Some(file)) if parameters.is_empty() && order.is_none() => {
+        (None, Some(file)) if parameters.is_empty() && order.is_none() && adapt.is_none() => {
             Some(MeshSource::File(file))
         }
         (None, Some(_)) => {
-            let key = if order.is_some() {
-                "order"
-            } else {
-                "parameters"
+            let key = match (order, adapt) {
+                (Some(_), _) => "order",
+                (_, Some(_)) => "adapt",
+                _ => "parameters",
             };
             section.refuse(
                 key,
                 format!("`{key}` has no effect on a mesh file"),
-                "remove them, or give the geometry instead of the file",
+                "remove it, or give the geometry instead of the file",
             );
             None
         }
@@ -279,6 +299,19 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
     };
     section.finish();
     mesh
+}
+
+fn read_adapt(section: Section<'_, '_>) -> Option<Adapt> {
+    section.require("tolerance", "0.01");
+    let tolerance = section.number("tolerance", Accept::Between(0.0, 1.0));
+    let max_unknowns = section.number("max_unknowns", Accept::Positive);
+    let max_rounds = section.number("max_rounds", Accept::Positive);
+    section.finish();
+    Some(Adapt {
+        tolerance: tolerance?,
+        max_unknowns: max_unknowns.unwrap_or(1e6),
+        max_rounds: max_rounds.map_or(8, |rounds| rounds.ceil() as usize),
+    })
 }
 
 fn read_path(section: &Section<'_, '_>, key: &'static str, folder: &Path) -> Option<PathBuf> {

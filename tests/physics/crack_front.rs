@@ -53,7 +53,9 @@ pub fn tractions(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> V
     let nodes = &problem.mesh.facets.elements.nodes;
     // The position of a nodal point is the middle of its share; where it acts is the node.
     let place = |index: usize| match (quadrature, nodes.get(index)) {
-        (FacetQuadrature::Nodal, Some(&node)) => problem.mesh.nodes[node as usize],
+        (FacetQuadrature::Nodal | FacetQuadrature::Control, Some(&node)) => {
+            problem.mesh.nodes[node as usize]
+        }
         _ => interface.points[index].position,
     };
     let ahead = (0..interface.points.len()).filter(|&i| interface.points[i].fracture == 1);

@@ -5,7 +5,7 @@ use lie_core::Friction;
 use lie_mesh::structured::Patch;
 use lie_solver::{
     Bookmark, Discretisation, FacetResult, LinearMethod, Load, Newton, NewtonSettings, Problem,
-    Solution, Support, System, solution,
+    Solution, State, Support, System, solution,
 };
 
 use crate::networks;
@@ -74,6 +74,13 @@ fn t_block(cubes: usize) -> Problem {
     problem
 }
 
+/// The same block sheared as well, so that no two points of its joints close alike.
+fn sheared_block(cubes: usize) -> Problem {
+    let mut problem = t_block(cubes);
+    scenes::load(&mut problem, "top", DVec3::new(8e6, 3e6, -28.4e6));
+    problem
+}
+
 #[test]
 fn all_solvers_reach_the_same_state() {
     let network = networks::meshed(&networks::polygons(3), 0.25).expect("a network");
@@ -102,6 +109,73 @@ fn many_steps_end_where_one_does_and_cost_little() {
         let error = difference(&one, &many);
         assert!(error < 1e-6, "{method}: {error:e}");
         assert!(iterations <= 120, "{method}: {iterations} iterations");
+    }
+}
+
+/// What former steps moved spans what the next one needs: most small steps need no linear solve.
+#[test]
+fn a_hundred_steps_or_fifty_stiffnesses_take_few_linear_iterations() {
+    let problem = t_block(10);
+    let discretisation = Discretisation::of(&problem).expect("supported");
+    let mut system = System::assemble(&problem, discretisation);
+    let prepared = |system: &System<'_>| {
+        let newton = Newton::new(system, settings(LinearMethod::Iterative));
+        (newton.expect("prepared"), system.initial_state())
+    };
+    let step = |system: &System<'_>, newton: &mut Newton, state: &mut State, factor: f64| {
+        let record = newton.step(system, state, &Load::proportional(factor), |_, _| {});
+        assert!(record.converged(), "{factor}: {record:?}");
+        record.linear_iterations()
+    };
+    let (mut newton, mut state) = prepared(&system);
+    let one = step(&system, &mut newton, &mut state, 1.0);
+    let expected = solution(&system, &state);
+    let (mut newton, mut state) = prepared(&system);
+    let factors = (1..=100).map(|step| f64::from(step) / 100.0);
+    let hundred: usize = factors
+        .map(|factor| step(&system, &mut newton, &mut state, factor))
+        .sum();
+    let error = difference(&expected, &solution(&system, &state));
+    println!("one step: {one} iterations, a hundred: {hundred}, apart by {error:.1e}");
+    assert!(hundred <= 3 * one, "{hundred} against {one}");
+    assert!(error < 1e-9, "{error:e}");
+
+    let (mut newton, mut state) = prepared(&system);
+    let mut fifty = 0;
+    let mut stiffened = problem.clone();
+    for number in 0..50 {
+        let share = 4.0_f64.powf(f64::from(number) / 49.0 - 0.5);
+        for (other, given) in stiffened.fractures.iter_mut().zip(&problem.fractures) {
+            let stiffness = share * given.law.closure.normal_stiffness;
+            other.law.closure.normal_stiffness = stiffness;
+        }
+        system.set_laws(stiffened.fractures.iter().map(|f| f.law).collect());
+        fifty += step(&system, &mut newton, &mut state, 1.0);
+    }
+    let (alone, _) = solve(&stiffened, LinearMethod::Iterative, 1);
+    let error = difference(&alone, &solution(&system, &state));
+    println!("fifty stiffnesses: {fifty} iterations, the last apart by {error:.1e}");
+    assert!(fifty <= 4 * one, "{fifty} against {one}");
+    assert!(error < 1e-9, "{error:e}");
+}
+
+/// Steps that need no linear solve are as good as those of a solver that is exact, whatever the joints.
+#[test]
+fn guesses_in_the_space_of_former_steps_are_exact() {
+    for factor in [1e-3, 1.0, 1e3] {
+        let mut problem = sheared_block(6);
+        for fracture in &mut problem.fractures {
+            // The same traction closes them to the same share.
+            fracture.law.closure.aperture /= factor;
+            fracture.law.closure.normal_stiffness *= factor;
+            fracture.law.shear_stiffness *= factor;
+        }
+        let (direct, _) = solve(&problem, LinearMethod::Direct, 1);
+        let (one, _) = solve(&problem, LinearMethod::Iterative, 1);
+        let (many, _) = solve(&problem, LinearMethod::Iterative, 60);
+        let (one, many) = (difference(&direct, &one), difference(&direct, &many));
+        println!("{factor}: {one:.1e} in one step, {many:.1e} in many");
+        assert!(many < 1e-8, "{factor}: {many:e}");
     }
 }
 
@@ -170,7 +244,7 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let pool = pool.expect("threads");
-            pool.install(|| solve(&problem, method, 2).0.displacements)
+            pool.install(|| solve(&problem, method, 6).0.displacements)
         };
         let one = with(1);
         for threads in [2, 3] {
@@ -179,10 +253,18 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
     }
 }
 
+/// Load factors that rise, fall and jump, and where runs with them are interrupted.
+const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
+const STARTS: [usize; 4] = [0, 1, 4, 7];
+
 /// Runs that go on in a new solver from the bytes of a bookmark, against the one that does not stop;
-/// returns the iterations of the linear solver.
-fn interrupt(problem: &Problem, method: LinearMethod) -> usize {
-    const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
+/// returns the iterations of the linear solver, and whether a bookmark is shorter than one before.
+fn interrupt(
+    problem: &Problem,
+    method: LinearMethod,
+    factors: &[f64],
+    starts: [usize; 4],
+) -> (usize, bool) {
     let discretisation = Discretisation::of(problem).expect("supported");
     let system = System::assemble(problem, discretisation);
     let prepared = || Newton::new(&system, settings(method)).expect("prepared");
@@ -194,34 +276,48 @@ fn interrupt(problem: &Problem, method: LinearMethod) -> usize {
     let (mut newton, mut state) = (prepared(), system.initial_state());
     let mut bookmarks = Vec::new();
     let mut iterations = 0;
-    for factor in FACTORS {
+    for &factor in factors {
         let bytes = postcard::to_stdvec(&newton.bookmark(&state));
         bookmarks.push(bytes.expect("bytes"));
         iterations += step(&mut newton, &mut state, factor);
     }
     let end = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes");
-    for start in [0, 1, 4, 7] {
+    for start in starts {
         let mut newton = prepared();
         let bookmark: Bookmark<'_> = postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
         assert!(bookmark.fits(&system));
         let mut state = newton.turn_to(bookmark).expect("prepared");
-        for factor in &FACTORS[start..] {
+        for factor in &factors[start..] {
             step(&mut newton, &mut state, *factor);
         }
         let same = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes") == end;
         assert!(same, "{method} from step {start}");
     }
-    iterations
+    let shrinks = bookmarks
+        .windows(2)
+        .any(|pair| pair[1].len() < pair[0].len());
+    (iterations, shrinks)
 }
 
 /// Whatever the solver has learnt before counts: factors of former tangents, paths that turn. Blocks
 /// smaller than these never reuse a factor.
 #[test]
 fn bookmarks_continue_to_the_last_bit() {
-    assert_eq!(interrupt(&t_block(4), LinearMethod::Direct), 0);
+    let direct = interrupt(&t_block(4), LinearMethod::Direct, &FACTORS, STARTS);
+    assert_eq!(direct.0, 0);
     for method in [LinearMethod::Condensed, LinearMethod::Iterative] {
-        assert!(interrupt(&t_block(14), method) > 0, "{method}");
+        let (iterations, _) = interrupt(&t_block(14), method, &FACTORS, STARTS);
+        assert!(iterations > 0, "{method}");
     }
+}
+
+/// So many steps that the space of their moves is condensed.
+#[test]
+fn bookmarks_of_many_steps_continue_to_the_last_bit() {
+    let factors: Vec<f64> = (1..=40).map(|step| 0.025 * f64::from(step)).collect();
+    let starts = [3, 14, 22, 37];
+    let (_, is_condensed) = interrupt(&sheared_block(6), LinearMethod::Iterative, &factors, starts);
+    assert!(is_condensed);
 }
 
 /// Joints that slide and open by it remember that.
@@ -242,7 +338,7 @@ fn bookmarks_continue_sliding_to_the_last_bit() {
     };
     assert!(scenes::solve(&problem).facet_points.iter().any(slid));
     for method in LinearMethod::ALL {
-        interrupt(&problem, method);
+        interrupt(&problem, method, &FACTORS, STARTS);
     }
 }
 

@@ -15,6 +15,7 @@ mod families;
 mod friction;
 mod geometries;
 mod junctions;
+mod kinks;
 mod linear_solvers;
 mod load_paths;
 mod loops;

@@ -9,7 +9,9 @@ use glam::DVec3;
 use lie_core::{kernel, rule};
 use lie_mesh::Shape;
 use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{Discretisation, Load, Newton, NewtonSettings, Problem, Support, System};
+use lie_solver::{
+    CaseLoads, Discretisation, Load, Loads, Newton, NewtonSettings, Problem, Support, System,
+};
 
 use crate::scenes::{self, ROCK, joint};
 
@@ -82,9 +84,12 @@ fn error(shape: Shape, cubes: usize) -> f64 {
         }
     }
     let supports = &system.discretisation.supports;
-    system.loads.cases[0].applied = (0..forces.len())
-        .map(|i| supports.project(i, forces[i]))
-        .collect();
+    let applied = (0..forces.len()).map(|i| supports.project(i, forces[i]));
+    let case = CaseLoads {
+        applied: applied.collect(),
+        prescribed: system.loads.cases()[0].prescribed.clone(),
+    };
+    system.loads = Loads::new(vec![case], system.loads.initial().to_vec());
     let mut state = system.initial_state();
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
     assert!(

@@ -121,6 +121,7 @@ pub fn meshed(polygons: &[Polygon], size: f64) -> Result<Draft, Vec<Defect>> {
         geometry: &script,
         parameters: &[],
         order: 1,
+        sizes: None,
         output: &file,
     })?;
     let mut draft = load_msh(&file, folder.path())?;

@@ -1,4 +1,4 @@
-//! B11: traction behind a crack front in a stiff joint, nodal rule against Gauss points.
+//! B11: traction behind a crack front in a stiff joint, nodes and control points against Gauss points.
 
 use lie_core::FacetQuadrature;
 use lie_mesh::Shape;
@@ -19,17 +19,21 @@ fn nodal_rules_have_no_traction_of_the_wrong_sign() {
     println!("smallest over largest normal traction ahead of a crack, over K h / E");
     let mut gauss_fails = 0;
     for shape in Shape::CELLS {
-        for quadrature in [FacetQuadrature::Nodal, FacetQuadrature::Gauss] {
+        for quadrature in [
+            FacetQuadrature::Nodal,
+            FacetQuadrature::Control,
+            FacetQuadrature::Gauss,
+        ] {
             let ratios = STIFFNESS.map(|stiffness| worst(shape, quadrature, stiffness));
             let text: Vec<String> = ratios.iter().map(|ratio| format!("{ratio:>9.4}")).collect();
             println!(
-                "{:<10} {:<6} {}",
+                "{:<10} {:<7} {}",
                 format!("{shape:?}"),
                 format!("{quadrature:?}"),
                 text.join("")
             );
             match quadrature {
-                FacetQuadrature::Nodal => {
+                FacetQuadrature::Nodal | FacetQuadrature::Control => {
                     assert!(
                         ratios.iter().all(|ratio| *ratio > 0.0),
                         "{shape:?}: {ratios:?}"

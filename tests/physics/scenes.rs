@@ -144,6 +144,7 @@ pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> 
         geometry: &root.join(format!("geometries/{name}/{name}.geo")),
         parameters: &parameters,
         order,
+        sizes: None,
         output: &file,
     })
     .unwrap_or_else(|defects| panic!("{defects:?}"));

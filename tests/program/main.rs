@@ -1,5 +1,6 @@
 //! The program as its users meet it: the real binary, its messages, its exit codes, its files.
 
+mod adapt;
 mod bad_input;
 mod fuzz_scene;
 mod harness;

@@ -7,7 +7,7 @@ mod pvd;
 mod vtu;
 
 pub use atomic::write_atomically;
-pub use gmsh::{Meshing, mesh_geometry};
+pub use gmsh::{Meshing, mesh_geometry, write_size_field};
 pub use msh::{load_msh, parse_msh, read_msh};
 pub use pvd::write_pvd;
 pub use vtu::{Field, Grid, Values, write_vtu};

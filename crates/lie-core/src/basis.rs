@@ -155,8 +155,8 @@ pub(crate) fn reference_nodes(shape: Shape) -> Vec<DVec3> {
         nodes.push(sum / members.len() as f64);
     };
     if shape.is_quadratic() {
-        for &(a, b) in edges(shape) {
-            middle(&[a, b]);
+        for &[a, b] in shape.edges() {
+            middle(&[a as usize, b as usize]);
         }
         match shape {
             Shape::Quad9 => middle(&[0, 1, 2, 3]),
@@ -194,49 +194,5 @@ fn reference_corners(shape: Shape) -> Vec<DVec3> {
         5 => [square(0.0).as_slice(), &[DVec3::Z]].concat(),
         6 => [triangle(-1.0), triangle(1.0)].concat(),
         _ => [square(-1.0), square(1.0)].concat(),
-    }
-}
-
-/// Corners of each edge, in gmsh's order of the middles.
-fn edges(shape: Shape) -> &'static [(usize, usize)] {
-    match shape.corner_count() {
-        3 => &[(0, 1), (1, 2), (2, 0)],
-        4 if shape.dimension() == 2 => &[(0, 1), (1, 2), (2, 3), (3, 0)],
-        4 => &[(0, 1), (1, 2), (0, 2), (0, 3), (2, 3), (1, 3)],
-        5 => &[
-            (0, 1),
-            (0, 3),
-            (0, 4),
-            (1, 2),
-            (1, 4),
-            (2, 3),
-            (2, 4),
-            (3, 4),
-        ],
-        6 => &[
-            (0, 1),
-            (0, 2),
-            (0, 3),
-            (1, 2),
-            (1, 4),
-            (2, 5),
-            (3, 4),
-            (3, 5),
-            (4, 5),
-        ],
-        _ => &[
-            (0, 1),
-            (0, 3),
-            (0, 4),
-            (1, 2),
-            (1, 5),
-            (2, 3),
-            (2, 6),
-            (3, 7),
-            (4, 5),
-            (4, 7),
-            (5, 6),
-            (6, 7),
-        ],
     }
 }

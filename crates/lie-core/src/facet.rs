@@ -12,10 +12,19 @@
 //! (corners 1/27, edges 5/27). Any share passes patch tests; with shares from 0.2 to 0.4 a stiff
 //! joint ahead of a crack has no traction of the wrong sign, while the closed rule of degree 3 (9/20)
 //! has some and the rule on edges alone (0) has many (`tests/physics/oscillation.rs`).
+//!
+//! That is more points than nodes, which a law that may be rigid cannot have: walls in contact at all
+//! of them share their tractions in more than one way, and friction depends on how. Such laws are
+//! evaluated at the control points of the facet's Bezier form, as many as nodes, with the control
+//! values of the jump and the area vectors `A_q = int B_q n dA`, all positive (Tri6: 1/6 each; Quad8:
+//! corners 1/12, edges 1/6; Quad9: 1/9 each). A uniform traction still reaches the nodes exactly, and
+//! walls that do not overlap at the control points do so nowhere on a facet, see [`crate::bezier_function`].
+//! Where a compliant law is integrated in this way it is of second order, the rule above of third.
 
 use glam::DVec3;
 use lie_mesh::Shape;
 
+use crate::bezier::{bezier_function, control_value};
 use crate::element::rule;
 
 /// How a fracture is integrated over a facet.
@@ -24,6 +33,8 @@ pub enum FacetQuadrature {
     /// At the nodes (and the middle of a six-node triangle or eight-node quadrangle).
     #[default]
     Nodal,
+    /// At the control points of the Bezier form; on facets of first order these are the nodes.
+    Control,
     /// At Gauss points, for comparison.
     Gauss,
 }
@@ -35,27 +46,32 @@ pub struct FacetRulePoint {
     pub area: DVec3,
     /// Where a linear field is to be taken so that it does its exact work (m).
     pub position: DVec3,
-    /// Local nodes and their shape functions at the point; zeros left out.
+    /// Local nodes and their factors in the jump of the point: shape functions, or those of a control
+    /// value; zeros left out.
     pub nodes: Vec<(u8, f64)>,
 }
 
-/// Points of a facet with the given `nodes` (m); with the nodal rule the first ones are the nodes,
-/// in order.
+/// Points of a facet with the given `nodes` (m); with all but Gauss's rule the first ones are those of
+/// the nodes, in order.
 pub fn facet_points(
     shape: Shape,
     nodes: &[DVec3],
     quadrature: FacetQuadrature,
 ) -> Vec<FacetRulePoint> {
     let gauss = gauss_points(shape, nodes);
-    if quadrature == FacetQuadrature::Gauss {
-        return gauss;
+    match quadrature {
+        FacetQuadrature::Gauss => gauss,
+        FacetQuadrature::Control => (0..nodes.len())
+            .map(|node| control_point(shape, node, nodes[node], &gauss))
+            .collect(),
+        FacetQuadrature::Nodal => {
+            let middle = middle_point(shape, nodes);
+            (0..nodes.len())
+                .map(|node| node_point(node, nodes[node], &gauss, middle.as_ref()))
+                .chain(middle.clone())
+                .collect()
+        }
     }
-    let middle = middle_point(shape, nodes);
-    let mut points: Vec<FacetRulePoint> = (0..nodes.len())
-        .map(|node| node_point(node, nodes[node], &gauss, middle.as_ref()))
-        .collect();
-    points.extend(middle);
-    points
 }
 
 /// `int N_a dA` (m^2) for all nodes of a facet, along the mean normal of the point: what a uniform
@@ -115,23 +131,49 @@ fn middle_point(shape: Shape, nodes: &[DVec3]) -> Option<FacetRulePoint> {
     ))
 }
 
-/// The point of a node: its share of the facet less what the middle point takes over. `position`
-/// is the barycentre of that share.
+/// The point of a node: its share of the facet less what the middle point takes over.
 fn node_point(
     node: usize,
     fallback: DVec3,
     gauss: &[FacetRulePoint],
     middle: Option<&FacetRulePoint>,
 ) -> FacetRulePoint {
-    let value = |point: &FacetRulePoint| {
-        let own = point
-            .nodes
-            .iter()
-            .find(|(local, _)| *local as usize == node);
+    let own = [(node as u8, 1.0)];
+    let parts = gauss.iter().map(|point| (value(&own, point), point));
+    let parts = parts.chain(middle.map(|point| (-value(&own, point), point)));
+    gathered(parts, fallback, own.to_vec())
+}
+
+/// The control point of a node: the integral of its Bezier function.
+fn control_point(
+    shape: Shape,
+    node: usize,
+    fallback: DVec3,
+    gauss: &[FacetRulePoint],
+) -> FacetRulePoint {
+    let function = bezier_function(shape, node);
+    let parts = gauss.iter().map(|point| (value(&function, point), point));
+    gathered(parts, fallback, control_value(shape, node))
+}
+
+/// `sum_a S_a N_a` at a point.
+fn value(shares: &[(u8, f64)], point: &FacetRulePoint) -> f64 {
+    let of_node = |node: u8| {
+        let own = point.nodes.iter().find(|(local, _)| *local == node);
         own.map_or(0.0, |(_, value)| *value)
     };
-    let parts = gauss.iter().map(|point| (value(point), point));
-    let parts = parts.chain(middle.map(|point| (-value(point), point)));
+    shares
+        .iter()
+        .map(|(node, share)| share * of_node(*node))
+        .sum()
+}
+
+/// A point that takes shares of others; `position` is the barycentre of what it takes.
+fn gathered<'a>(
+    parts: impl Iterator<Item = (f64, &'a FacetRulePoint)>,
+    fallback: DVec3,
+    nodes: Vec<(u8, f64)>,
+) -> FacetRulePoint {
     let (mut area, mut size, mut moment) = (DVec3::ZERO, 0.0, DVec3::ZERO);
     for (share, point) in parts {
         area += share * point.area;
@@ -141,7 +183,7 @@ fn node_point(
     FacetRulePoint {
         area,
         position: if size > 0.0 { moment / size } else { fallback },
-        nodes: vec![(node as u8, 1.0)],
+        nodes,
     }
 }
 
@@ -150,25 +192,34 @@ mod tests {
     use super::*;
     use crate::basis::reference_nodes;
 
-    fn nodal(shape: Shape) -> Vec<FacetRulePoint> {
-        facet_points(shape, &reference_nodes(shape), FacetQuadrature::Nodal)
+    const AT_NODES: [FacetQuadrature; 2] = [FacetQuadrature::Nodal, FacetQuadrature::Control];
+
+    fn weights_are(shape: Shape, quadrature: FacetQuadrature, expected: &[f64]) {
+        let points = facet_points(shape, &reference_nodes(shape), quadrature);
+        let whole: f64 = points.iter().map(|point| point.area.z).sum();
+        assert_eq!(points.len(), expected.len());
+        for (point, expected) in points.iter().zip(expected) {
+            let found = point.area.z / whole;
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{shape:?}: {found} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn control_weights_are_as_stated() {
+        let same = |shape, expected: &[f64]| weights_are(shape, FacetQuadrature::Control, expected);
+        same(Shape::Tri3, &[1.0 / 3.0; 3]);
+        same(Shape::Quad4, &[0.25; 4]);
+        same(Shape::Tri6, &[1.0 / 6.0; 6]);
+        same(Shape::Quad8, &[[1.0 / 12.0; 4], [1.0 / 6.0; 4]].concat());
+        same(Shape::Quad9, &[1.0 / 9.0; 9]);
     }
 
     #[test]
     fn nodal_weights_are_as_stated() {
-        let weights = |shape: Shape| -> Vec<f64> {
-            let points = nodal(shape);
-            let whole: f64 = points.iter().map(|point| point.area.z).sum();
-            points.iter().map(|point| point.area.z / whole).collect()
-        };
-        let same = |shape: Shape, expected: &[f64]| {
-            for (found, expected) in weights(shape).iter().zip(expected) {
-                assert!(
-                    (found - expected).abs() < 1e-12,
-                    "{shape:?}: {found} {expected}"
-                );
-            }
-        };
+        let same = |shape, expected: &[f64]| weights_are(shape, FacetQuadrature::Nodal, expected);
         same(Shape::Tri3, &[1.0 / 3.0; 3]);
         same(Shape::Quad4, &[0.25; 4]);
         let (corner, edge) = (1.0 / 27.0, 5.0 / 27.0);
@@ -199,14 +250,16 @@ mod tests {
             let bend = |x: DVec3| x + 0.2 * DVec3::new(x.x * x.y, 0.5 * x.y * x.y, x.x * x.x - x.y);
             let nodes: Vec<DVec3> = reference_nodes(shape).into_iter().map(bend).collect();
             let exact = load_areas(shape, &nodes);
-            let mut sums = vec![DVec3::ZERO; nodes.len()];
-            for point in facet_points(shape, &nodes, FacetQuadrature::Nodal) {
-                for (local, value) in point.nodes {
-                    sums[local as usize] += value * point.area;
+            for quadrature in AT_NODES {
+                let mut sums = vec![DVec3::ZERO; nodes.len()];
+                for point in facet_points(shape, &nodes, quadrature) {
+                    for (local, value) in point.nodes {
+                        sums[local as usize] += value * point.area;
+                    }
                 }
-            }
-            for (sum, (_, expected)) in sums.iter().zip(&exact) {
-                assert!((*sum - *expected).length() < 1e-14, "{shape:?}");
+                for (sum, (_, expected)) in sums.iter().zip(&exact) {
+                    assert!((*sum - *expected).length() < 1e-14, "{shape:?}");
+                }
             }
         }
     }
@@ -225,9 +278,11 @@ mod tests {
                 }
                 sums
             };
-            let both = moments(FacetQuadrature::Nodal).into_iter();
-            for (sum, expected) in both.zip(moments(FacetQuadrature::Gauss)) {
-                assert!((sum - expected).length() < 1e-14, "{shape:?}");
+            let exact = moments(FacetQuadrature::Gauss);
+            for quadrature in AT_NODES {
+                for (sum, expected) in moments(quadrature).iter().zip(&exact) {
+                    assert!((*sum - *expected).length() < 1e-14, "{shape:?}");
+                }
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::closure::{Closure, Separation, Tension};
+use crate::closure::{Closure, NormalBalance, Separation, Tension};
 
 /// Coulomb friction: the shear traction is at most `c - tan(phi) sigma_n`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,12 +106,17 @@ impl FractureLaw {
     pub fn at(&self, separation: Separation, slip: DVec3, normal: DVec3) -> Response {
         let across = self.closure.at(separation);
         let hold = self.hold(separation);
+        let balance = NormalBalance {
+            separation,
+            traction: across.traction,
+        };
+        let walls = self.held(balance, slip, self.shear_stiffness);
         let shear = hold.share * self.shear_stiffness;
         let energy = 0.5 * self.shear_stiffness * slip.length_squared();
         let coupling = hold.slope * self.shear_stiffness * slip;
         let across_tangent = across.tangent + hold.curvature * energy;
         Response {
-            traction: (across.traction + hold.slope * energy) * normal + shear * slip,
+            traction: walls.traction(normal),
             tangent: DMat3::from_diagonal(DVec3::splat(shear))
                 + outer(normal, (across_tangent - shear) * normal)
                 + outer(normal, coupling)

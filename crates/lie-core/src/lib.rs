@@ -24,6 +24,7 @@
 //! ```
 
 mod basis;
+mod bezier;
 mod closure;
 mod element;
 pub mod enrichment;
@@ -36,6 +37,7 @@ mod rock;
 mod walls;
 
 pub use basis::Basis;
+pub use bezier::{bezier_function, control_value};
 pub use closure::{Closure, ClosureKind, NormalBalance, NormalResponse, Separation, Tension};
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};

@@ -142,7 +142,7 @@ impl FractureLaw {
     }
 
     /// Walls without friction: `across` is where they are and what the closure law carries there.
-    fn held(&self, across: NormalBalance, slip: DVec3, stiffness: f64) -> Walls {
+    pub(crate) fn held(&self, across: NormalBalance, slip: DVec3, stiffness: f64) -> Walls {
         Walls {
             separation: across.separation,
             slip,

@@ -25,6 +25,7 @@ mod geometry;
 mod mesh;
 mod orient;
 mod pairing;
+mod quarter_points;
 mod roles;
 mod sectors;
 mod shape;

@@ -85,6 +85,8 @@ pub struct Mesh {
     pub block: Vec<u32>,
     /// Number of blocks.
     pub block_count: usize,
+    /// Whether cells at crack fronts are quarter-point elements, see [`Mesh::move_to_quarter_points`].
+    pub has_quarter_points: bool,
 }
 
 impl Mesh {
@@ -151,6 +153,7 @@ impl Mesh {
             sectors,
             block,
             block_count,
+            has_quarter_points: false,
             source: draft.source,
             node_tags: draft.node_tags,
             cells: draft.cells.elements,

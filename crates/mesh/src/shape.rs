@@ -110,6 +110,19 @@ impl Shape {
         self.node_count() > self.corner_count()
     }
 
+    /// The edges, as pairs of corners, in the order of the nodes between them: those of quadratic shapes
+    /// follow the corners.
+    pub fn edges(self) -> &'static [[u8; 2]] {
+        match self.corner_count() {
+            3 => &[[0, 1], [1, 2], [2, 0]],
+            4 if self.dimension() == 2 => &[[0, 1], [1, 2], [2, 3], [3, 0]],
+            4 => &[[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]],
+            5 => &PYRAMID_EDGES,
+            6 => &PRISM_EDGES,
+            _ => &HEXAHEDRON_EDGES,
+        }
+    }
+
     /// The faces of a cell; empty for a facet.
     pub fn faces(self) -> &'static [Face] {
         match self {
@@ -128,6 +141,44 @@ impl Shape {
         }
     }
 }
+
+const PYRAMID_EDGES: [[u8; 2]; 8] = [
+    [0, 1],
+    [0, 3],
+    [0, 4],
+    [1, 2],
+    [1, 4],
+    [2, 3],
+    [2, 4],
+    [3, 4],
+];
+
+const PRISM_EDGES: [[u8; 2]; 9] = [
+    [0, 1],
+    [0, 2],
+    [0, 3],
+    [1, 2],
+    [1, 4],
+    [2, 5],
+    [3, 4],
+    [3, 5],
+    [4, 5],
+];
+
+const HEXAHEDRON_EDGES: [[u8; 2]; 12] = [
+    [0, 1],
+    [0, 3],
+    [0, 4],
+    [1, 2],
+    [1, 5],
+    [2, 3],
+    [2, 6],
+    [3, 7],
+    [4, 5],
+    [4, 7],
+    [5, 6],
+    [6, 7],
+];
 
 const fn face(shape: Shape, nodes: &'static [u8]) -> Face {
     Face { shape, nodes }

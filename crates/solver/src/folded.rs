@@ -27,7 +27,8 @@ pub(crate) fn find(problem: &Problem) -> Option<Defect> {
         Defect::new(
             format!("{}, cell {}", mesh.source, sample(&folded)),
             "the cell folds over itself: a part of it is inside out",
-            "set Mesh.HighOrderOptimize = 1 (curved cells) or Mesh.Optimize = 1, or mesh finer there",
+            "set Mesh.HighOrderOptimize = 1 (curved cells) or Mesh.Optimize = 1, or mesh finer there; at crack fronts \
+             `quarter_points = false` under [mesh] may help",
         )
     })
 }

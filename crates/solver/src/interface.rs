@@ -3,8 +3,8 @@
 //! The jump of a facet point is `w = sum_i J_i y_i + sum_c f_c w_c`, over the unknowns `y_i` of its nodes,
 //! with `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))`, and over the load cases `c` with their
 //! factors `f_c` and the jumps `w_c` of their prescribed displacements.
-//! Facets are integrated at their nodes, so with few exceptions (see `lie_core::facet_points`) a
-//! facet point couples the unknowns of one node only. Without supports the coefficient of a
+//! Facets are integrated at their nodes, so with few exceptions (facets of second order, see
+//! `lie_core::facet_points`) a facet point couples the unknowns of one node only. Without supports the coefficient of a
 //! continuous displacement is zero and left out: the fractures act on the jumps alone.
 
 use glam::{DMat3, DVec3};
@@ -28,7 +28,7 @@ pub struct FacetPoint {
     pub fracture: u32,
     /// Place (m).
     pub position: DVec3,
-    /// Area it stands for (m^2).
+    /// Area it stands for (m^2); negative at the tip of a quarter-point facet, where nothing moves.
     pub area: f64,
     /// Unit normal, from minus to plus.
     pub normal: DVec3,
@@ -39,6 +39,8 @@ pub struct FacetPoint {
     pub initial: Walls,
 }
 
+/// Share of a facet below which the area of a point has no direction of its own.
+const TURNED: f64 = 1e-9;
 /// Stiffness of the rock along a facet, as a share of that across.
 const SHEAR_SHARE: f64 = 0.3;
 
@@ -77,8 +79,8 @@ struct PrescribedJump {
 /// All facet points and how the unknowns move them.
 #[derive(Debug, Clone)]
 pub struct Interface {
-    /// The facet points. With the nodal rule the first ones are the nodes of the facets, in the
-    /// order of [`lie_mesh::Facets::elements`]' flat node list; middle points follow.
+    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
+    /// in the order of [`lie_mesh::Facets::elements`]' flat node list; middle points follow.
     pub points: Vec<FacetPoint>,
     /// Start of the terms of each facet point.
     term_offset: Vec<usize>,
@@ -129,7 +131,7 @@ impl Interface {
             interface.terms.extend(drawn.terms);
             interface.term_offset.push(interface.terms.len());
         }
-        if problem.facet_quadrature == FacetQuadrature::Nodal {
+        if problem.facet_quadrature != FacetQuadrature::Gauss {
             share_springs(problem, points, &mut interface.points);
         }
         interface.connect();
@@ -231,7 +233,15 @@ impl Interface {
 
     /// Adds the forces of the fractures with [`Self::stiffness`] to `product`: `K_ij v_j`.
     pub(crate) fn add_product(&self, stiffness: &[DMat3], vector: &[DVec3], product: &mut [DVec3]) {
-        let sums: Vec<DVec3> = (0..self.unknowns.len())
+        let sums = self.resistance(stiffness, vector);
+        for (&row, sum) in self.unknowns.iter().zip(sums) {
+            product[row as usize] += sum;
+        }
+    }
+
+    /// Forces of the fractures with [`Self::stiffness`] on each of `unknowns`: `K_ij v_j`.
+    pub(crate) fn resistance(&self, stiffness: &[DMat3], vector: &[DVec3]) -> Vec<DVec3> {
+        (0..self.unknowns.len())
             .into_par_iter()
             .map(|index| {
                 let range = self.columns.offset[index]..self.columns.offset[index + 1];
@@ -241,10 +251,7 @@ impl Interface {
                     .map(|(block, &column)| *block * vector[column as usize])
                     .sum()
             })
-            .collect();
-        for (&row, sum) in self.unknowns.iter().zip(sums) {
-            product[row as usize] += sum;
-        }
+            .collect()
     }
 
     fn stiffness_row(&self, row: usize, tangents: &[DMat3]) -> Vec<DMat3> {
@@ -313,15 +320,16 @@ fn draw(
         .iter()
         .map(|&node| mesh.nodes[node as usize])
         .collect();
-    let rule = facet_points(elements.shapes[facet], &positions, problem.facet_quadrature);
-    let area: f64 = rule.iter().map(|point| point.area.length()).sum();
-    let spring = spring(problem, facet, area);
+    let quadrature = problem.rule_of(mesh.facets.fracture[facet]);
+    let rule = facet_points(elements.shapes[facet], &positions, quadrature);
+    let mean: DVec3 = rule.iter().map(|point| point.area).sum();
+    let spring = spring(problem, facet, mean.length());
     let mut drawn: Vec<Drawn> = rule
         .iter()
-        .map(|point| draw_point(problem, points, supports, (facet, spring), point))
+        .map(|point| draw_point(problem, points, supports, (facet, spring, mean), point))
         .collect();
-    let nodal = match problem.facet_quadrature {
-        FacetQuadrature::Nodal => nodes.len(),
+    let nodal = match quadrature {
+        FacetQuadrature::Nodal | FacetQuadrature::Control => nodes.len(),
         FacetQuadrature::Gauss => 0,
     };
     let others = drawn.split_off(nodal);
@@ -332,7 +340,7 @@ fn draw_point(
     problem: &Problem,
     points: &Points,
     supports: &Supports,
-    (facet, spring): (usize, f64),
+    (facet, spring, mean): (usize, f64, DVec3),
     rule: &FacetRulePoint,
 ) -> Drawn {
     let facets = &problem.mesh.facets;
@@ -353,13 +361,18 @@ fn draw_point(
         terms.extend(jump_terms(points, supports, plus, minus, value));
     }
     let fracture = facets.fracture[facet];
-    let normal = rule.area.normalize();
+    // At the tip of a quarter-point facet the share of the tip is negative or nothing; nothing moves there.
+    let own = rule.area.length();
+    let (area, normal) = match own > TURNED * mean.length() && rule.area.dot(mean) > 0.0 {
+        true => (own, rule.area / own),
+        false => (rule.area.dot(mean.normalize()), mean.normalize()),
+    };
     let law = &problem.fractures[fracture as usize].law;
     let point = FacetPoint {
         facet: facet as u32,
         fracture,
         position: rule.position,
-        area: rule.area.length(),
+        area,
         normal,
         spring,
         initial: initial_walls(problem, law, rule.position, normal),

@@ -8,6 +8,7 @@ use crate::assembly::Frame;
 use crate::cell_forces;
 use crate::interface::Interface;
 use crate::problem::SurfaceLoad;
+use crate::system::norm;
 
 /// Forces of one load case on all unknowns at load factor 1 (N).
 #[derive(Debug, Clone)]
@@ -18,26 +19,72 @@ pub struct CaseLoads {
     pub prescribed: Vec<DVec3>,
 }
 
-/// Forces on all unknowns (N).
+impl CaseLoads {
+    fn sizes(&self) -> CaseSizes {
+        CaseSizes {
+            applied: norm(&self.applied),
+            prescribed: norm(&self.prescribed),
+        }
+    }
+}
+
+/// Euclidean norms of [`CaseLoads`] over all unknowns (N).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CaseSizes {
+    pub(crate) applied: f64,
+    pub(crate) prescribed: f64,
+}
+
+/// Forces on all unknowns (N), and how large they are.
 #[derive(Debug, Clone)]
 pub struct Loads {
-    /// Those of each load case.
-    pub cases: Vec<CaseLoads>,
-    /// What the initial stress of the rock does; never scaled.
-    pub initial: Vec<DVec3>,
+    cases: Vec<CaseLoads>,
+    initial: Vec<DVec3>,
+    case_sizes: Vec<CaseSizes>,
+    initial_size: f64,
 }
 
 impl Loads {
+    /// Those of each load case, and what the initial stress of the rock does, which is never scaled.
+    pub fn new(cases: Vec<CaseLoads>, initial: Vec<DVec3>) -> Self {
+        Self {
+            case_sizes: cases.iter().map(CaseLoads::sizes).collect(),
+            initial_size: norm(&initial),
+            cases,
+            initial,
+        }
+    }
+
     pub(crate) fn of(frame: Frame<'_>, interface: &Interface) -> Self {
         let of_case = |case| CaseLoads {
             applied: applied(frame, interface, case),
             prescribed: negative(frame, cell_forces::prescribed(frame, case)),
         };
         let cases = 0..frame.problem.schedule.case_count();
-        Self {
-            cases: cases.map(of_case).collect(),
-            initial: negative(frame, cell_forces::initial_stress(frame)),
-        }
+        Self::new(
+            cases.map(of_case).collect(),
+            negative(frame, cell_forces::initial_stress(frame)),
+        )
+    }
+
+    /// Forces of each load case at load factor 1.
+    pub fn cases(&self) -> &[CaseLoads] {
+        &self.cases
+    }
+
+    /// What the initial stress of the rock does.
+    pub fn initial(&self) -> &[DVec3] {
+        &self.initial
+    }
+
+    /// Norms of the forces of each load case at load factor 1.
+    pub(crate) fn case_sizes(&self) -> &[CaseSizes] {
+        &self.case_sizes
+    }
+
+    /// Norm of [`Self::initial`].
+    pub(crate) fn initial_size(&self) -> f64 {
+        self.initial_size
     }
 }
 

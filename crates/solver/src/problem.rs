@@ -109,7 +109,7 @@ pub struct Problem {
     pub initial_stress: Option<InitialStress>,
     /// Load cases and load steps.
     pub schedule: Schedule,
-    /// How fractures are integrated over their facets.
+    /// How fractures are integrated over their facets; see also [`Self::rule_of`].
     pub facet_quadrature: FacetQuadrature,
 }
 
@@ -117,5 +117,16 @@ impl Problem {
     /// Rock of a cell.
     pub fn rock(&self, cell: usize) -> &Rock {
         &self.rocks[self.rock_of_cell[cell] as usize]
+    }
+
+    /// How a fracture is integrated: at control points instead of nodes if its law has kinks, because
+    /// walls that may be rigid at more points than there are jumps do not know how to share a load.
+    pub fn rule_of(&self, fracture: u32) -> FacetQuadrature {
+        match self.facet_quadrature {
+            FacetQuadrature::Nodal if !self.fractures[fracture as usize].law.is_smooth() => {
+                FacetQuadrature::Control
+            }
+            chosen => chosen,
+        }
     }
 }

@@ -36,13 +36,15 @@ pub(crate) struct Tie {
     pub(crate) along: bool,
 }
 
-/// Names every group of blocks that can move freely before anything has moved.
+/// Names every group of blocks that can move freely under any load. Laws with kinks may carry or not, as
+/// the loads have it: what they let go is found in the solve.
 pub(crate) fn find(problem: &Problem, points: &Points, supports: &Supports) -> Vec<Defect> {
     let tie = |facet: usize| {
         let law = &problem.fractures[problem.mesh.facets.fracture[facet] as usize].law;
+        let kinked = !law.is_smooth();
         Tie {
-            across: law.closure.normal_stiffness > 0.0,
-            along: law.shear_stiffness > 0.0,
+            across: kinked || law.closure.normal_stiffness > 0.0,
+            along: kinked || law.shear_stiffness > 0.0,
         }
     };
     let remedy = "add a [boundary.NAME] with displacement or symmetry, a [[fixed_point]], or stiffness on the fractures around it";

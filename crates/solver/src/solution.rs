@@ -1,11 +1,13 @@
 //! What a converged state means: displacement, stress, jump, aperture, traction.
 
 use glam::{DMat3, DVec3};
-use lie_core::SymmetricStress;
 use lie_core::kernel::{self, MAX_NODES};
+use lie_core::{FacetQuadrature, SymmetricStress, bezier_function};
+use lie_mesh::Shape;
 use rayon::prelude::*;
 
-use crate::interface::FacetPoint;
+use crate::interface::{FacetPoint, Interface};
+use crate::problem::Problem;
 use crate::system::{FacetPointState, State, System};
 
 /// What a facet point does.
@@ -47,8 +49,51 @@ pub struct Solution {
     pub displacements: Vec<DVec3>,
     /// Mean stress of every cell, initial stress included (Pa).
     pub stresses: Vec<SymmetricStress>,
-    /// Results of every facet point.
+    /// Results of every facet point, as its law sees them: at control points, control values.
     pub facet_points: Vec<FacetResult>,
+}
+
+impl Solution {
+    /// Results at the nodes of the facets, in the order of their flat node list: the jump is that of the
+    /// walls there, traction and state are those of the facet point of the node.
+    pub fn facet_nodes(&self, problem: &Problem, interface: &Interface) -> Vec<FacetResult> {
+        let facets = &problem.mesh.facets;
+        let mut results = self.facet_points[..facets.elements.nodes.len()].to_vec();
+        for facet in 0..facets.elements.len() {
+            let shape = facets.elements.shapes[facet];
+            let control = problem.rule_of(facets.fracture[facet]) == FacetQuadrature::Control;
+            if control && shape.is_quadratic() {
+                let range = facets.elements.range(facet);
+                let points = &interface.points[range.clone()];
+                let control = &self.facet_points[range.clone()];
+                take_from_control(shape, points, control, &mut results[range]);
+            }
+        }
+        results
+    }
+}
+
+/// `w_a = sum_q S_qa c_q`.
+fn take_from_control(
+    shape: Shape,
+    points: &[FacetPoint],
+    control: &[FacetResult],
+    nodes: &mut [FacetResult],
+) {
+    for node in nodes.iter_mut() {
+        (node.aperture, node.jump) = (0.0, DVec3::ZERO);
+    }
+    for (q, value) in control.iter().enumerate() {
+        for (local, share) in bezier_function(shape, q) {
+            let node = &mut nodes[local as usize];
+            node.aperture += share * value.aperture;
+            node.jump += share * value.jump;
+        }
+    }
+    for (node, point) in nodes.iter_mut().zip(points) {
+        node.opening = node.jump.dot(point.normal);
+        node.slip = node.jump - node.opening * point.normal;
+    }
 }
 
 /// Derives the fields of a state.

@@ -276,8 +276,8 @@ impl<'a> System<'a> {
 
     /// Forces of the loads on all unknowns (N).
     pub fn load_forces(&self, load: &Load) -> Vec<DVec3> {
-        let cases = || self.loads.cases.iter().zip(&load.factors);
-        let initial = self.loads.initial.par_iter().enumerate();
+        let cases = || self.loads.cases().iter().zip(&load.factors);
+        let initial = self.loads.initial().par_iter().enumerate();
         initial
             .map(|(i, initial)| {
                 let forces = cases().map(|(case, f)| *f * (case.applied[i] + case.prescribed[i]));
@@ -317,18 +317,18 @@ impl<'a> System<'a> {
         self.discretisation
             .interface
             .add_forces(tractions, 1.0, &mut fractures);
-        let cases = || self.loads.cases.iter().zip(&load.factors);
-        let of_cases = cases().map(|(case, f)| f.abs() * norm(&case.applied));
+        let sizes = || self.loads.case_sizes().iter().zip(&load.factors);
+        let of_cases = sizes().map(|(size, f)| f.abs() * size.applied);
+        let prescribed = sizes().map(|(size, f)| f.abs() * size.prescribed);
+        let prescribed = prescribed.fold(0.0, f64::max);
         // Moving a body as a whole asks for large forces that cancel: what counts is what is left.
         let mut internal = rock_forces.to_vec();
-        let mut prescribed = 0.0_f64;
-        for (case, f) in cases() {
-            prescribed = prescribed.max(f.abs() * norm(&case.prescribed));
+        for (case, f) in self.loads.cases().iter().zip(&load.factors) {
             let pairs = internal.par_iter_mut().zip(&case.prescribed);
             pairs.for_each(|(force, prescribed)| *force -= *f * *prescribed);
         }
         let others = [
-            norm(&self.loads.initial),
+            self.loads.initial_size(),
             norm(&internal),
             norm(&fractures),
             CANCELLING * prescribed,

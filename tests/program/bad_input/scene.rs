@@ -75,6 +75,28 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "an adaptive mesh from a file, to no tolerance",
+        scene: &[(
+            "file = \"base.msh\"",
+            "file = \"base.msh\"\nadapt = { tolerance = 0.01 }",
+        )],
+        says: &["`adapt` has no effect on a mesh file", "give the geometry"],
+        ..SOUND
+    },
+    Case {
+        name: "an adaptive mesh without a tolerance",
+        scene: &[(
+            "file = \"base.msh\"",
+            "geometry = \"base.geo\"\nadapt = { rounds = 3 }",
+        )],
+        defects: 2,
+        says: &[
+            "`tolerance` is missing in [mesh.adapt]",
+            "unknown key `rounds` in [mesh.adapt]",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "unknown linear solver",
         scene: &[(
             "[fracture.joint]",
@@ -414,7 +436,7 @@ pub(super) const CASES: &[Case] = &[
         scene: &[("[mesh]", "[mesh]\nparameters = { h = 0.1 }")],
         says: &[
             "scene.toml:4: `parameters` has no effect on a mesh file",
-            "remove them",
+            "remove it",
         ],
         ..SOUND
     },

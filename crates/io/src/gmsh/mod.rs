@@ -5,6 +5,7 @@
 mod log;
 mod parameters;
 mod run;
+mod size_field;
 
 use std::ffi::OsString;
 use std::fs;
@@ -14,6 +15,7 @@ use lie_mesh::Defect;
 
 use crate::msh::holds_cells;
 use run::{Gmsh, path_argument};
+pub use size_field::write_size_field;
 
 /// A mesh to be made.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +26,8 @@ pub struct Meshing<'a> {
     pub parameters: &'a [(String, f64)],
     /// Order of the elements: 1 or 2.
     pub order: u32,
+    /// A view of cell sizes to go by (see [`write_size_field`]), instead of those of the geometry.
+    pub sizes: Option<&'a Path>,
     /// The `.msh` file to write; it is written whole or not at all.
     pub output: &'a Path,
 }
@@ -45,12 +49,20 @@ pub fn mesh_geometry(meshing: &Meshing) -> Result<Vec<String>, Vec<Defect>> {
 fn mesh_with(gmsh: &Gmsh, meshing: &Meshing) -> Result<Vec<String>, Vec<Defect>> {
     check(meshing)?;
     let temporary = temporary_name(meshing.output);
+    let script = meshing.sizes.map(|_| temporary.with_extension("geo"));
+    if let (Some(script), Some(sizes)) = (&script, meshing.sizes) {
+        size_field::write_script(script, meshing.geometry, sizes).map_err(|defect| vec![defect])?;
+    }
+    let input = script.as_deref().unwrap_or(meshing.geometry);
     let made = gmsh
-        .run(meshing.geometry, &arguments(meshing, &temporary))
+        .run(meshing.geometry, &arguments(meshing, input, &temporary))
         .and_then(|warnings| publish(meshing, &temporary).map(|()| warnings));
     if made.is_err() {
         // gmsh may not have written it, and its own errors are the ones to report.
         let _ = fs::remove_file(&temporary);
+    }
+    if let Some(script) = script {
+        let _ = fs::remove_file(script);
     }
     made
 }
@@ -78,9 +90,9 @@ fn check(meshing: &Meshing) -> Result<(), Vec<Defect>> {
     }
 }
 
-fn arguments(meshing: &Meshing, temporary: &Path) -> Vec<OsString> {
+fn arguments(meshing: &Meshing, input: &Path, temporary: &Path) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = vec![
-        path_argument(meshing.geometry),
+        path_argument(input),
         "-3".into(),
         "-format".into(),
         "msh41".into(),

@@ -30,6 +30,7 @@ impl Scene {
             geometry: &self.folder.join("in.geo"),
             parameters,
             order: 1,
+            sizes: None,
             output: &self.folder.join("out put.msh"),
         };
         mesh_with(&gmsh, &meshing)
@@ -121,6 +122,7 @@ fn a_missing_geometry_and_a_wrong_order_are_defects() {
             geometry,
             parameters: &[],
             order,
+            sizes: None,
             output: Path::new("out.msh"),
         };
         mesh_geometry(&meshing).is_err()

@@ -9,9 +9,11 @@
 mod cell;
 mod patches;
 mod reach;
+mod sizes;
 
 use glam::DVec3;
 use lie_core::{kernel, recovery_rule};
+use lie_mesh::Mesh;
 use rayon::prelude::*;
 
 use crate::linear::LinearFailure;
@@ -20,6 +22,8 @@ use crate::schedule::Load;
 use crate::system::System;
 use cell::{Cell, components};
 use patches::Patches;
+
+pub use sizes::target_sizes;
 
 /// Error of the linear solve for `z`, as a share of its forces: enough for an estimate.
 const ROUGH: f64 = 1e-2;
@@ -44,6 +48,36 @@ pub struct StressError {
 }
 
 impl StressError {
+    /// Gives cells at crack fronts the density of error of the cells next to them: no polynomial follows the
+    /// stresses of quarter-point elements.
+    fn take_over_at_fronts(&mut self, mesh: &Mesh) {
+        let is_front = mesh.front_nodes();
+        let at_front = |cell: usize| {
+            let mut nodes = mesh.cells.nodes_of(cell).iter();
+            nodes.any(|&node| is_front[node as usize])
+        };
+        let (at_front, beside): (Vec<usize>, Vec<usize>) =
+            (0..mesh.cells.len()).partition(|&cell| at_front(cell));
+        let mut around = vec![(0.0, 0.0); mesh.nodes.len()];
+        for cell in beside {
+            for &node in mesh.cells.nodes_of(cell) {
+                let (error, volume) = &mut around[node as usize];
+                *error += self.of_cell[cell];
+                *volume += self.volumes[cell];
+            }
+        }
+        for cell in at_front {
+            let nodes = mesh.cells.nodes_of(cell).iter();
+            let (error, volume) = nodes.fold((0.0, 0.0), |(error, volume), &node| {
+                let (e, v) = around[node as usize];
+                (error + e, volume + v)
+            });
+            if volume > 0.0 {
+                self.of_cell[cell] = error / volume * self.volumes[cell];
+            }
+        }
+    }
+
     /// `|e| / |u|`: the error as a share of the solution, in the energy norm.
     pub fn relative(&self) -> f64 {
         let error: f64 = self.of_cell.iter().sum();
@@ -97,11 +131,15 @@ impl Estimator {
         };
         let cells = (0..problem.mesh.cells.len()).into_par_iter();
         let (of_cell, others): (Vec<f64>, Vec<(f64, f64)>) = cells.map(of_cell).unzip();
-        StressError {
+        let mut error = StressError {
             of_cell,
             energy: others.iter().map(|(energy, _)| energy).sum(),
             volumes: others.into_iter().map(|(_, volume)| volume).collect(),
+        };
+        if problem.mesh.has_quarter_points {
+            error.take_over_at_fronts(&problem.mesh);
         }
+        error
     }
 
     /// Estimates the error of the mean over each fracture of the jump along `directions`, one for each

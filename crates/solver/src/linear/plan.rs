@@ -8,6 +8,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::{Analysis, Condensed, Iterative, LinearFailure, NodeOrder, TangentSolver, Whole};
+use crate::newton::subspace_bytes;
 use crate::pattern::Pattern;
 use crate::points::Points;
 use crate::problem::Problem;
@@ -96,6 +97,8 @@ pub struct Workload {
     pub steps: usize,
     /// Whether a step takes more than one linear solve.
     pub is_nonlinear: bool,
+    /// Whether tangents change gradually, so that a step can be made of the moves of former ones.
+    pub is_smooth: bool,
     /// Whether tractions depend on the way, as with friction: each step is walked in one part and in
     /// two, and the tangents are not symmetric.
     pub is_path_dependent: bool,
@@ -108,6 +111,7 @@ impl Workload {
         Self {
             steps: problem.schedule.steps.len(),
             is_nonlinear: laws().any(|law| !law.is_linear()),
+            is_smooth: laws().all(|law| law.is_smooth()),
             is_path_dependent: laws().any(|law| law.is_path_dependent()),
         }
     }
@@ -289,15 +293,21 @@ fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     let blocks = unknowns.pattern.columns.len() as f64;
     let iterations = if workload.is_path_dependent {
         UNSYMMETRIC * workload.solves()
-    } else if workload.is_nonlinear {
-        30.0 + 20.0 * workload.steps as f64
     } else {
-        35.0 * workload.steps as f64
+        let first = if workload.is_nonlinear { 50.0 } else { 35.0 };
+        // Steps made of the moves of former ones, what it takes to make them included.
+        let later = if workload.is_smooth { 10.0 } else { 20.0 };
+        first + later * (workload.steps as f64 - 1.0).max(0.0)
+    };
+    let recycled = if workload.is_smooth && workload.steps > 1 {
+        subspace_bytes(unknowns.points.len(), workload.steps)
+    } else {
+        0
     };
     Prediction {
         method: LinearMethod::Iterative,
         seconds: blocks * (SETUP_BYTES + iterations * ITERATION_BYTES) / BYTES,
-        memory_bytes: (blocks * MEMORY_BYTES) as usize,
+        memory_bytes: (blocks * MEMORY_BYTES) as usize + recycled,
         factor_entries: 0,
         operations: 0.0,
     }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Newton;
 use super::extrapolation::Path;
+use super::subspace::Subspace;
 use crate::linear::{LinearFailure, SolverHistory};
 use crate::system::{State, System};
 
@@ -15,6 +16,7 @@ use crate::system::{State, System};
 pub struct Bookmark<'a> {
     state: Cow<'a, State>,
     path: Cow<'a, Path>,
+    subspace: Cow<'a, Option<Subspace>>,
     linear: SolverHistory,
 }
 
@@ -27,6 +29,7 @@ impl Bookmark<'_> {
         self.state.unknowns.len() == unknowns
             && self.state.facet_points.len() == facet_points
             && self.path.fits(unknowns, facet_points)
+            && (*self.subspace).as_ref().is_none_or(|s| s.fits(unknowns))
             && self.linear.fits(blocks)
     }
 }
@@ -37,6 +40,7 @@ impl Newton {
         Bookmark {
             state: Cow::Borrowed(state),
             path: Cow::Borrowed(&self.path),
+            subspace: Cow::Borrowed(&self.subspace),
             linear: self.linear.history(),
         }
     }
@@ -48,6 +52,7 @@ impl Newton {
     pub fn turn_to(&mut self, bookmark: Bookmark<'_>) -> Result<State, LinearFailure> {
         self.linear.restore(bookmark.linear)?;
         self.path = bookmark.path.into_owned();
+        self.subspace = bookmark.subspace.into_owned();
         Ok(bookmark.state.into_owned())
     }
 }

@@ -18,6 +18,7 @@ mod line_search;
 mod loose;
 mod march;
 mod record;
+mod subspace;
 mod walls;
 
 use std::time::Instant;
@@ -25,17 +26,22 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::interface::Interface;
-use crate::linear::{AnyTangent, LinearFailure, Plan, Unknowns, Workload};
+use crate::linear::{AnyTangent, LinearFailure, LinearMethod, Plan, Unknowns, Workload};
 use crate::schedule::Load;
 use crate::system::{Sizes, State, System, norm};
 use extrapolation::Path;
+use subspace::{LastMove, Subspace};
 use walls::Landed;
 
 pub use bookmark::Bookmark;
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
+pub(crate) use subspace::bytes as subspace_bytes;
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
 const LOOSEST_SOLVE: f64 = 1e-3;
+
+/// What a linear solve may leave out of balance, as a share of what the test of the forces allows.
+const SOLVED: f64 = 0.1;
 
 /// Share of the largest sizes of a path that still counts once the loads are gone: what is left then
 /// is rounding, and would be compared with nothing but itself.
@@ -62,6 +68,8 @@ pub struct Newton {
     settings: NewtonSettings,
     linear: AnyTangent,
     path: Path,
+    /// Moves of former steps, if the linear solver iterates.
+    subspace: Option<Subspace>,
 }
 
 /// What a step works on.
@@ -77,6 +85,10 @@ struct Trial {
     looseness: f64,
     /// Errors after the last iteration, see `line_search`.
     merit: Option<f64>,
+    /// The guess that it began with, if it was made in the subspace.
+    guess: Option<LastMove>,
+    /// Solutions of its linear systems (m), if they are to be remembered.
+    corrections: Vec<Vec<DVec3>>,
 }
 
 impl Newton {
@@ -100,7 +112,9 @@ impl Newton {
         settings: NewtonSettings,
         plan: Plan,
     ) -> Result<Self, LinearFailure> {
+        let recycles = plan.method == LinearMethod::Iterative;
         Ok(Self {
+            subspace: recycles.then(Subspace::default),
             linear: AnyTangent::new(plan.prepare(system)?),
             path: Path::default(),
             settings,
@@ -154,6 +168,9 @@ impl Newton {
         record.loose.clear();
         let outcome = self.settle(system, &mut trial, record, observe);
         if outcome == Outcome::Converged {
+            if let Some(subspace) = self.subspace.as_mut() {
+                subspace.learn(trial.guess, trial.corrections);
+            }
             let state = &mut trial.state;
             walls::commit(system, state);
             state.reached = trial.sizes.or_share(1.0, state.reached);
@@ -174,6 +191,15 @@ impl Newton {
         observe: &mut dyn FnMut(usize, &Iteration),
     ) -> Outcome {
         let mut flights = 0;
+        match self.judge_guess(system, trial, record) {
+            Ok(Some(iteration)) => {
+                record.iterations.push(iteration);
+                observe(record.iterations.len(), &iteration);
+                return Outcome::Converged;
+            }
+            Ok(None) => {}
+            Err(outcome) => return outcome,
+        }
         for count in 1..=self.settings.max_iterations {
             let iteration = match self.iterate(system, trial, count, record) {
                 Ok(iteration) => iteration,
@@ -200,16 +226,26 @@ impl Newton {
     }
 
     /// The first guess for a step.
-    fn start(&self, system: &System<'_>, state: &State, load: &Load) -> Trial {
+    fn start(&mut self, system: &System<'_>, state: &State, load: &Load) -> Trial {
         let mut guess = state.clone();
         system.adapt(&mut guess);
-        self.path.continue_through(system, &mut guess, load);
-        walls::move_supports(system, &mut guess, load);
+        let subspace = self.subspace.as_mut();
+        let found = subspace.and_then(|s| s.guess(system, &self.settings, &guess, load));
+        let (guess, landed, last) = if let Some(found) = found {
+            (found.state, found.landed, Some(found.last))
+        } else {
+            self.path.continue_through(system, &mut guess, load);
+            walls::move_supports(system, &mut guess, load);
+            let landed = vec![Landed::default(); guess.facet_points.len()];
+            (guess, landed, None)
+        };
         let rock_forces = system.rock_forces(&guess.unknowns);
         let tractions = system.law_tractions(&guess);
         let force = system.force_scale(&rock_forces, &tractions, load);
         Trial {
-            landed: vec![Landed::default(); guess.facet_points.len()],
+            landed,
+            guess: last,
+            corrections: Vec::new(),
             sizes: Sizes {
                 force: force.max(REMEMBERED * guess.reached.force),
                 ..guess.reached
@@ -218,11 +254,31 @@ impl Newton {
             looseness: if system.is_nonlinear() {
                 LOOSEST_SOLVE
             } else {
-                0.1 * self.settings.force
+                SOLVED * self.settings.force
             },
             merit: None,
             state: guess,
         }
+    }
+
+    /// The last iteration of a guess in the subspace, if it leaves nothing to do: no more than a linear
+    /// solve would.
+    fn judge_guess(
+        &self,
+        system: &System<'_>,
+        trial: &mut Trial,
+        record: &mut StepRecord,
+    ) -> Result<Option<Iteration>, Outcome> {
+        let Some(guess) = &trial.guess else {
+            return Ok(None);
+        };
+        let (errors, increment) = (guess.errors.clone(), guess.increment);
+        let iteration = assess(system, trial, increment, &errors, record)?;
+        if system.is_nonlinear() {
+            trial.looseness = iteration.force_residual.clamp(1e-8, LOOSEST_SOLVE);
+        }
+        let is_exact = iteration.force_residual <= SOLVED * self.settings.force;
+        Ok((is_exact && self.is_converged(system, &iteration)).then_some(iteration))
     }
 
     fn is_converged(&self, system: &System<'_>, iteration: &Iteration) -> bool {
@@ -257,9 +313,8 @@ impl Newton {
         record.factorise_seconds += start.elapsed().as_secs_f64();
         let tractions = walls::linearised_tractions(system, &trial.state, &tangents);
         let residual = system.residual(&trial.rock_forces, &tractions, &trial.state.load);
-        let solution = self
-            .linear
-            .solve(system, &residual, self.tolerance(trial, &residual));
+        let tolerance = self.tolerance(trial, &residual, carried(system, &trial.state));
+        let solution = self.linear.solve(system, &residual, tolerance);
         let solution = solution.map_err(Outcome::Linear)?;
         let former = (count, trial.merit);
         let mut iteration = self.advance(
@@ -270,6 +325,9 @@ impl Newton {
             record,
         )?;
         iteration.linear_iterations = solution.iterations;
+        if self.subspace.is_some() && system.is_smooth() {
+            trial.corrections.push(solution.unknowns);
+        }
         trial.looseness = iteration.increment.clamp(1e-8, LOOSEST_SOLVE);
         Ok(iteration)
     }
@@ -277,10 +335,10 @@ impl Newton {
     /// Error allowed in a linear solve, against its right-hand side: enough for what the
     /// linearisation is worth, and for the test of the forces. A residual above rounding is always
     /// reduced: tractions may still move where forces are in balance.
-    fn tolerance(&self, trial: &Trial, residual: &[DVec3]) -> f64 {
+    fn tolerance(&self, trial: &Trial, residual: &[DVec3], carried: Option<f64>) -> f64 {
         let (size, scale) = (norm(residual), trial.sizes.force);
-        let wanted = trial.looseness * size.min(scale);
-        let enough = 0.1 * self.settings.force * scale;
+        let wanted = trial.looseness * size.min(scale).min(carried.unwrap_or(scale));
+        let enough = SOLVED * self.settings.force * scale;
         let tolerance = wanted.max(enough);
         let rounding = 1e-3 * self.settings.force * scale;
         if size <= rounding {
@@ -291,15 +349,26 @@ impl Newton {
     }
 }
 
+/// Norm (N) of what fractures with kinks in their laws carry. It may be a small part of the loads; solves
+/// that are exact against the loads only would let it stick, slide and open at random.
+fn carried(system: &System<'_>, state: &State) -> Option<f64> {
+    if system.is_smooth() {
+        return None;
+    }
+    let mut forces = vec![DVec3::ZERO; state.unknowns.len()];
+    interface(system).add_forces(&system.law_tractions(state), 1.0, &mut forces);
+    Some(norm(&forces)).filter(|size| *size > 0.0)
+}
+
 fn interface<'a>(system: &'a System<'_>) -> &'a Interface {
     &system.discretisation.interface
 }
 
-/// Measures how far a trial is from a solution.
+/// Measures how far a trial is from a solution; `change` is the largest displacement of its iteration (m).
 fn assess(
     system: &System<'_>,
     trial: &mut Trial,
-    correction: &[DVec3],
+    change: f64,
     errors: &[f64],
     record: &mut StepRecord,
 ) -> Result<Iteration, Outcome> {
@@ -309,7 +378,6 @@ fn assess(
         return Err(Outcome::NotFinite(Some(broken)));
     }
     let residual = norm(&system.residual(&trial.rock_forces, &tractions, &state.load));
-    let change = system.displacements(correction, &Load::NONE);
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     record.worst_facet_point = worst;
     let apertures = state.facet_points.iter();
@@ -319,7 +387,7 @@ fn assess(
     trial.sizes = sizes;
     Ok(Iteration {
         force_residual: ratio(residual, sizes.force),
-        increment: ratio(largest(&change), sizes.displacement),
+        increment: ratio(change, sizes.displacement),
         closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction),
         smallest_aperture,
         linear_iterations: 0,

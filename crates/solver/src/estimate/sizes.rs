@@ -1,0 +1,153 @@
+//! Cell sizes that would meet a tolerance with the fewest cells.
+//!
+//! Where the solution is smooth, the errors `e_K` of cells fall with the factor `s_K` on their size as `s_K^(2 p)`, and the
+//! number of cells grows as `s_K^-3`. Along crack fronts errors fall as `s` only, whatever `p`, while cells there, graded towards
+//! the front, grow in number as `s^-1`. The fewest cells for `E_f s + sum e_K s_K^(2 p) = T`, with `N_f` cells and the errors `E_f` along
+//! fronts, have `s = sqrt(N_f / (m E_f))` and `s_K^(2 p + 3) = 3 / (2 p m e_K)`, with one multiplier `m` (the argument is that of
+//! Zienkiewicz and Zhu 1987).
+
+use glam::DVec3;
+use lie_mesh::Mesh;
+
+/// How much a cell may shrink and grow at once.
+const SHRINK: f64 = 0.125;
+const GROW: f64 = 2.0;
+/// Layers of cells that count as along a front.
+const LAYERS: usize = 3;
+/// Part of the present error, below which one new mesh does not go: its sizes would be guessed from
+/// cells that say too little.
+const AT_ONCE: f64 = 0.25;
+/// Part of the tolerance that is aimed at, so that the next mesh meets it.
+const AIM: f64 = 0.8;
+
+/// Sizes (m) at all nodes, from errors of cells that should add up to `tolerance` for each group of cells
+/// (`groups` numbers them; cells in none may grow).
+pub fn target_sizes(mesh: &Mesh, errors: &[f64], groups: &[u32], tolerance: f64) -> Vec<f64> {
+    let is_quadratic = mesh.cells.shapes.iter().any(|shape| shape.is_quadratic());
+    let rate = if is_quadratic { 4.0 } else { 2.0 };
+    let along_front = along_fronts(mesh);
+    let last = groups.iter().filter(|&&group| group != u32::MAX).max();
+    let mut sums = vec![Sums::default(); last.map_or(0, |&last| last as usize + 1)];
+    for (cell, &group) in groups.iter().enumerate() {
+        let Some(sums) = sums.get_mut(group as usize) else {
+            continue;
+        };
+        if along_front[cell] {
+            sums.at_fronts += errors[cell];
+            sums.front_cells += 1.0;
+        } else {
+            sums.powers += errors[cell].powf(3.0 / (rate + 3.0));
+            sums.elsewhere += errors[cell];
+        }
+    }
+    let multipliers = sums.iter().map(|sums| sums.multiplier(rate, tolerance));
+    let multipliers: Vec<f64> = multipliers.collect();
+    let size = |cell: usize| {
+        let group = groups[cell] as usize;
+        let factor = multipliers.get(group).map_or(GROW, |&multiplier| {
+            if along_front[cell] {
+                sums[group].front_factor(multiplier)
+            } else {
+                smooth_factor(errors[cell], multiplier, rate)
+            }
+        });
+        (cell_size(mesh, cell) * factor.clamp(SHRINK, GROW)).ln()
+    };
+    let logarithms: Vec<f64> = (0..mesh.cells.len()).map(size).collect();
+    at_nodes(mesh, &logarithms)
+}
+
+/// Errors of the cells of a group.
+#[derive(Clone, Default)]
+struct Sums {
+    at_fronts: f64,
+    /// Number of cells along fronts.
+    front_cells: f64,
+    elsewhere: f64,
+    /// `sum e_K^(3 / (2 p + 3))` away from fronts.
+    powers: f64,
+}
+
+impl Sums {
+    /// `s` of the cells along fronts.
+    fn front_factor(&self, multiplier: f64) -> f64 {
+        (self.front_cells / (multiplier * self.at_fronts)).sqrt()
+    }
+
+    /// Error that a multiplier leaves.
+    fn error(&self, multiplier: f64, rate: f64) -> f64 {
+        let at_fronts = match self.at_fronts > 0.0 {
+            true => self.at_fronts * self.front_factor(multiplier),
+            false => 0.0,
+        };
+        // e_K s_K^(2 p) = e_K^(3 / (2 p + 3)) (3 / (2 p m))^(2 p / (2 p + 3))
+        at_fronts + self.powers * (3.0 / (rate * multiplier)).powf(rate / (rate + 3.0))
+    }
+
+    /// `m`, by bisection: the error falls as it grows.
+    fn multiplier(&self, rate: f64, tolerance: f64) -> f64 {
+        let aim = (AIM * tolerance).max(AT_ONCE * (self.at_fronts + self.elsewhere));
+        let (mut low, mut high) = (-100.0_f64, 100.0_f64);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if self.error(10.0_f64.powf(middle), rate) > aim {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        10.0_f64.powf(high)
+    }
+}
+
+/// `s_K` of a cell away from fronts.
+fn smooth_factor(error: f64, multiplier: f64, rate: f64) -> f64 {
+    (3.0 / (rate * multiplier * error)).powf(1.0 / (rate + 3.0))
+}
+
+/// Cells within some layers of the tips of fractures, where both walls are one.
+fn along_fronts(mesh: &Mesh) -> Vec<bool> {
+    let mut is_near = mesh.front_nodes();
+    let mut cells = vec![false; mesh.cells.len()];
+    for _ in 0..LAYERS {
+        for (cell, along) in cells.iter_mut().enumerate() {
+            let mut nodes = mesh.cells.nodes_of(cell).iter();
+            *along |= nodes.any(|&node| is_near[node as usize]);
+        }
+        for cell in (0..mesh.cells.len()).filter(|&cell| cells[cell]) {
+            for &node in mesh.cells.nodes_of(cell) {
+                is_near[node as usize] = true;
+            }
+        }
+    }
+    cells
+}
+
+/// Median distance of the corners of a cell (m): in a layer of flat or slender cells the size in its
+/// plane.
+fn cell_size(mesh: &Mesh, cell: usize) -> f64 {
+    let corners = mesh.cells.shapes[cell].corner_count();
+    let nodes = &mesh.cells.nodes_of(cell)[..corners];
+    let place = |node: &u32| -> DVec3 { mesh.nodes[*node as usize] };
+    let pairs = nodes.iter().enumerate();
+    let pairs = pairs.flat_map(|(i, a)| nodes[..i].iter().map(move |b| (a, b)));
+    let mut lengths: Vec<f64> = pairs.map(|(a, b)| place(a).distance(place(b))).collect();
+    lengths.sort_by(f64::total_cmp);
+    lengths[lengths.len() / 2]
+}
+
+/// Geometric mean of the sizes, given by logarithms, of the cells around each node.
+fn at_nodes(mesh: &Mesh, logarithms: &[f64]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); mesh.nodes.len()];
+    for (cell, logarithm) in logarithms.iter().enumerate() {
+        for &node in mesh.cells.nodes_of(cell) {
+            let (sum, count) = &mut sums[node as usize];
+            *sum += logarithm;
+            *count += 1.0;
+        }
+    }
+    let means = sums.into_iter();
+    means
+        .map(|(sum, count)| f64::exp(sum / f64::max(count, 1.0)))
+        .collect()
+}

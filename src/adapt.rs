@@ -1,0 +1,126 @@
+//! Meshes a scene until the estimated error meets a tolerance.
+
+use lie_io::write_size_field;
+use lie_mesh::Mesh;
+use lie_solver::{Problem, target_sizes};
+use serde::Serialize;
+
+use crate::accuracy::Accuracy;
+use crate::report::Failure;
+use crate::run::{Run, one};
+use crate::scene::{Adapt, MeshSource};
+
+/// File of the sizes that the last mesh was made with.
+const SIZES: &str = "sizes.pos";
+
+/// One mesh on the way to the last.
+#[derive(Debug, Clone, Serialize)]
+pub struct Round {
+    /// Its unknowns.
+    pub unknowns: usize,
+    /// Estimated error on it, as [`Accuracy::to_meet`] has it.
+    pub error: f64,
+    /// Time that it took, meshing included (s).
+    pub seconds: f64,
+}
+
+/// Leaves a mesh on which the estimated error meets the tolerance of the scene, or the budget is spent.
+///
+/// # Errors
+/// As a run on any of the meshes.
+pub fn search(run: &mut Run<'_>) -> Result<(), Failure> {
+    let MeshSource::Geometry {
+        adapt: Some(adapt), ..
+    } = run.scene.mesh
+    else {
+        return Ok(());
+    };
+    let mut aim = adapt.tolerance;
+    for number in 1..=adapt.max_rounds {
+        let start = std::time::Instant::now();
+        let problem = run.prepare(None)?;
+        let (unknowns, accuracy) = run.trial(&problem)?;
+        let error = accuracy.to_meet();
+        let seconds = start.elapsed().as_secs_f64();
+        run.report.entry(
+            "adapted",
+            &format!(
+                "mesh {number}: {unknowns} unknowns, off by at most {:.2} % ({seconds:.1} s)",
+                100.0 * error
+            ),
+        );
+        run.summary.meshes.push(Round {
+            unknowns,
+            error,
+            seconds,
+        });
+        run.keep_mesh();
+        let is_met = error <= adapt.tolerance;
+        if is_met || number == adapt.max_rounds || unknowns as f64 >= FULL * adapt.max_unknowns {
+            run.summary.decisions.push(stopped(&adapt, is_met, error));
+            break;
+        }
+        if number > 1 && error < NEAR * adapt.tolerance {
+            // The last mesh fell short of its prediction, and so will the next.
+            aim *= adapt.tolerance / error;
+        }
+        let sizes = next_sizes(&problem, &accuracy, (&adapt, aim), unknowns);
+        let path = run.output.path(SIZES);
+        one(write_size_field(&path, &problem.mesh, &sizes))?;
+        run.mesh_again_with(path);
+    }
+    Ok(())
+}
+
+/// Multiple of the tolerance from which on predictions are trusted to compare.
+const NEAR: f64 = 4.0;
+/// Part of the largest number of unknowns that counts as having used it: gmsh does not hit numbers.
+const FULL: f64 = 0.7;
+
+fn stopped(adapt: &Adapt, is_met: bool, error: f64) -> String {
+    let (error, tolerance) = (100.0 * error, 100.0 * adapt.tolerance);
+    match is_met {
+        true => format!("adaptive mesh: off by at most {error:.2} %, {tolerance} % was asked for"),
+        false => format!(
+            "adaptive mesh: the budget is spent at {error:.2} %, {tolerance} % was asked for \
+             (max_unknowns or max_rounds under [mesh] adapt allow more, order = 2 needs less)"
+        ),
+    }
+}
+
+/// Sizes with which the error should fall to `aim`, within the budget.
+fn next_sizes(
+    problem: &Problem,
+    accuracy: &Accuracy,
+    (adapt, aim): (&Adapt, f64),
+    unknowns: usize,
+) -> Vec<f64> {
+    let mesh = &problem.mesh;
+    let mut sizes = match &accuracy.jumps {
+        Some(jumps) => target_sizes(mesh, &jumps.of_cell, &jumps.nearest_fracture, aim),
+        None => {
+            // The energy of the error is the square of what the tolerance speaks of.
+            let groups = vec![0; mesh.cells.len()];
+            target_sizes(mesh, &accuracy.energy_shares, &groups, aim * aim)
+        }
+    };
+    let growth = cells(mesh, &sizes) / mesh.cells.len() as f64;
+    let excess = growth * unknowns as f64 / adapt.max_unknowns;
+    if excess > 1.0 {
+        sizes.iter_mut().for_each(|size| *size *= excess.cbrt());
+    }
+    sizes
+}
+
+/// Number of cells that a mesh with these sizes will have, going by regular tetrahedra.
+fn cells(mesh: &Mesh, sizes: &[f64]) -> f64 {
+    let of_cell = |cell: usize| {
+        let corners = &mesh.cells.nodes_of(cell)[..mesh.cells.shapes[cell].corner_count()];
+        let logarithms = corners.iter().map(|&node| sizes[node as usize].ln());
+        let size = (logarithms.sum::<f64>() / corners.len() as f64).exp();
+        let volume =
+            lie_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
+        72.0_f64.sqrt() * volume / (size * size * size)
+    };
+    (0..mesh.cells.len()).map(of_cell).sum()
+}
