@@ -84,7 +84,7 @@ the charts show as a grey band. More keys of [study]:
 
 Writes study.html (everything on one page), study.csv, the charts as SVG, and each setting with its
 results in points/. A study that was interrupted goes on where it was: settings that have been run are
-not run again, unless scene, geometry, version or threads have changed. Settings that fail are reported,
+not run again, unless scene, geometry, program or threads have changed. Settings that fail are reported,
 and the others go on.
 
 With --tolerance the study ends when a setting is accurate enough, and prints it as keys for the scene.";

@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 use lie_io::write_atomically;
 use lie_mesh::Defect;
 
+use crate::checkpoint::fingerprint_of;
 use crate::report::{Failure, Report, Verbosity};
 use crate::run::one;
 use crate::scene::Scene;
@@ -104,9 +105,11 @@ impl Study {
         let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
         let out = options.out.clone().unwrap_or_else(beside);
         let out = std::path::absolute(&out).unwrap_or(out);
+        let program = one(own_program())?;
         let runner = Runner {
             folder: out.join("points"),
-            program: one(own_program())?,
+            build: one(fingerprint_of(&program))?,
+            program,
             threads: options.threads.unwrap_or_else(machine::cores),
         };
         one(std::fs::create_dir_all(&runner.folder).map_err(|error| {

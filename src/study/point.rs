@@ -11,7 +11,7 @@ use lie_mesh::Defect;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use crate::checkpoint::{fingerprint, fingerprint_of};
+use crate::checkpoint::{Fingerprint, fingerprint, fingerprint_of};
 use crate::oracle::Measure;
 
 /// The record of a finished point, in its folder.
@@ -89,21 +89,22 @@ pub(super) struct Runner {
     pub(super) folder: PathBuf,
     /// This program.
     pub(super) program: PathBuf,
+    /// Sum of its bytes: another build of a version takes another time.
+    pub(super) build: Fingerprint,
     /// Number of threads of each run.
     pub(super) threads: usize,
 }
 
 impl Runner {
-    /// Sum over what a run of a scene depends on: its text, the geometry or mesh it names, this
-    /// version, and the threads, which its time depends on.
+    /// Sum over what a run of a scene depends on: its text, the geometry or mesh it names, this build, and
+    /// the threads, which its time depends on.
     pub(super) fn fingerprint(&self, scene: &Table) -> String {
         let mesh = scene.get("mesh");
         let mut file = ["geometry", "file"].into_iter();
         let file = file.find_map(|key| mesh?.get(key)?.as_str());
         // A file that cannot be read is refused by the run.
         let bytes = file.and_then(|file| fingerprint_of(Path::new(file)).ok());
-        let version = env!("CARGO_PKG_VERSION");
-        let parts = format!("{version}\n{}\n{bytes:?}\n{scene}", self.threads);
+        let parts = format!("{}\n{}\n{bytes:?}\n{scene}", self.build, self.threads);
         format!("{:032x}", fingerprint(&parts))
     }
 
@@ -352,6 +353,7 @@ mod tests {
         let mut runner = Runner {
             folder: folder.path().into(),
             program: "kluft".into(),
+            build: 7,
             threads: 1,
         };
         let first = runner.fingerprint(&scene(1));
