@@ -16,6 +16,7 @@ mod report;
 mod resume;
 mod run;
 mod scene;
+mod study;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -29,6 +30,7 @@ pub use scene::{
     Adapt, Binding, BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, History, MeshSource,
     Named, Scene, SolverEntry, StepEnd, Timetable, bind, surface_roles,
 };
+pub use study::{StudyOptions, study};
 pub use summary::{FractureSummary, Spread, StepSummary, Summary};
 
 use output::Output;

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use kluft::{
-    Domain, Failure, Grouping, InspectOptions, NetworkOptions, Options, Verbosity, inspect,
-    make_network, run,
+    Domain, Failure, Grouping, InspectOptions, NetworkOptions, Options, StudyOptions, Verbosity,
+    inspect, make_network, run, study,
 };
 
 /// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
@@ -28,11 +28,13 @@ Examples:
   kluft run scene.toml --out results --threads 2 -v       say where and how
   kluft run scene.toml --resume                           go on after an interruption
   kluft inspect scene.toml                                look at the mesh before solving
+  kluft study scene.toml --tolerance 1%                   the cheapest mesh and order for an error of 1 %
   paraview results/rock.pvd results/fractures.pvd         look at it
 
 Exit status:
-  0  solved, or inspected
-  1  not converged; the converged steps are kept, the message says where and why
+  0  solved, inspected or studied
+  1  not converged: the converged steps are kept, the message says where and why;
+     or no setting of a study is as accurate as wanted: the message says what to try
   2  the input is wrong; every defect is listed with its place and its remedy";
 
 #[derive(Subcommand)]
@@ -46,6 +48,76 @@ enum Command {
     /// Report on a scene or a mesh without solving
     #[command(after_help = INSPECT_HELP)]
     Inspect(InspectArgs),
+    /// Run a scene with many meshes, orders, laws and solvers: what each yields, and what it costs
+    #[command(after_help = STUDY_HELP)]
+    Study(StudyArgs),
+}
+
+const STUDY_HELP: &str = "\
+A section [study] of the scene says what to sweep; every combination is run. What is left out stays as
+the scene has it:
+
+  [study]
+  meshes = [{ h = 0.2 }, { h = 0.14 }, { h = 0.1 }]   # in the place of [mesh] parameters
+  orders = [1, 2]
+  closures = [                                        # names, or keys of all fractures
+    \"logarithmic\",
+    { label = \"cut at 1 um\", closure = \"logarithmic\", cutoff_aperture = 1e-6 },
+    { label = \"exact\", closure = \"logarithmic\", cutoff_aperture = false },   # without that key
+  ]
+  facets = [\"nodal\", \"gauss\"]
+  solvers = [\"direct\", \"iterative\", \"condensed\"]
+  [study.values]                                      # numbers of all fractures, or of one
+  normal_stiffness = { from = 1e9, to = 1e12, count = 7 }
+  \"joint.shear_stiffness\" = [1e9, 1e10]
+
+Without [study], the cell sizes `h` and `h_...` of [mesh] parameters are scaled by 2, 1.4 and 1, with
+orders 1 and 2.
+
+Errors are those against the closed form, if the scene names one ([oracle.NAME]). Without one they are
+against what finer and finer meshes approach: that takes three meshes, and has an uncertainty, which
+the charts show as a grey band. More keys of [study]:
+
+  measure = \"opening_l2\"     what is charted, a name among the measures of summary.json
+  fracture = \"joint\"         on which fracture
+  reference = \"logarithmic\"  the label of the closure whose limit serves all (closures that approximate it)
+
+Writes study.html (everything on one page), study.csv, the charts as SVG, and each setting with its
+results in points/. A study that was interrupted goes on where it was: settings that have been run are
+not run again, unless scene, geometry, program or threads have changed. Settings that fail are reported,
+and the others go on.
+
+With --tolerance the study ends when a setting is accurate enough, and prints it as keys for the scene.";
+
+#[derive(Args)]
+struct StudyArgs {
+    /// The scene file (TOML)
+    scene: PathBuf,
+    /// Folder for the results [default: `study` beside the scene]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Largest error wanted, 1% or 0.01; stops at the first setting that reaches it
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    tolerance: Option<f64>,
+    /// Number of threads of each run [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print nothing but errors and the answer to --tolerance
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the report even when the output is not a terminal
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(percent) => (percent.trim_end(), 0.01),
+        None => (text, 1.0),
+    };
+    let share = number.parse::<f64>().ok().map(|number| number * unit);
+    let sensible = share.filter(|share| *share > 0.0 && *share < 1.0);
+    sensible.ok_or_else(|| "a share between 0 and 1 is wanted, e.g. 1% or 0.01".to_owned())
 }
 
 const INSPECT_HELP: &str = "\
@@ -91,6 +163,9 @@ struct RunArgs {
     /// Go on after the last load step that an interrupted run of the same scene finished
     #[arg(long)]
     resume: bool,
+    /// End when the standard input is closed, as it is when a study dies that runs this
+    #[arg(long, hide = true)]
+    tied: bool,
     /// Print nothing but errors
     #[arg(long, short, conflicts_with = "verbose")]
     quiet: bool,
@@ -218,6 +293,13 @@ fn verbosity(quiet: bool, verbose: bool) -> Verbosity {
 }
 
 fn solve(args: RunArgs) -> Result<(), Failure> {
+    if args.tied {
+        std::thread::spawn(|| {
+            // Whether it ends or breaks, nobody is there any more.
+            let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
+            std::process::exit(1);
+        });
+    }
     let options = Options {
         out: args.out,
         threads: args.threads.map(usize::from),
@@ -243,6 +325,16 @@ fn network(args: NetworkArgs) -> Result<(), Failure> {
     make_network(&args.input, &options)
 }
 
+fn sweep(args: StudyArgs) -> Result<(), Failure> {
+    let options = StudyOptions {
+        out: args.out,
+        tolerance: args.tolerance,
+        threads: args.threads.map(usize::from),
+        verbosity: verbosity(args.quiet, args.verbose),
+    };
+    study(&args.scene, &options)
+}
+
 #[derive(Args)]
 struct InspectArgs {
     /// The scene file (TOML), or a gmsh mesh (.msh)
@@ -262,13 +354,14 @@ fn main() -> ExitCode {
         Command::Inspect(InspectArgs { input, json, out }) => {
             inspect(&input, &InspectOptions { out, json })
         }
+        Command::Study(args) => sweep(args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             kluft::print_failure(&failure);
             ExitCode::from(match failure {
-                Failure::NotConverged(_) => 1,
+                Failure::NotConverged(_) | Failure::NotReached(_) => 1,
                 Failure::BadInput(_) => 2,
             })
         }

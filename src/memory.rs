@@ -15,6 +15,11 @@ pub fn available_bytes() -> Option<usize> {
     entry("/proc/meminfo", "MemAvailable:")
 }
 
+/// Memory of the machine (bytes).
+pub fn total_bytes() -> Option<usize> {
+    entry("/proc/meminfo", "MemTotal:")
+}
+
 fn entry(file: &str, key: &str) -> Option<usize> {
     let text = std::fs::read_to_string(file).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;

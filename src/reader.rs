@@ -1,5 +1,7 @@
 //! Walks a TOML file and collects every defect with its line.
 
+mod lists;
+
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -7,6 +9,8 @@ use std::ops::Range;
 use lie_mesh::{Defect, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+pub(crate) use lists::Entry;
 
 /// Which numbers a key accepts.
 #[derive(Clone, Copy)]
@@ -400,13 +404,16 @@ impl<'a, 'i> Section<'a, 'i> {
 
     /// All keys of a table of numbers whose names are free.
     pub(crate) fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
-        let Some(section) = self.section(key) else {
-            return Vec::new();
-        };
-        let entries = section.table.iter();
+        let section = self.section(key);
+        section.map_or_else(Vec::new, |section| section.all_numbers())
+    }
+
+    /// All keys of this section, which must be numbers.
+    pub(crate) fn all_numbers(&self) -> Vec<(String, f64)> {
+        let entries = self.table.iter();
         entries
             .filter_map(|(name, value)| {
-                let number = section.as_number(name.get_ref(), value, Accept::Finite)?;
+                let number = self.as_number(name.get_ref(), value, Accept::Finite)?;
                 Some((name.get_ref().to_string(), number))
             })
             .collect()

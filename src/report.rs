@@ -28,6 +28,8 @@ pub enum Failure {
     NotConverged(String),
     /// The input is wrong.
     BadInput(Vec<Defect>),
+    /// A study did not yield what was wanted of it: why, and what to try.
+    NotReached(String),
 }
 
 impl From<Vec<Defect>> for Failure {
@@ -42,6 +44,7 @@ pub fn print_failure(failure: &Failure) {
     // With the error stream gone there is nobody left to tell.
     let _ = match failure {
         Failure::NotConverged(why) => writeln!(err, "not converged: {why}"),
+        Failure::NotReached(why) => writeln!(err, "not reached: {why}"),
         Failure::BadInput(defects) => {
             let count = defects.len();
             let noun = if count == 1 { "defect" } else { "defects" };

@@ -144,6 +144,7 @@ impl Spanned {
         let step = match self.scale {
             Scale::Linear if self.counts => nice_step(range).max(1.0),
             Scale::Linear => nice_step(range),
+            Scale::Logarithmic if self.is_narrow() => return self.ticks_within_a_decade(),
             Scale::Logarithmic if range < FEW_DECADES => return self.ticks_within_decades(),
             Scale::Logarithmic => whole_step(range),
         };
@@ -161,10 +162,34 @@ impl Spanned {
         ticks.filter(inside).collect()
     }
 
+    /// Whether a logarithmic axis is too short for ticks at 1, 2 and 5 times powers of ten.
+    fn is_narrow(&self) -> bool {
+        self.high - self.low < FEW_DECADES && self.ticks_within_decades().len() < 2
+    }
+
+    /// Evenly spaced values.
+    fn ticks_within_a_decade(&self) -> Vec<f64> {
+        let (low, high) = (self.scale.back(self.low), self.scale.back(self.high));
+        // Labels with decimals are long.
+        let step = nice_step(2.0 * (high - low));
+        let (first, last) = ((low / step).ceil(), (high / step).floor());
+        (0..=(last - first) as usize)
+            .map(|i| (first + i as f64) * step)
+            .collect()
+    }
+
+    /// Whether values are neither long nor have many zeros.
+    fn is_plain(&self) -> bool {
+        let (low, high) = (self.scale.back(self.low), self.scale.back(self.high));
+        (1e-2..1e5).contains(&low.abs().max(high.abs()))
+    }
+
     fn label(&self, value: f64) -> String {
         let text = match self.scale {
-            Scale::Linear => plain(value),
-            Scale::Logarithmic => multiple_of_power(value),
+            Scale::Linear if value.abs() < 1e-9 * (self.high - self.low) => "0".into(),
+            Scale::Linear if self.is_plain() => plain(value),
+            Scale::Logarithmic if self.is_narrow() && self.is_plain() => plain(value),
+            Scale::Linear | Scale::Logarithmic => multiple_of_power(value),
         };
         match self.floor {
             Some(floor) if value <= floor * 1.000_001 => format!("≤ {text}"),
@@ -196,13 +221,13 @@ fn plain(value: f64) -> String {
 /// `10⁻³`, or `2·10⁻³`.
 fn multiple_of_power(value: f64) -> String {
     // A little more than the logarithm, which may be rounded down.
-    let exponent = (value.log10() + 1e-9).floor() as i32;
-    let factor = (value / 10.0_f64.powi(exponent)).round();
+    let exponent = (value.abs().log10() + 1e-9).floor() as i32;
+    let factor = (1e3 * value / 10.0_f64.powi(exponent)).round() / 1e3;
     let power = power_of_ten(exponent);
-    if factor == 1.0 {
-        power
-    } else {
-        format!("{factor}·{power}")
+    match factor {
+        1.0 => power,
+        -1.0 => format!("−{power}"),
+        factor => format!("{}·{power}", plain(factor)),
     }
 }
 
@@ -273,6 +298,29 @@ mod tests {
         let axis = Axis::logarithmic("error").over([3e-3, 0.06].into_iter());
         let labels: Vec<String> = axis.ticks().iter().map(|&tick| axis.label(tick)).collect();
         assert_eq!(labels, ["5·10⁻³", "10⁻²", "2·10⁻²", "5·10⁻²"]);
+    }
+
+    #[test]
+    fn less_than_a_decade_has_ticks_too() {
+        let labels = |low: f64, high: f64| -> Vec<String> {
+            let axis = Axis::logarithmic("unknowns").over([low, high].into_iter());
+            axis.ticks().iter().map(|&tick| axis.label(tick)).collect()
+        };
+        assert_eq!(labels(0.28, 0.42), ["0.3", "0.35", "0.4"]);
+        // At most half as many as on a linear axis.
+        let wanted = ["1.2", "1.3", "1.4", "1.5", "1.6", "1.7"];
+        assert_eq!(labels(1.21e6, 1.7e6), wanted.map(|n| format!("{n}·10⁶")));
+    }
+
+    #[test]
+    fn small_and_large_linear_values_are_multiples_of_powers() {
+        let labels = |low: f64, high: f64| -> Vec<String> {
+            let axis = Axis::linear("aperture (m)").over([low, high].into_iter());
+            axis.ticks().iter().map(|&tick| axis.label(tick)).collect()
+        };
+        assert_eq!(labels(-2e-6, 6e-6)[..3], ["−2·10⁻⁶", "−10⁻⁶", "0"]);
+        assert_eq!(labels(1e11, 1e12)[1..3], ["10¹¹", "2·10¹¹"]);
+        assert_eq!(labels(0.0, 2.5e-5)[..3], ["0", "5·10⁻⁶", "10⁻⁵"]);
     }
 
     #[test]

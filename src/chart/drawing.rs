@@ -4,13 +4,14 @@ use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
-use plotters::element::{PathElement, Polygon, Text};
+use plotters::element::{PathElement, Polygon, Rectangle, Text};
 use plotters::prelude::SVGBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle};
 
 use super::axis::Spanned;
 use super::names::apart;
+use super::notes::{Box, along, beside};
 use super::style::{COLOURS, INK, UNIT, marker};
 use super::{Chart, Rate, Scale, Series};
 
@@ -51,7 +52,11 @@ fn size(chart: &Chart) -> Place {
         .series
         .iter()
         .map(|series| series.name.chars().count());
-    let notes = [FRONT.chars().count()];
+    let band = chart
+        .band
+        .as_ref()
+        .map_or(0, |band| band.name.chars().count());
+    let notes = [FRONT.chars().count(), band];
     let longest = names.chain(notes).max().unwrap_or(0) as f64;
     let names = 45 + (0.53 * TEXT * longest).ceil() as i32;
     (ROOM.0 + SIZE.0 + names, ROOM.1 + SIZE.1 + ROOM.2)
@@ -78,11 +83,27 @@ fn front_style() -> ShapeStyle {
     }
 }
 
+/// Behind everything.
+fn band_style() -> ShapeStyle {
+    INK.mix(0.25).filled()
+}
+
+/// What a name beside the chart stands for.
+enum Mark {
+    /// A series, by number.
+    Series(usize),
+    /// The front.
+    Front,
+    /// The band.
+    Band,
+}
+
 fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
     let points = || chart.series.iter().flat_map(|series| &series.points);
     let x = chart.x.over(points().map(|point| point.0));
     let shown = points().filter(|&&point| chart.shows(point));
-    let y = chart.y.over(shown.map(|point| point.1));
+    let band = chart.band.iter().map(|band| band.below);
+    let y = chart.y.over(shown.map(|point| point.1).chain(band));
     let (width, _) = size(chart);
     let mut context = ChartBuilder::on(area)
         .margin_left(EDGE * UNIT)
@@ -104,6 +125,7 @@ fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
         top: y.top(),
         place: &|x, y| context.backend_coord(&(x, y)),
     };
+    sheet.draw_band()?;
     sheet.draw_front()?;
     for (number, series) in chart.series.iter().enumerate() {
         sheet.draw_series(number, series)?;
@@ -112,6 +134,7 @@ fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
         sheet.draw_rate(rate)?;
     }
     sheet.draw_names()?;
+    sheet.draw_notes()?;
     sheet.note_failures()
 }
 
@@ -215,27 +238,39 @@ impl Sheet<'_, '_> {
             points.find_map(|&point| self.at(point).or(self.cross_of(number, point)))
         };
         let bottom = (ROOM.1 + SIZE.1) * UNIT;
-        let mut ends: Vec<(Option<usize>, &str, i32)> = Vec::new();
+        let mut ends: Vec<(Mark, &str, i32)> = Vec::new();
         for (number, series) in self.chart.series.iter().enumerate() {
             let height = last(number).map_or(bottom, |place| place.1);
-            ends.push((Some(number), &series.name, height));
+            ends.push((Mark::Series(number), &series.name, height));
         }
         if let (true, Some(&end)) = (self.chart.front, self.chart.front_points().last()) {
-            ends.push((None, FRONT, self.at(end).map_or(bottom, |place| place.1)));
+            ends.push((
+                Mark::Front,
+                FRONT,
+                self.at(end).map_or(bottom, |place| place.1),
+            ));
+        }
+        if let Some((band, edge)) = self.chart.band.as_ref().zip(self.edge_of_band()) {
+            ends.push((Mark::Band, &band.name, edge));
         }
         let wanted: Vec<i32> = ends.iter().map(|end| end.2).collect();
         let heights = apart(&wanted, LINE * UNIT, ROOM.1 * UNIT, bottom);
         let left = (ROOM.0 + SIZE.0 + 18) * UNIT;
-        for ((number, name, _), height) in ends.into_iter().zip(heights) {
+        for ((mark, name, _), height) in ends.into_iter().zip(heights) {
             let sample = vec![(left - 9 * UNIT, height), (left + 9 * UNIT, height)];
-            match number {
-                Some(number) => {
+            match mark {
+                Mark::Series(number) => {
                     if self.chart.series[number].line {
                         self.path(sample, stroke(COLOURS[number % COLOURS.len()], 2.0))?;
                     }
                     self.marker(number, (left, height))?;
                 }
-                None => self.path(sample, front_style())?,
+                Mark::Front => self.path(sample, front_style())?,
+                Mark::Band => {
+                    let half = 6 * UNIT;
+                    let corners = [(sample[0].0, height - half), (sample[1].0, height + half)];
+                    self.area.draw(&Rectangle::new(corners, band_style()))?;
+                }
             }
             let style = text_style(TEXT).pos(Pos::new(HPos::Left, VPos::Center));
             self.text(name, (left + 15 * UNIT, height), style)?;
@@ -256,18 +291,76 @@ impl Sheet<'_, '_> {
     }
 
     fn draw_front(&self) -> Drawn {
-        if !self.chart.front {
-            return Ok(());
+        match self.chart.front {
+            true => self.path(self.stairs(), front_style()),
+            false => Ok(()),
         }
+    }
+
+    /// The front: between two points nothing better is known than the left one.
+    fn stairs(&self) -> Vec<Place> {
         let points = self.chart.front_points().into_iter();
         let places: Vec<Place> = points.filter_map(|point| self.at(point)).collect();
-        // Between two points nothing better is known than the left one.
         let stairs = places.windows(2);
         let mut line: Vec<Place> = stairs
             .flat_map(|pair| [pair[0], (pair[1].0, pair[0].1)])
             .collect();
         line.extend(places.last());
-        self.path(line, front_style())
+        line
+    }
+
+    /// Height of the upper edge of the band, if there is one and it has a place.
+    fn edge_of_band(&self) -> Option<i32> {
+        let below = self.chart.band.as_ref()?.below;
+        let takes = self.chart.y.takes(below);
+        takes.then(|| (self.place)(1.0, self.chart.y.at(below)).1)
+    }
+
+    fn draw_band(&self) -> Drawn {
+        let Some(edge) = self.edge_of_band() else {
+            return Ok(());
+        };
+        let (left, right) = (ROOM.0 * UNIT, (ROOM.0 + SIZE.0) * UNIT);
+        let corners = [(left, edge), (right, (ROOM.1 + SIZE.1) * UNIT)];
+        self.area.draw(&Rectangle::new(corners, band_style()))?;
+        self.path(vec![(left, edge), (right, edge)], stroke(INK, 1.0))
+    }
+
+    /// The notes of the series, where they stand on nothing else.
+    fn draw_notes(&self) -> Drawn {
+        let all = self.chart.series.iter();
+        let places = |series: &Series| -> Vec<Place> {
+            series
+                .points
+                .iter()
+                .filter_map(|&point| self.at(point))
+                .collect()
+        };
+        let mut taken = along(&self.stairs(), 4 * UNIT);
+        for series in all.clone() {
+            let places = places(series);
+            let markers = places
+                .iter()
+                .map(|&at| Box::around(at, (14 * UNIT, 14 * UNIT)));
+            taken.extend(markers);
+            taken.extend(along(&places, 4 * UNIT));
+        }
+        let low = (ROOM.0 * UNIT, ROOM.1 * UNIT);
+        let area = Box([low.0, low.1, low.0 + SIZE.0 * UNIT, low.1 + SIZE.1 * UNIT]);
+        for (number, series) in all.enumerate() {
+            let Some(note) = &series.note else {
+                continue;
+            };
+            let width = (0.6 * TEXT * note.chars().count() as f64) as i32;
+            let size = (width * UNIT, (1.1 * TEXT) as i32 * UNIT);
+            if let Some(at) = beside(&places(series), size, area, &taken) {
+                taken.push(Box::around(at, size));
+                let colour = COLOURS[number % COLOURS.len()];
+                let style = text_style(0.9 * TEXT).pos(Pos::new(HPos::Center, VPos::Center));
+                self.text(note, at, style.color(&colour))?;
+            }
+        }
+        Ok(())
     }
 
     /// Below the middle point of the series, where it ends.

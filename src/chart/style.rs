@@ -23,7 +23,7 @@ pub(super) const COLOURS: [RGBColor; 6] = [
 const SIZE: f64 = 4.5 * UNIT as f64;
 
 /// Corners of the marker of a series around a place: circle, square, triangle, diamond, triangle
-/// upside down, hexagon.
+/// upside down, hexagon; series beyond the colours have other markers on the same colours.
 pub(super) fn marker(series: usize, (x, y): (i32, i32)) -> Vec<(i32, i32)> {
     // Corners, turn of the first one from the right (of a whole turn), radius.
     let (corners, turn, radius) = [
@@ -33,7 +33,7 @@ pub(super) fn marker(series: usize, (x, y): (i32, i32)) -> Vec<(i32, i32)> {
         (4, 0.0, 1.4),
         (3, 0.25, 1.3),
         (6, 0.0, 1.15),
-    ][series % 6];
+    ][(series + series / COLOURS.len()) % 6];
     let corner = |i: i32| {
         let angle = std::f64::consts::TAU * (turn + f64::from(i) / f64::from(corners));
         let place = |origin: i32, part: f64| origin + (SIZE * radius * part).round() as i32;

@@ -109,6 +109,51 @@ fn the_front_is_what_nothing_beats() {
 }
 
 #[test]
+fn what_nothing_beats_is_found_among_ties_and_holes() {
+    let points = [
+        (2.0, 1.0),
+        (1.0, 3.0),
+        (1.0, 2.0),
+        (3.0, 1.0),
+        (f64::INFINITY, 0.0),
+        (4.0, 0.5),
+    ];
+    assert_eq!(front(&points), [2, 0, 5]);
+    assert!(front(&[(1.0, f64::NAN)]).is_empty());
+}
+
+#[test]
+fn the_band_has_a_name_and_a_place_and_notes_stand_in_the_chart() {
+    let mut chart = sample();
+    chart.series[0].note = Some("−0.97".into());
+    chart.band = Some(Band {
+        below: 1e-7,
+        name: "nobody knows".into(),
+    });
+    let (texts, _) = parsed(&chart.svg());
+    for wanted in ["nobody knows", "−0.97", "10⁻⁷"] {
+        assert!(
+            texts.iter().any(|text| text == wanted),
+            "{wanted}: {texts:?}"
+        );
+    }
+    chart.band = None;
+    let (texts, _) = parsed(&chart.svg());
+    assert!(!texts.iter().any(|text| text == "nobody knows"));
+}
+
+#[test]
+fn series_beyond_the_colours_have_markers_of_their_own() {
+    let at = (1000, 1000);
+    let looks: Vec<_> = (0..12)
+        .map(|i| (style::marker(i, at), i % style::COLOURS.len()))
+        .collect();
+    for (i, look) in looks.iter().enumerate() {
+        assert!(!looks[..i].contains(look), "series {i} looks like another");
+    }
+}
+
+#[test]
 fn charts_without_data_are_charts() {
     let empty = Chart::new("Nothing", Axis::linear("x"), Axis::logarithmic("y"));
     parsed(&empty.svg());

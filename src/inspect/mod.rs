@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use lie_io::{load_msh, write_atomically, write_vtu};
 use lie_mesh::{Defect, Draft, Faces, Mesh, Survey};
-use lie_solver::{Discretisation, Problem, Workload};
+use lie_solver::{Discretisation, Problem, Workload, difficulty};
 
 use crate::output::Output;
 use crate::prepare::{self, folder_for, mesh_file};
@@ -73,12 +73,15 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
 }
 
 /// What a mesh without a scene is predicted for.
-const ONE_STEP: Workload = Workload {
-    steps: 1,
-    is_nonlinear: true,
-    is_smooth: true,
-    is_path_dependent: false,
-};
+fn one_step(mesh: &Mesh) -> Workload {
+    Workload {
+        steps: 1,
+        is_nonlinear: true,
+        is_smooth: true,
+        is_path_dependent: false,
+        difficulty: difficulty(mesh, &[]),
+    }
+}
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.
 fn look(
@@ -109,7 +112,7 @@ fn look(
     let grid = grid::of(&mesh, &survey);
     defects.extend(write_vtu(&output.path("inspect.vtu"), &grid).err());
     let Some(scene) = scene else {
-        cost::predict(&mesh, None, ONE_STEP, inspection);
+        cost::predict(&mesh, None, one_step(&mesh), inspection);
         return defects;
     };
     match bind(scene, mesh) {

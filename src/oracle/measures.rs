@@ -64,6 +64,8 @@ struct Fracture<'a> {
     samples: Vec<Sample>,
     /// Results at the facet points, with their places and areas.
     points: Vec<(&'a FacetResult, DVec3, f64)>,
+    /// Results at the nodes of its facets.
+    nodes: Vec<FacetResult>,
 }
 
 impl<'a> Fracture<'a> {
@@ -82,6 +84,11 @@ impl<'a> Fracture<'a> {
                 .iter()
                 .flat_map(|&facet| samples(system, solution, facet))
                 .collect(),
+            nodes: {
+                let nodes = solution.facet_nodes(system.problem, &system.discretisation.interface);
+                let ranges = own.iter().flat_map(|&facet| facets.elements.range(facet));
+                ranges.map(|slot| nodes[slot]).collect()
+            },
             points: points
                 .map(|(point, result)| (result, point.position, point.area))
                 .collect(),
@@ -99,7 +106,7 @@ impl<'a> Fracture<'a> {
             parts.sum::<f64>() / area
         };
         let largest = |of: fn(&FacetResult) -> f64| {
-            let values = self.points.iter().map(|(result, ..)| of(result));
+            let values = self.nodes.iter().map(of);
             values.fold(f64::NEG_INFINITY, f64::max)
         };
         let values = [

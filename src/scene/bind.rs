@@ -1,7 +1,7 @@
 //! Where a scene meets a mesh: names become groups, groups become parts of a problem.
 
 use glam::DVec3;
-use lie_core::{FacetQuadrature, Rock};
+use lie_core::Rock;
 use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole, nearest};
 use lie_solver::{Condition, FixedPoint, Problem};
 
@@ -177,7 +177,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
             fixed_points,
             gravity: scene.body.gravity,
             initial_stress: scene.initial_stress,
-            facet_quadrature: FacetQuadrature::Nodal,
+            facet_quadrature: scene.solver.facets,
             mesh,
         },
         decisions,

@@ -7,7 +7,8 @@ use super::FractureEntry;
 use super::load::{Clock, Scaled, read_history};
 use crate::reader::{Accept, Section};
 
-const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
+/// Names of the closure laws.
+pub(crate) const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
 
 /// Reads a section on a fracture.
 pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
@@ -63,6 +64,20 @@ pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<F
         fluid_pressure: fluid_pressure.unwrap_or(0.0),
     };
     Some(FractureEntry { fracture, history })
+}
+
+/// Keys that a closure law refuses; `rubs` tells whether the fracture has friction.
+pub(crate) fn refused_keys(closure: &str, rubs: bool) -> Vec<&'static str> {
+    let refused = [
+        (closure != "logarithmic", "cutoff_aperture"),
+        (closure != "hyperbolic", "max_closure"),
+        (closure == "contact", "normal_stiffness"),
+        (closure == "contact", "tensile_strength"),
+        (closure == "contact", "fracture_energy"),
+        (closure == "contact" && !rubs, "shear_stiffness"),
+    ];
+    let keys = refused.into_iter().filter(|(refuses, _)| *refuses);
+    keys.map(|(_, key)| key).collect()
 }
 
 /// The name of the closure law, if it is a known one.

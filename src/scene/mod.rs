@@ -9,13 +9,13 @@ mod load;
 
 use std::path::{Path, PathBuf};
 
-use lie_core::Rock;
+use lie_core::{FacetQuadrature, Rock};
 use lie_mesh::Defect;
 use lie_solver::{InitialStress, LinearMethod, Profile};
 
 pub use bind::{Binding, bind, surface_roles};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-pub(crate) use fracture::read_fracture;
+pub(crate) use fracture::{CLOSURES, read_fracture, refused_keys};
 pub use history::{History, StepEnd, Timetable};
 pub(crate) use load::Clock;
 
@@ -74,6 +74,8 @@ pub struct SolverEntry {
     /// Largest difference between a load step in one part and in two, against the largest jump, where
     /// the way of the loads matters; 1e-3 if not given.
     pub path_accuracy: Option<f64>,
+    /// How fractures are integrated over their facets.
+    pub facets: FacetQuadrature,
 }
 
 /// A scene, all values in SI units.
@@ -214,6 +216,8 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
             entry(source, name, section, |s| read_fixed_point(s, clock))
         })
         .collect();
+    // Of `kluft study`, which reads it.
+    root.section("study");
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
     Some(Scene {
@@ -376,7 +380,23 @@ fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
         linear,
         memory_limit: section.number("memory_limit", Accept::Positive),
         path_accuracy: section.number("path_accuracy", Accept::Between(0.0, 1.0)),
+        facets: read_facets(&section),
     };
     section.finish();
     entry
+}
+
+/// Names of the rules by which fractures are integrated over their facets.
+pub(crate) const FACETS: [&str; 2] = ["nodal", "gauss"];
+
+fn read_facets(section: &Section<'_, '_>) -> FacetQuadrature {
+    match section.text("facets") {
+        None | Some("nodal") => FacetQuadrature::Nodal,
+        Some("gauss") => FacetQuadrature::Gauss,
+        Some(name) => {
+            let remedy = "write \"nodal\" (the default) or \"gauss\" (for comparison)";
+            section.refuse("facets", format!("unknown facet rule \"{name}\""), remedy);
+            FacetQuadrature::Nodal
+        }
+    }
 }

@@ -12,5 +12,6 @@ mod read_back;
 mod renumbered;
 mod results;
 mod resume;
+mod study;
 mod talk;
 mod usage;

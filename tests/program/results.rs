@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::harness::{Workshop, files, summary};
+use crate::harness::{Workshop, files, kluft, root, scratch, summary};
 use crate::read_back::read_back;
 
 /// What is expected of a scene.
@@ -69,6 +69,29 @@ fn errors_against_a_closed_form_are_in_the_summary() {
     let mean = said["fractures"]["joint"]["aperture"]["mean"].as_f64();
     assert_eq!(of("mean_aperture")["value"].as_f64(), mean);
     assert_eq!(of("volume")["fracture"], "joint");
+}
+
+/// Segedin (1951), Eshelby (1957): a closed disc that slides against friction, on 78 thousand unknowns.
+#[test]
+fn an_inclined_penny_slips_as_its_closed_form() {
+    let (scene, out) = (
+        root().join("geometries/inclined-penny/scene.toml"),
+        scratch(),
+    );
+    let run = kluft(&[
+        "run".as_ref(),
+        scene.as_os_str(),
+        "--out".as_ref(),
+        out.path().as_os_str(),
+    ]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    let said = summary(out.path());
+    let measures = said["measures"].as_array().expect("measures");
+    for (name, most) in [("slip_max_inside", 0.01), ("slip_l2_inside", 0.005)] {
+        let found = measures.iter().find(|measure| measure["name"] == name);
+        let error = found.and_then(|found| found["error"].as_f64()).expect(name);
+        assert!(error < most, "{name} {error}");
+    }
 }
 
 fn check(expected: &Expected) {

@@ -30,6 +30,12 @@ fn wrong_arguments_are_named_with_the_usage() {
         (&["run", "scene.toml", "--threads", "many"], "many"),
         (&["run", "scene.toml", "--out"], "--out"),
         (&["run", "scene.toml", "-q", "-v"], "cannot be used with"),
+        (&["study"], "SCENE"),
+        (&["study", "scene.toml", "--tolerance", "0"], "1% or 0.01"),
+        (
+            &["study", "scene.toml", "--tolerance", "100%"],
+            "1% or 0.01",
+        ),
         (&["network", "list.csv"], "--out"),
         (
             &["network", "list.csv", "-o", "x", "--domain", "0,0,0,1,1"],
@@ -58,6 +64,7 @@ fn help_and_version_are_answers() {
         (&["run", "--help"], "[fracture.joint]"),
         (&["network", "--help"], "dip_direction"),
         (&["inspect", "--help"], "inspect.vtu"),
+        (&["study", "--help"], "orders = [1, 2]"),
         (&["--version"], env!("CARGO_PKG_VERSION")),
     ] {
         let run = kluft(arguments);

@@ -36,7 +36,7 @@ pub use interface::{FacetPoint, Interface};
 pub use linear::{
     Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,
     LinearSolution, NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
-    Whole, Workload,
+    Whole, Workload, difficulty,
 };
 pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;

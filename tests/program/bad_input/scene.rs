@@ -39,6 +39,18 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "unknown facet rule",
+        scene: &[(
+            "[fracture.joint]",
+            "[solver]\nfacets = \"gaus\"\n[fracture.joint]",
+        )],
+        says: &[
+            "unknown facet rule \"gaus\"",
+            "write \"nodal\" (the default)",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "key unlike any other",
         scene: &[("[boundary.top]", "[boundary.top]\nqqq = 1")],
         says: &[

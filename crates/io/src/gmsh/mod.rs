@@ -32,6 +32,11 @@ pub struct Meshing<'a> {
     pub output: &'a Path,
 }
 
+/// The version of gmsh, if it can be started.
+pub fn version() -> Option<String> {
+    Gmsh::from_environment().version()
+}
+
 /// Runs gmsh and answers with its warnings.
 ///
 /// # Errors

@@ -25,6 +25,19 @@ impl Gmsh {
         }
     }
 
+    /// Its version, if it can be started.
+    pub(super) fn version(&self) -> Option<String> {
+        let output = Command::new(&self.program)
+            .arg("--version")
+            .stdin(Stdio::null())
+            .output()
+            .ok()?;
+        // gmsh prints its version on the error stream.
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8_lossy(&said).trim().to_owned();
+        (output.status.success() && !said.is_empty()).then_some(said)
+    }
+
     /// Runs it and answers with its warnings; any error it reports is a failure.
     pub(super) fn run(&self, input: &Path, args: &[OsString]) -> Result<Vec<String>, Vec<Defect>> {
         let output = Command::new(&self.program)

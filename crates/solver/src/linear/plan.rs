@@ -7,6 +7,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+use lie_core::Rock;
+use lie_mesh::Mesh;
+
 use super::{Analysis, Condensed, Iterative, LinearFailure, NodeOrder, TangentSolver, Whole};
 use crate::newton::subspace_bytes;
 use crate::pattern::Pattern;
@@ -91,7 +94,7 @@ impl<'a> From<&'a Discretisation> for Unknowns<'a> {
 }
 
 /// What will be asked of the solver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Workload {
     /// Load steps.
     pub steps: usize,
@@ -102,6 +105,8 @@ pub struct Workload {
     /// Whether tractions depend on the way, as with friction: each step is walked in one part and in
     /// two, and the tangents are not symmetric.
     pub is_path_dependent: bool,
+    /// Factor on the iterations of the multigrid, 1 for cells of about equal edges.
+    pub difficulty: f64,
 }
 
 impl Workload {
@@ -113,6 +118,7 @@ impl Workload {
             is_nonlinear: laws().any(|law| !law.is_linear()),
             is_smooth: laws().all(|law| law.is_smooth()),
             is_path_dependent: laws().any(|law| law.is_path_dependent()),
+            difficulty: difficulty(&problem.mesh, &problem.rocks),
         }
     }
 
@@ -306,9 +312,69 @@ fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     };
     Prediction {
         method: LinearMethod::Iterative,
-        seconds: blocks * (SETUP_BYTES + iterations * ITERATION_BYTES) / BYTES,
+        seconds: blocks * (SETUP_BYTES + workload.difficulty * iterations * ITERATION_BYTES)
+            / BYTES,
         memory_bytes: (blocks * MEMORY_BYTES) as usize + recycled,
         factor_entries: 0,
         operations: 0.0,
+    }
+}
+
+/// How many more iterations flat or slender cells and nearly incompressible rocks ask of the multigrid. Measured: 86, 217
+/// and 575 iterations instead of 35 in layers of prisms whose flattest tenth has edges 8, 35 and 100 to 1; 3768 instead of 20 at
+/// Poisson's ratio 0.4999.
+pub fn difficulty(mesh: &Mesh, rocks: &[Rock]) -> f64 {
+    /// Cells looked at.
+    const SAMPLE: usize = 5000;
+    const REGULAR: f64 = 3.0;
+    let step = (mesh.cells.len() / SAMPLE).max(1);
+    let mut ratios: Vec<f64> = (0..mesh.cells.len())
+        .step_by(step)
+        .map(|cell| edge_ratio(mesh, cell))
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    let flat = ratios.get(ratios.len() * 9 / 10).copied().unwrap_or(1.0);
+    let of_shape = 1.0 + 0.16 * (flat - REGULAR).max(0.0);
+    let of_rock = |rock: &Rock| (0.1 / (1.0 - 2.0 * rock.poisson_ratio)).max(1.0).powf(0.75);
+    rocks.iter().map(of_rock).fold(of_shape, f64::max)
+}
+
+/// Longest edge of a cell against its shortest.
+fn edge_ratio(mesh: &Mesh, cell: usize) -> f64 {
+    let corners = mesh.corners(&mesh.cells, cell);
+    let edges = mesh.cells.shapes[cell].edges().iter();
+    let lengths = edges.map(|&[a, b]| corners[a as usize].distance(corners[b as usize]));
+    let (low, high) = lengths.fold((f64::INFINITY, 0.0_f64), |(low, high), length| {
+        (low.min(length), high.max(length))
+    });
+    high / low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lie_mesh::Shape;
+    use lie_mesh::structured::cells_of;
+
+    const ROCK: Rock = Rock {
+        young_modulus: 1e9,
+        poisson_ratio: 0.25,
+        density: 0.0,
+    };
+
+    #[test]
+    fn flat_cells_and_incompressible_rocks_are_difficult() {
+        let layer = |thickness: f64| {
+            let draft = cells_of(Shape::Hex8, [4, 4, 1], [1.0, 1.0, thickness], &[]);
+            let roles = vec![lie_mesh::SurfaceRole::Unused; draft.groups.len()];
+            Mesh::build(draft, &roles).expect("a sound mesh")
+        };
+        assert_eq!(difficulty(&layer(0.25), &[ROCK]), 1.0);
+        assert!((difficulty(&layer(0.0025), &[ROCK]) - 16.52).abs() < 1e-9);
+        let soft = Rock {
+            poisson_ratio: 0.4999,
+            ..ROCK
+        };
+        assert!(difficulty(&layer(0.25), &[soft, ROCK]) > 50.0);
     }
 }

@@ -1,0 +1,41 @@
+//! What a study ran on.
+
+use crate::memory;
+
+/// The machine and the programs, as far as they tell.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Machine {
+    /// Model of the processor.
+    pub(super) processor: String,
+    /// Number of cores that this process may use.
+    pub(super) cores: usize,
+    /// Memory (bytes).
+    pub(super) memory_bytes: Option<usize>,
+    /// Version of gmsh.
+    pub(super) gmsh: String,
+}
+
+impl Machine {
+    /// This machine.
+    pub(super) fn this() -> Self {
+        let unknown = || "unknown".to_owned();
+        Self {
+            processor: processor().unwrap_or_else(unknown),
+            cores: cores(),
+            memory_bytes: memory::total_bytes(),
+            gmsh: lie_io::gmsh::version().unwrap_or_else(unknown),
+        }
+    }
+}
+
+/// Number of cores that this process may use.
+pub(super) fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Where Linux tells.
+fn processor() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("model name"))?;
+    line.split_once(':').map(|(_, name)| name.trim().to_owned())
+}

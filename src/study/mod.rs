@@ -1,0 +1,319 @@
+//! Accuracy against cost: what a scene's settings yield, and what each takes.
+//!
+//! Each setting is a process of its own, so that its time, memory and failure are those of a run, and
+//! whatever happens to it does not end the study.
+
+mod answer;
+mod assess;
+mod charts;
+mod edits;
+mod machine;
+mod page;
+mod point;
+mod reference;
+mod settings;
+mod sweep;
+mod table;
+mod words;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use lie_io::write_atomically;
+use lie_mesh::Defect;
+
+use crate::checkpoint::fingerprint_of;
+use crate::report::{Failure, Report, Verbosity};
+use crate::run::one;
+use crate::scene::Scene;
+use assess::{Assessment, assess};
+use machine::Machine;
+use point::{Outcome, Record, Runner};
+use settings::Plan;
+use words::{duration, or_the_scene, percent};
+
+/// How to study a scene.
+#[derive(Debug, Clone)]
+pub struct StudyOptions {
+    /// Folder for the results; `study` beside the scene if not given.
+    pub out: Option<PathBuf>,
+    /// Largest error that is wanted, as a share; all settings are run if not given.
+    pub tolerance: Option<f64>,
+    /// Number of threads of each run; all cores if not given.
+    pub threads: Option<usize>,
+    /// How much to tell.
+    pub verbosity: Verbosity,
+}
+
+/// A study under way.
+struct Study {
+    /// The scene as it is written.
+    text: String,
+    title: String,
+    plan: Plan,
+    runner: Runner,
+    /// Folder of each setting.
+    folders: Vec<String>,
+    /// What came out of each setting; none before it is run.
+    records: Vec<Option<Record>>,
+    machine: Machine,
+    out: PathBuf,
+}
+
+/// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings that a
+/// former study of the folder has run are not run again. With a tolerance the study ends when a setting
+/// reaches it, and prints that setting as a fragment of a scene.
+///
+/// # Errors
+/// [`Failure::BadInput`] with every defect of the scene; [`Failure::NotReached`] if no setting was solved,
+/// or none is as accurate as wanted. Settings that fail are results.
+pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
+    let mut report = Report::new(options.verbosity);
+    let mut study = Study::begin(scene_file, options)?;
+    report.entry("study", &study.title);
+    let found = study.run(&mut report, options.tolerance)?;
+    study.write(&found)?;
+    for line in summary(&study, &found) {
+        report.entry("result", &line);
+    }
+    report.entry("open", &study.out.join("study.html").display().to_string());
+    if answer::is_barren(&study.records) {
+        let why = study.records.iter().flatten().find_map(Record::failure);
+        let why = why.unwrap_or_default();
+        return Err(Failure::NotReached(format!(
+            "no setting was solved; the first: {why}"
+        )));
+    }
+    let Some(tolerance) = options.tolerance else {
+        return Ok(());
+    };
+    let Some(best) = answer::cheapest(&study, &found, tolerance) else {
+        return Err(Failure::NotReached(answer::missed(
+            &study, &found, tolerance,
+        )));
+    };
+    // With the output stream gone there is nobody left to tell.
+    let text = answer::fragment(&study, &found, best, tolerance);
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    Ok(())
+}
+
+impl Study {
+    fn begin(scene_file: &Path, options: &StudyOptions) -> Result<Self, Failure> {
+        let text = Scene::text(scene_file)?;
+        let plan = Plan::read(scene_file, &text)?;
+        let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
+        let out = options.out.clone().unwrap_or_else(beside);
+        let out = std::path::absolute(&out).unwrap_or(out);
+        let program = one(own_program())?;
+        let runner = Runner {
+            folder: out.join("points"),
+            build: one(fingerprint_of(&program))?,
+            program,
+            threads: options.threads.unwrap_or_else(machine::cores),
+        };
+        one(std::fs::create_dir_all(&runner.folder).map_err(|error| {
+            let place = runner.folder.display().to_string();
+            let problem = format!("the folder cannot be made: {error}");
+            Defect::new(place, problem, "name another folder with --out")
+        }))?;
+        let (folders, records) = claim(&plan, &runner);
+        let title = plan.scene.get("title").and_then(toml::Value::as_str);
+        Ok(Self {
+            text,
+            title: title.unwrap_or("untitled").to_owned(),
+            plan,
+            runner,
+            folders,
+            records,
+            machine: Machine::this(),
+            out,
+        })
+    }
+
+    /// Runs what has not been run, until a setting reaches the tolerance.
+    fn run(&mut self, report: &mut Report, tolerance: Option<f64>) -> Result<Assessment, Failure> {
+        let mut found = one(assess(&self.plan, &self.records))?;
+        let count = self.plan.settings.len();
+        let kept = self.records.iter().flatten().count();
+        report.entry("settings", &format!("{count}, {kept} of them run before"));
+        for index in 0..count {
+            let reached = tolerance.and_then(|most| answer::cheapest(self, &found, most));
+            if reached.is_some() {
+                break;
+            }
+            if self.records[index].is_some() {
+                continue;
+            }
+            let name = self.name(index);
+            let scene = self.plan.scene_of(&self.plan.settings[index]);
+            let left = self
+                .records
+                .iter()
+                .filter(|record| record.is_none())
+                .count();
+            let time = self.time_left();
+            let time = time.map_or_else(String::new, |time| format!(", about {}", duration(time)));
+            report.entry("point", &format!("{name} ({left} left{time})"));
+            let (record, _) =
+                report.stage("running", |_| self.runner.run(&self.folders[index], &scene));
+            self.records[index] = Some(one(record)?);
+            found = one(assess(&self.plan, &self.records))?;
+            self.tell(report, &found, index);
+            // Whoever interrupts a study finds what is known so far.
+            self.write(&found)?;
+        }
+        Ok(found)
+    }
+
+    fn tell(&self, report: &Report, found: &Assessment, index: usize) {
+        let Some(record) = &self.records[index] else {
+            return;
+        };
+        let text = match &record.outcome {
+            Outcome::Failed(why) => format!("failed: {}", why.replace('\n', "\n           ")),
+            Outcome::Solved(numbers) => {
+                let error = found.verdicts[index].error;
+                // A reference that is extrapolated moves with each mesh.
+                let so_far = if found.references.is_empty() {
+                    ""
+                } else {
+                    " so far"
+                };
+                let error =
+                    error.map_or_else(String::new, |e| format!(", error {}{so_far}", percent(e)));
+                let took = duration(numbers.seconds);
+                format!("{took}, {} unknowns{error}", numbers.unknowns)
+            }
+        };
+        report.entry("", &text);
+    }
+
+    /// Time that the settings not yet run will take, going by those that were (s).
+    fn time_left(&self) -> Option<f64> {
+        let cost = |index: usize| self.plan.settings[index].cost;
+        let taken = (0..self.records.len()).map(|i| (cost(i), self.seconds(i)));
+        let taken: Vec<(f64, f64)> = taken.filter(|(_, s)| s.is_finite()).collect();
+        let left = (0..self.records.len()).filter(|&i| self.records[i].is_none());
+        reference::proportion(&taken)
+            .map(|(fixed, each)| left.map(|i| fixed + each * cost(i)).sum())
+    }
+
+    /// What a setting is called.
+    fn name(&self, index: usize) -> String {
+        or_the_scene(self.plan.name(&self.plan.settings[index], |_| true))
+    }
+
+    /// Wall-clock time of a setting (s); infinite if it was not solved.
+    fn seconds(&self, index: usize) -> f64 {
+        let record = self.records[index].as_ref();
+        let numbers = record.and_then(Record::numbers);
+        numbers.map_or(f64::INFINITY, |numbers| numbers.seconds)
+    }
+
+    /// The scene that a setting ran.
+    fn scene_file(&self, index: usize) -> PathBuf {
+        self.runner
+            .folder
+            .join(&self.folders[index])
+            .join("scene.toml")
+    }
+
+    /// Settings that no other one beats in time and error.
+    fn front(&self, found: &Assessment) -> Vec<usize> {
+        let error = |i: usize| found.drawn_error(i).unwrap_or(f64::NAN);
+        let point = |i: usize| (self.seconds(i), error(i));
+        let points: Vec<(f64, f64)> = (0..self.records.len()).map(point).collect();
+        crate::chart::front(&points)
+    }
+
+    /// Writes table, charts and page.
+    fn write(&self, found: &Assessment) -> Result<(), Failure> {
+        let charts = charts::charts(self, found);
+        let drawn: Vec<(&charts::Named, String)> = charts
+            .iter()
+            .map(|named| (named, named.chart.svg()))
+            .collect();
+        for (named, svg) in &drawn {
+            let path = self.out.join(format!("{}.svg", named.file));
+            one(write_atomically(&path, |out| out.write_all(svg.as_bytes())))?;
+        }
+        one(table::write(&self.out.join("study.csv"), self, found))?;
+        let page = page::page(self, found, &drawn);
+        let path = self.out.join("study.html");
+        Ok(one(write_atomically(&path, |out| {
+            out.write_all(page.as_bytes())
+        }))?)
+    }
+}
+
+/// The folder of each setting, and its record if a former study has run it.
+fn claim(plan: &Plan, runner: &Runner) -> (Vec<String>, Vec<Option<Record>>) {
+    let mut former = runner.former();
+    let find = |setting: &settings::Setting| {
+        let wanted = runner.fingerprint(&plan.scene_of(setting));
+        let at = former
+            .iter()
+            .position(|(_, record)| record.fingerprint == wanted)?;
+        Some(former.remove(at))
+    };
+    let found: Vec<Option<(String, Record)>> = plan.settings.iter().map(find).collect();
+    let taken: Vec<String> = found
+        .iter()
+        .flatten()
+        .map(|(name, _)| name.clone())
+        .collect();
+    let pairs = plan.settings.iter().zip(found);
+    let pairs = pairs.map(|(setting, found)| match found {
+        Some((name, record)) => (name, Some(record)),
+        None => (untaken(&setting.folder, &taken), None),
+    });
+    pairs.unzip()
+}
+
+/// A name that no setting of another study has, which changed the numbers.
+fn untaken(wanted: &str, taken: &[String]) -> String {
+    let mut name = wanted.to_owned();
+    while taken.contains(&name) {
+        name.push('+');
+    }
+    name
+}
+
+fn own_program() -> Result<PathBuf, Defect> {
+    std::env::current_exe().map_err(|error| {
+        let problem = format!("the program does not find itself: {error}");
+        Defect::new("kluft", problem, "start it by its whole path")
+    })
+}
+
+/// What a study found, in a few lines.
+fn summary(study: &Study, found: &Assessment) -> Vec<String> {
+    let mut lines = Vec::new();
+    let failed = study
+        .records
+        .iter()
+        .flatten()
+        .filter_map(Record::failure)
+        .count();
+    if failed > 0 {
+        lines.push(format!(
+            "{failed} settings failed, see study.html for the reasons"
+        ));
+    }
+    if found.verdicts.iter().all(|verdict| verdict.error.is_none()) {
+        lines.push(format!("no errors: {}", answer::no_errors(study, found)));
+    }
+    lines.extend(found.twins.as_deref().map(answer::twins));
+    for reference in &found.references {
+        lines.push(page::told(reference));
+    }
+    for index in study.front(found) {
+        let error = found.verdicts[index]
+            .error
+            .map_or_else(String::new, percent);
+        let seconds = duration(study.seconds(index));
+        lines.push(format!("{error} in {seconds}: {}", study.name(index)));
+    }
+    lines
+}

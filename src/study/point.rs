@@ -1,0 +1,368 @@
+//! One setting: its scene, its run as a process of its own, and what is kept of it.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Instant;
+
+use lie_io::write_atomically;
+use lie_mesh::Defect;
+use serde::{Deserialize, Serialize};
+use toml::Table;
+
+use crate::checkpoint::{Fingerprint, fingerprint, fingerprint_of};
+use crate::oracle::Measure;
+
+/// The record of a finished point, in its folder.
+const RECORD: &str = "point.json";
+/// Lines of a failed run's messages that are kept.
+const LINES: usize = 6;
+
+/// A setting that has been run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Record {
+    /// Of everything that the run depends on.
+    pub(super) fingerprint: String,
+    /// What came out of it.
+    #[serde(flatten)]
+    pub(super) outcome: Outcome,
+}
+
+/// What came out of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Outcome {
+    /// It solved the scene.
+    Solved(Box<Numbers>),
+    /// It did not, and why.
+    Failed(String),
+}
+
+/// Numbers of a run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Numbers {
+    /// Wall-clock time of the process (s), gmsh included.
+    pub(super) seconds: f64,
+    /// Of it, in gmsh (s).
+    pub(super) meshing_seconds: f64,
+    /// Largest resident memory of the process (bytes), gmsh left out.
+    pub(super) peak_memory_bytes: u64,
+    /// Number of cells.
+    pub(super) cells: usize,
+    /// Scalar unknowns.
+    pub(super) unknowns: usize,
+    /// Of them, components of jumps.
+    pub(super) jump_unknowns: usize,
+    /// Newton iterations of all load steps.
+    pub(super) newton_iterations: usize,
+    /// Iterations of an iterative linear solver in all load steps.
+    pub(super) linear_iterations: usize,
+    /// The fracture with the largest area.
+    pub(super) largest_fracture: Option<String>,
+    /// What was measured.
+    pub(super) measures: Vec<Measure>,
+}
+
+impl Record {
+    /// The numbers, if the run solved the scene.
+    pub(super) fn numbers(&self) -> Option<&Numbers> {
+        match &self.outcome {
+            Outcome::Solved(numbers) => Some(numbers),
+            Outcome::Failed(_) => None,
+        }
+    }
+
+    /// Why the run failed, if it did.
+    pub(super) fn failure(&self) -> Option<&str> {
+        match &self.outcome {
+            Outcome::Solved(_) => None,
+            Outcome::Failed(why) => Some(why),
+        }
+    }
+}
+
+/// How points are run.
+#[derive(Debug, Clone)]
+pub(super) struct Runner {
+    /// The folder `points`.
+    pub(super) folder: PathBuf,
+    /// This program.
+    pub(super) program: PathBuf,
+    /// Sum of its bytes: another build of a version takes another time.
+    pub(super) build: Fingerprint,
+    /// Number of threads of each run.
+    pub(super) threads: usize,
+}
+
+impl Runner {
+    /// Sum over what a run of a scene depends on: its text, the geometry or mesh it names, this build, and
+    /// the threads, which its time depends on.
+    pub(super) fn fingerprint(&self, scene: &Table) -> String {
+        let mesh = scene.get("mesh");
+        let mut file = ["geometry", "file"].into_iter();
+        let file = file.find_map(|key| mesh?.get(key)?.as_str());
+        // A file that cannot be read is refused by the run.
+        let bytes = file.and_then(|file| fingerprint_of(Path::new(file)).ok());
+        let parts = format!("{}\n{}\n{bytes:?}\n{scene}", self.build, self.threads);
+        format!("{:032x}", fingerprint(&parts))
+    }
+
+    /// The records of former studies in the folder, each with the name of its own.
+    pub(super) fn former(&self) -> Vec<(String, Record)> {
+        let folders = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let read = |folder: fs::DirEntry| {
+            let text = fs::read(folder.path().join(RECORD)).ok()?;
+            let name = folder.file_name().into_string().ok()?;
+            // A damaged record is none: the point is run again.
+            Some((name, serde_json::from_slice(&text).ok()?))
+        };
+        let mut records: Vec<(String, Record)> = folders.filter_map(read).collect();
+        records.sort_by(|a, b| a.0.cmp(&b.0));
+        records
+    }
+
+    /// Runs a scene in a folder of its own, whatever stood there before, and records what came of it.
+    ///
+    /// # Errors
+    /// If files cannot be written or the program cannot be started; a run that fails is a result.
+    pub(super) fn run(&self, name: &str, scene: &Table) -> Result<Record, Defect> {
+        let folder = self.folder.join(name);
+        let unwritable = |error: std::io::Error| {
+            let problem = format!("cannot be written: {error}");
+            Defect::new(
+                folder.display().to_string(),
+                problem,
+                "check the permissions and the space, or name another folder with --out",
+            )
+        };
+        if folder.exists() {
+            fs::remove_dir_all(&folder).map_err(unwritable)?;
+        }
+        fs::create_dir_all(&folder).map_err(unwritable)?;
+        let scene_file = folder.join("scene.toml");
+        write_atomically(&scene_file, |out| {
+            out.write_all(scene.to_string().as_bytes())
+        })?;
+        let begin = Instant::now();
+        let output = self.start(&scene_file, &folder.join("out"))?;
+        let seconds = begin.elapsed().as_secs_f64();
+        let record = Record {
+            fingerprint: self.fingerprint(scene),
+            outcome: outcome(&output, &folder.join("out/summary.json"), seconds),
+        };
+        // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory); who was
+        // killed, by hand or for want of memory, may be luckier the next time.
+        if matches!(output.status.code(), Some(0 | 1)) {
+            write_atomically(&folder.join(RECORD), |out| {
+                serde_json::to_writer_pretty(&mut *out, &record)?;
+                out.write_all(b"\n")
+            })?;
+        }
+        Ok(record)
+    }
+
+    /// Runs the program on a scene; if this process dies, the run ends with it.
+    fn start(&self, scene: &Path, out: &Path) -> Result<Output, Defect> {
+        let run = || {
+            let mut child = Command::new(&self.program)
+                .args([
+                    "run",
+                    "--quiet",
+                    "--tied",
+                    "--threads",
+                    &self.threads.to_string(),
+                ])
+                .arg(scene)
+                .arg("--out")
+                .arg(out)
+                .stdin(Stdio::piped())
+                .stdout(Stdio::null())
+                .stderr(Stdio::piped())
+                .spawn()?;
+            // Open until the run has ended.
+            let _tie = child.stdin.take();
+            child.wait_with_output()
+        };
+        run().map_err(|error| {
+            let place = self.program.display().to_string();
+            let problem = format!("the program cannot be started: {error}");
+            Defect::new(place, problem, "install it again")
+        })
+    }
+}
+
+fn outcome(output: &Output, summary: &Path, seconds: f64) -> Outcome {
+    if !output.status.success() {
+        return Outcome::Failed(reason(output));
+    }
+    let read = fs::read(summary).map_err(|error| error.to_string());
+    let read = read.and_then(|text| numbers(&text, seconds).map_err(|error| error.to_string()));
+    match read {
+        Ok(numbers) => Outcome::Solved(Box::new(numbers)),
+        Err(error) => Outcome::Failed(format!("summary.json: {error}")),
+    }
+}
+
+/// The last lines of what a run said, and how it ended.
+fn reason(output: &Output) -> String {
+    let said = String::from_utf8_lossy(&output.stderr);
+    let lines: Vec<&str> = said
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .collect();
+    let last = &lines[lines.len().saturating_sub(LINES)..];
+    match last {
+        [] => output.status.to_string(),
+        last => format!("{}: {}", output.status, last.join("\n")),
+    }
+}
+
+#[derive(Deserialize)]
+struct Summary {
+    mesh: Mesh,
+    unknowns: Unknowns,
+    fractures: serde_json::Map<String, serde_json::Value>,
+    #[serde(default)]
+    measures: Vec<Measure>,
+    steps: Vec<Step>,
+    seconds: Seconds,
+    peak_memory_bytes: u64,
+}
+
+#[derive(Deserialize)]
+struct Mesh {
+    cells: usize,
+}
+
+#[derive(Deserialize)]
+struct Unknowns {
+    total: usize,
+    jump: usize,
+}
+
+#[derive(Deserialize)]
+struct Step {
+    newton_iterations: usize,
+    linear_iterations: usize,
+}
+
+#[derive(Deserialize)]
+struct Seconds {
+    mesh: f64,
+}
+
+/// The numbers in a `summary.json`.
+pub(super) fn numbers(text: &[u8], seconds: f64) -> serde_json::Result<Numbers> {
+    let summary: Summary = serde_json::from_slice(text)?;
+    let area = |fracture: &serde_json::Value| fracture["area"].as_f64().unwrap_or(0.0);
+    let fractures = summary.fractures.iter();
+    let largest = fractures.max_by(|a, b| area(a.1).total_cmp(&area(b.1)));
+    Ok(Numbers {
+        seconds,
+        meshing_seconds: summary.seconds.mesh,
+        peak_memory_bytes: summary.peak_memory_bytes,
+        cells: summary.mesh.cells,
+        unknowns: summary.unknowns.total,
+        jump_unknowns: summary.unknowns.jump,
+        newton_iterations: summary
+            .steps
+            .iter()
+            .map(|step| step.newton_iterations)
+            .sum(),
+        linear_iterations: summary
+            .steps
+            .iter()
+            .map(|step| step.linear_iterations)
+            .sum(),
+        largest_fracture: largest.map(|(name, _)| name.clone()),
+        measures: summary.measures,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use toml::Value;
+
+    use super::*;
+
+    const SUMMARY: &str = r#"{
+      "mesh": { "nodes": 10, "cells": 24, "fracture_facets": 3, "max_sectors": 2 },
+      "unknowns": { "total": 120, "jump": 12 },
+      "fractures": { "a": { "area": 0.5 }, "b": { "area": 2.0 }, "c": { "area": 1.0 } },
+      "measures": [
+        { "name": "opening_l2", "fracture": "b", "value": null, "exact": null, "error": 0.0123 },
+        { "name": "volume", "fracture": "b", "value": 4.1e-4, "exact": 4e-4, "error": 0.025 },
+        { "name": "energy", "value": 3.5, "exact": null, "error": null }
+      ],
+      "steps": [
+        { "newton_iterations": 3, "linear_iterations": 20 },
+        { "newton_iterations": 2, "linear_iterations": 7 }
+      ],
+      "seconds": { "mesh": 0.5, "total": 2.0 },
+      "peak_memory_bytes": 1000000,
+      "new": "keys are no obstacle"
+    }"#;
+
+    #[test]
+    fn a_summary_gives_its_numbers() {
+        let numbers = numbers(SUMMARY.as_bytes(), 2.5).expect("a summary");
+        assert_eq!((numbers.seconds, numbers.meshing_seconds), (2.5, 0.5));
+        assert_eq!(
+            (numbers.cells, numbers.unknowns, numbers.jump_unknowns),
+            (24, 120, 12)
+        );
+        assert_eq!(
+            (numbers.newton_iterations, numbers.linear_iterations),
+            (5, 27)
+        );
+        assert_eq!(numbers.largest_fracture.as_deref(), Some("b"));
+        assert_eq!(numbers.measures.len(), 3);
+        assert_eq!(numbers.measures[2].fracture, None);
+    }
+
+    #[test]
+    fn records_come_back_as_they_were() {
+        let solved = numbers(SUMMARY.as_bytes(), 2.5).expect("a summary");
+        for outcome in [
+            Outcome::Solved(Box::new(solved)),
+            Outcome::Failed("why".into()),
+        ] {
+            let record = Record {
+                fingerprint: "f".into(),
+                outcome,
+            };
+            let text = serde_json::to_string(&record).expect("JSON");
+            assert_eq!(record, serde_json::from_str(&text).expect("a record"));
+        }
+    }
+
+    #[test]
+    fn fingerprints_follow_scene_file_and_threads() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let geometry = folder.path().join("a.geo");
+        fs::write(&geometry, "Box(1) = 1;").expect("written");
+        let scene = |order: i64| -> Table {
+            let mesh = [
+                ("geometry", Value::from(geometry.display().to_string())),
+                ("order", Value::from(order)),
+            ];
+            let mesh = Table::from_iter(mesh.map(|(key, value)| (key.to_owned(), value)));
+            Table::from_iter([("mesh".to_owned(), Value::from(mesh))])
+        };
+        let mut runner = Runner {
+            folder: folder.path().into(),
+            program: "kluft".into(),
+            build: 7,
+            threads: 1,
+        };
+        let first = runner.fingerprint(&scene(1));
+        assert_eq!(first, runner.fingerprint(&scene(1)));
+        assert_ne!(first, runner.fingerprint(&scene(2)));
+        fs::write(&geometry, "Box(1) = 2;").expect("written");
+        let other = runner.fingerprint(&scene(1));
+        assert_ne!(first, other);
+        runner.threads = 2;
+        assert_ne!(other, runner.fingerprint(&scene(1)));
+    }
+}

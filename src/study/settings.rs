@@ -1,0 +1,296 @@
+//! What a study sweeps: the table `[study]` of a scene, and the product of its dimensions.
+
+use std::path::Path;
+
+use lie_mesh::Defect;
+use toml::{Table, Value};
+
+use super::edits::Edit;
+use super::sweep;
+use crate::reader::{Section, Source};
+use crate::scene::Scene;
+
+/// Most settings of a study; more are taken for a slip.
+const MOST_SETTINGS: usize = 2000;
+
+/// What a dimension changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Parameters of the mesh.
+    Mesh,
+    /// Order of the elements.
+    Order,
+    /// The closure law, with keys of it.
+    Closure,
+    /// A number of the fractures.
+    Value,
+    /// How facets are integrated.
+    Facets,
+    /// The linear solver.
+    Solver,
+}
+
+impl Kind {
+    /// Whether the solution that finer and finer meshes approach depends on it.
+    pub(super) fn is_physics(self) -> bool {
+        matches!(self, Self::Closure | Self::Value)
+    }
+}
+
+/// One choice of a dimension.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Choice {
+    /// What tables and charts call it.
+    pub(super) label: String,
+    /// What it changes in the scene.
+    pub(super) edits: Vec<Edit>,
+    /// The number it stands for, if it stands for one.
+    pub(super) number: Option<f64>,
+    /// Cost against that of the scene's own choice, roughly.
+    pub(super) cost: f64,
+}
+
+/// A dimension of the sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Dimension {
+    /// Its name, also that of its column.
+    pub(super) name: String,
+    /// What it changes.
+    pub(super) kind: Kind,
+    /// Its choices, at least one.
+    pub(super) choices: Vec<Choice>,
+}
+
+/// A point of the product.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Setting {
+    /// Number of its choice in each dimension.
+    pub(super) choices: Vec<usize>,
+    /// Its folder: a number and its labels.
+    pub(super) folder: String,
+    /// Cost against that of the scene itself, roughly.
+    pub(super) cost: f64,
+}
+
+/// What is charted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Wish {
+    /// Name of the measure; none for the first that serves.
+    pub(super) measure: Option<String>,
+    /// Its fracture.
+    pub(super) fracture: Option<String>,
+    /// Label of the closure whose limit is the reference of all.
+    pub(super) reference: Option<String>,
+    /// File and line.
+    pub(super) place: String,
+}
+
+/// A study as the scene describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Plan {
+    /// The scene without `[study]`, its paths absolute.
+    pub(super) scene: Table,
+    /// What is swept.
+    pub(super) dimensions: Vec<Dimension>,
+    /// The product, cheapest first.
+    pub(super) settings: Vec<Setting>,
+    /// What is charted.
+    pub(super) wish: Wish,
+}
+
+impl Plan {
+    /// Reads the study of a scene.
+    ///
+    /// # Errors
+    /// Every defect of the scene or of `[study]`.
+    pub(super) fn read(file: &Path, text: &str) -> Result<Self, Vec<Defect>> {
+        Scene::parse_file(file, text)?;
+        let name = file.display().to_string();
+        let unreadable =
+            |error: toml::de::Error| vec![Defect::new(&*name, error.message(), "correct the TOML")];
+        let mut scene: Table = text.parse().map_err(unreadable)?;
+        make_paths_absolute(&mut scene, file.parent().unwrap_or(Path::new(".")));
+        let asked = scene.remove("study");
+        let asked = asked.as_ref().and_then(Value::as_table);
+        let source = Source::new(&name, text, "the scene");
+        let table = source.parse();
+        let root = table
+            .as_ref()
+            .map(|table| Section::new(&source, table.get_ref(), String::new(), 0..0));
+        let section = root.as_ref().and_then(|root| root.section("study"));
+        let (dimensions, wish) = match (section, asked) {
+            (Some(section), Some(asked)) => read_study(section, asked, &scene),
+            _ => (sweep::by_default(&scene, &name)?, Wish::default()),
+        };
+        let defects = source.into_defects();
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        let counts = dimensions.iter().map(|dimension| dimension.choices.len());
+        let count = counts.fold(1, usize::saturating_mul);
+        if count > MOST_SETTINGS {
+            let problem = format!("the study has {count} settings, more than {MOST_SETTINGS}");
+            return Err(vec![Defect::new(name, problem, "sweep less at a time")]);
+        }
+        let plan = Self {
+            settings: product(&dimensions),
+            scene,
+            dimensions,
+            wish,
+        };
+        let defects = defects_of(&plan, &name);
+        defects.is_empty().then_some(plan).ok_or(defects)
+    }
+
+    /// Everything that a setting changes.
+    pub(super) fn edits(&self, setting: &Setting) -> Vec<Edit> {
+        let chosen = self.dimensions.iter().zip(&setting.choices);
+        chosen
+            .flat_map(|(dimension, &choice)| dimension.choices[choice].edits.clone())
+            .collect()
+    }
+
+    /// The scene of a setting.
+    pub(super) fn scene_of(&self, setting: &Setting) -> Table {
+        let mut scene = self.scene.clone();
+        for edit in self.edits(setting) {
+            edit.apply(&mut scene);
+        }
+        scene
+    }
+
+    /// Label of a setting in a dimension.
+    pub(super) fn label(&self, setting: &Setting, dimension: usize) -> &str {
+        &self.dimensions[dimension].choices[setting.choices[dimension]].label
+    }
+
+    /// The labels of a setting in dimensions of some kinds; dimensions with one choice say nothing.
+    pub(super) fn name(&self, setting: &Setting, kinds: impl Fn(Kind) -> bool) -> String {
+        let told = self.dimensions.iter().enumerate();
+        let told =
+            told.filter(|(_, dimension)| dimension.choices.len() > 1 && kinds(dimension.kind));
+        let labels: Vec<&str> = told.map(|(i, _)| self.label(setting, i)).collect();
+        labels.join(", ")
+    }
+
+    /// The choices of a setting in dimensions of some kinds: equal for settings that differ in others only.
+    pub(super) fn key(&self, setting: &Setting, kinds: impl Fn(Kind) -> bool) -> Vec<usize> {
+        let chosen = self.dimensions.iter().zip(&setting.choices);
+        let chosen = chosen.filter(|(dimension, _)| kinds(dimension.kind));
+        chosen.map(|(_, &choice)| choice).collect()
+    }
+}
+
+fn read_study(section: Section<'_, '_>, asked: &Table, scene: &Table) -> (Vec<Dimension>, Wish) {
+    let dimensions = sweep::read(&section, asked, scene);
+    let text = |key| section.text(key).map(str::to_owned);
+    let wish = Wish {
+        measure: text("measure"),
+        fracture: text("fracture"),
+        reference: text("reference"),
+        place: section.place(),
+    };
+    let closures = dimensions.iter().filter(|d| d.kind == Kind::Closure);
+    let labels: Vec<&str> = closures
+        .flat_map(|dimension| &dimension.choices)
+        .map(|choice| choice.label.as_str())
+        .collect();
+    if let Some(name) = &wish.reference
+        && !labels.contains(&name.as_str())
+    {
+        let problem = format!("no entry of `closures` has the label \"{name}\"");
+        let remedy = format!("write one of: {}", labels.join(", "));
+        section.refuse("reference", problem, remedy);
+    }
+    section.finish();
+    (dimensions, wish)
+}
+
+/// Scenes of the settings lie in other folders.
+fn make_paths_absolute(scene: &mut Table, folder: &Path) {
+    let Some(mesh) = scene.get_mut("mesh").and_then(Value::as_table_mut) else {
+        return;
+    };
+    for key in ["geometry", "file"] {
+        if let Some(Value::String(path)) = mesh.get_mut(key) {
+            let beside = folder.join(&*path);
+            // One that is not there is refused by the runs.
+            let absolute = std::path::absolute(&beside).unwrap_or(beside);
+            *path = absolute.display().to_string();
+        }
+    }
+}
+
+/// Defects of the choices under which no setting is a scene, so that a slip costs no run.
+fn defects_of(plan: &Plan, name: &str) -> Vec<Defect> {
+    let parse = |setting: &Setting| {
+        let place = format!("{name}, [study] {}", plan.name(setting, |_| true));
+        let text = plan.scene_of(setting).to_string();
+        // Lines of a text that nobody has written are no help.
+        let found = Scene::parse(&text, &place, Path::new("")).err()?;
+        let found = found.into_iter().map(|defect| Defect {
+            place: place.clone(),
+            ..defect
+        });
+        Some(found.collect())
+    };
+    let found: Vec<Option<Vec<Defect>>> = plan.settings.iter().map(parse).collect();
+    let mut defects: Vec<Defect> = Vec::new();
+    for (i, dimension) in plan.dimensions.iter().enumerate() {
+        for choice in 0..dimension.choices.len() {
+            let own = plan.settings.iter().zip(&found);
+            let mut own = own.filter(|(setting, _)| setting.choices[i] == choice);
+            let first = own.next().and_then(|(_, found)| found.as_ref());
+            let Some(first) = first.filter(|_| own.all(|(_, found)| found.is_some())) else {
+                continue;
+            };
+            let is_new = |defect: &&Defect| defects.iter().all(|d| d.problem != defect.problem);
+            let new: Vec<Defect> = first.iter().filter(is_new).cloned().collect();
+            defects.extend(new);
+        }
+    }
+    defects
+}
+
+/// All combinations, cheapest first; numbered in the order of the dimensions.
+fn product(dimensions: &[Dimension]) -> Vec<Setting> {
+    let mut all: Vec<Vec<usize>> = vec![Vec::new()];
+    for dimension in dimensions {
+        let count = dimension.choices.len();
+        let longer = |choices: Vec<usize>| {
+            (0..count).map(move |choice| [choices.as_slice(), &[choice]].concat())
+        };
+        all = all.into_iter().flat_map(longer).collect();
+    }
+    let setting = |(number, choices): (usize, Vec<usize>)| {
+        let chosen = || dimensions.iter().zip(&choices);
+        let labels = chosen().filter(|(dimension, _)| dimension.choices.len() > 1);
+        let labels = labels.map(|(dimension, &choice)| dimension.choices[choice].label.as_str());
+        let labels: Vec<&str> = labels.collect();
+        Setting {
+            folder: folder(number + 1, &labels.join("-")),
+            cost: chosen()
+                .map(|(d, &choice)| d.choices[choice].cost)
+                .product(),
+            choices,
+        }
+    };
+    let mut settings: Vec<Setting> = all.into_iter().enumerate().map(setting).collect();
+    settings.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    settings
+}
+
+/// A name that any file system takes.
+fn folder(number: usize, labels: &str) -> String {
+    let plain = |c: char| match c {
+        c if c.is_ascii_alphanumeric() || "._+-".contains(c) => c,
+        _ => '_',
+    };
+    let name: String = labels.chars().map(plain).take(60).collect();
+    format!("{number:03}-{name}")
+        .trim_end_matches('-')
+        .to_owned()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,194 @@
+use super::*;
+
+const SCENE: &str = r#"
+[mesh]
+geometry = "a.geo"
+parameters = { h = 0.1, h_far = 1, dip = 50 }
+[rock.default]
+young_modulus = 50e9
+poisson_ratio = 0.25
+[fracture.a]
+aperture = 1e-4
+normal_stiffness = 1e11
+shear_stiffness = 1e10
+closure = "logarithmic"
+cutoff_aperture = 1e-6
+[fracture.b]
+aperture = 2e-4
+normal_stiffness = 1e11
+friction_angle = 30
+"#;
+
+fn read(study: &str) -> Result<Plan, Vec<Defect>> {
+    Plan::read(Path::new("folder/scene.toml"), &format!("{SCENE}{study}"))
+}
+
+fn plan(study: &str) -> Plan {
+    read(study).expect("a plan")
+}
+
+/// The scene of the setting with these labels.
+fn scene(plan: &Plan, labels: &str) -> Table {
+    let name = |setting: &&Setting| plan.name(setting, |_| true) == labels;
+    let setting = plan.settings.iter().find(name);
+    plan.scene_of(setting.unwrap_or_else(|| panic!("no setting {labels}")))
+}
+
+#[test]
+fn without_a_study_sizes_and_orders_are_swept() {
+    let plan = plan("");
+    let names: Vec<String> = plan
+        .settings
+        .iter()
+        .map(|s| plan.name(s, |_| true))
+        .collect();
+    assert_eq!(names[0], "h=0.2 h_far=2, order 1");
+    assert_eq!(
+        names.last().map(String::as_str),
+        Some("h=0.1 h_far=1, order 2")
+    );
+    assert_eq!(names.len(), 6);
+    let scene = scene(&plan, "h=0.14 h_far=1.4, order 2");
+    let mesh = scene["mesh"].as_table().expect("a mesh");
+    assert_eq!(mesh["order"].as_integer(), Some(2));
+    assert_eq!(mesh["parameters"]["h"].as_float(), Some(0.14));
+    assert_eq!(mesh["parameters"]["dip"].as_integer(), Some(50));
+    assert!(Path::new(mesh["geometry"].as_str().expect("a path")).is_absolute());
+}
+
+#[test]
+fn labels_tell_what_differs() {
+    let plan = plan(
+        "[study]\nmeshes = [{ dip = 50, h = 0.1, h_far = 3 }, { dip = 50, h = 0.05, h_far = 2 }]\n",
+    );
+    let mesh = &plan.dimensions[0].choices;
+    assert_eq!(mesh[0].label, "h=0.1 h_far=3");
+    assert_eq!((mesh[1].number, mesh[1].cost), (Some(0.05), 8.0));
+    assert_eq!(mesh[1].edits.len(), 3);
+}
+
+#[test]
+fn the_product_is_run_from_cheap_to_dear() {
+    let plan = plan(
+        "[study]\nmeshes = [{ h = 0.05 }, { h = 0.1 }]\norders = [2, 1]\nsolvers = ['direct', 'iterative']\n",
+    );
+    assert_eq!(plan.settings.len(), 8);
+    assert!(plan.settings.is_sorted_by(|a, b| a.cost <= b.cost));
+    assert!(plan.settings[0].folder.ends_with("h_0.1-order_1-direct"));
+    let mut folders: Vec<&str> = plan.settings.iter().map(|s| s.folder.as_str()).collect();
+    folders.sort_unstable();
+    folders.dedup();
+    assert_eq!(folders.len(), 8);
+    let scene = scene(&plan, "h=0.05, order 2, iterative");
+    assert_eq!(scene["solver"]["linear"].as_str(), Some("iterative"));
+    assert!(!scene.contains_key("study"));
+}
+
+#[test]
+fn closures_by_name_drop_the_keys_that_they_refuse() {
+    let plan = plan(
+        "[study]\nclosures = ['contact', 'hyperbolic', { label = 'cut', closure = 'logarithmic', cutoff_aperture = 1e-5 }]\n",
+    );
+    let contact = scene(&plan, "contact");
+    let keys = |scene: &Table, name: &str| -> Vec<String> {
+        let keys = scene["fracture"][name]
+            .as_table()
+            .expect("a fracture")
+            .keys();
+        keys.cloned().collect()
+    };
+    assert_eq!(keys(&contact, "a"), ["aperture", "closure"]);
+    assert_eq!(
+        keys(&contact, "b"),
+        ["aperture", "closure", "friction_angle"]
+    );
+    let cut = scene(&plan, "cut");
+    assert_eq!(
+        cut["fracture"]["b"]["cutoff_aperture"].as_float(),
+        Some(1e-5)
+    );
+    assert_eq!(cut["fracture"]["a"].get("label"), None);
+}
+
+#[test]
+fn a_key_that_is_false_goes_away() {
+    let plan =
+        plan("[study]\nclosures = ['logarithmic', { label = 'exact', cutoff_aperture = false }]\n");
+    let cutoff = |label: &str| {
+        scene(&plan, label)["fracture"]["a"]
+            .get("cutoff_aperture")
+            .cloned()
+    };
+    assert_eq!(cutoff("logarithmic"), Some(Value::Float(1e-6)));
+    assert_eq!(cutoff("exact"), None);
+}
+
+#[test]
+fn values_are_of_all_fractures_that_have_the_key_or_of_one() {
+    let plan = plan(
+        "[study.values]\nshear_stiffness = [1e9, 2e9]\n'b.aperture' = { from = 1e-5, to = 1e-3, count = 3 }\n",
+    );
+    assert_eq!(plan.settings.len(), 6);
+    let scene = scene(&plan, "aperture=0.001, shear_stiffness=2e9");
+    let fracture = |name: &str, key: &str| scene["fracture"][name].get(key).cloned();
+    assert_eq!(fracture("a", "shear_stiffness"), Some(Value::Float(2e9)));
+    assert_eq!(fracture("b", "shear_stiffness"), None);
+    assert_eq!(fracture("a", "aperture"), Some(Value::Float(1e-4)));
+    assert_eq!(fracture("b", "aperture"), Some(Value::Float(1e-3)));
+}
+
+#[test]
+fn slips_are_found_before_anything_is_run() {
+    for (study, named) in [
+        ("[study]\nmesh = [1]", "did you mean `meshes`"),
+        ("[study]\nmeshes = [0.1]", "braces"),
+        ("[study]\nmeshes = []", "empty"),
+        ("[study]\norders = [3]", "between 1 and 2"),
+        ("[study]\norders = [1.5]", "order 1 or 2"),
+        ("[study]\nclosures = ['logaritmic']", "logarithmic"),
+        ("[study]\nclosures = [{ apertur = 1e-4 }]", "aperture"),
+        ("[study]\nfacets = ['nodes']", "nodal"),
+        ("[study]\nsolvers = 'direct'", "brackets"),
+        ("[study]\nreference = 'exact'", "no entry of `closures`"),
+        ("[study.values]\nnormal_stifness = [1]", "normal_stiffness"),
+        (
+            "[study.values]\nnormal_stiffness = { from = 1, to = 2 }",
+            "count",
+        ),
+        ("[study.values]\nnormal_stiffness = 3", "brackets"),
+        ("[study.values]\n'c.aperture' = [1]", "a, b"),
+    ] {
+        let defects = read(study).expect_err(study);
+        let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
+        let text = text.join("\n");
+        assert!(text.contains(named), "{study}: {text}");
+        assert!(text.contains("scene.toml"), "{study}: {text}");
+    }
+}
+
+#[test]
+fn a_choice_that_needs_another_one_is_no_slip() {
+    let study = "[study]\nclosures = ['hyperbolic']\n[study.values]\nmax_closure = [1e-5, 1e-4]\n";
+    assert_eq!(plan(study).settings.len(), 2);
+    let study =
+        "[study]\nclosures = ['hyperbolic', 'linear']\n[study.values]\nmax_closure = [1e-5]\n";
+    let defects = read(study).expect_err("a linear law has no largest closure");
+    assert!(defects[0].problem.contains("max_closure"), "{defects:?}");
+}
+
+#[test]
+fn a_scene_of_a_mesh_file_has_no_meshes_to_sweep() {
+    let text = SCENE.replace("geometry = \"a.geo\"", "file = \"a.msh\"");
+    let text = text.replace("parameters = { h = 0.1, h_far = 1, dip = 50 }", "");
+    let read = |study: &str| Plan::read(Path::new("scene.toml"), &format!("{text}{study}"));
+    assert!(read("").expect_err("nothing")[0].remedy.contains("[study]"));
+    let defects = read("[study]\norders = [1, 2]\n").expect_err("no orders");
+    assert!(defects[0].problem.contains("mesh file"), "{defects:?}");
+    assert_eq!(
+        read("[study]\nclosures = ['linear', 'contact']\n")
+            .expect("a plan")
+            .settings
+            .len(),
+        2
+    );
+}

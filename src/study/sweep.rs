@@ -1,0 +1,325 @@
+//! The dimensions of a study: what `[study]` says, or what is swept without it.
+
+use lie_mesh::Defect;
+use toml::{Table, Value};
+
+use super::edits::Edit;
+use super::settings::{Choice, Dimension, Kind};
+use super::words::digits;
+use crate::reader::{Accept, Entry, Section};
+use crate::scene::{CLOSURES, FACETS, refused_keys};
+
+/// Factors on cell sizes of a study that the scene does not describe.
+const SIZES: [f64; 3] = [2.0, 1.4, 1.0];
+const SOLVERS: [&str; 3] = ["direct", "iterative", "condensed"];
+
+/// Reads what `[study]` sweeps; `asked` is the same table as values.
+pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Dimension> {
+    let mut dimensions = vec![
+        ("mesh", Kind::Mesh, meshes(section, scene)),
+        ("order", Kind::Order, orders(section, scene)),
+        ("closure", Kind::Closure, closures(section, asked, scene)),
+    ];
+    let values = section.section("values");
+    let swept = values.map_or_else(Vec::new, |values| values_of(section, &values, scene));
+    for (name, choices) in &swept {
+        dimensions.push((name, Kind::Value, choices.clone()));
+    }
+    let named = |key, known: &[&'static str], path: &[&str]| {
+        let names = section.choices(key, known).unwrap_or_default();
+        let choice = |name| plain(name, vec![Edit::set(path, name)]);
+        names.into_iter().map(choice).collect::<Vec<_>>()
+    };
+    let facets = named("facets", &FACETS, &["solver", "facets"]);
+    let solvers = named("solvers", &SOLVERS, &["solver", "linear"]);
+    dimensions.push(("facets", Kind::Facets, facets));
+    dimensions.push(("solver", Kind::Solver, solvers));
+    for key in ["meshes", "orders", "closures", "facets", "solvers"] {
+        let is_empty = asked
+            .get(key)
+            .and_then(Value::as_array)
+            .is_some_and(Vec::is_empty);
+        if is_empty {
+            let remedy = "write at least one entry, or leave the key out";
+            section.refuse(key, format!("`{key}` in [study] is empty"), remedy);
+        }
+    }
+    let dimension = |(name, kind, choices): (&str, Kind, Vec<Choice>)| Dimension {
+        name: name.to_owned(),
+        kind,
+        choices: match choices.is_empty() {
+            true => vec![plain(own(kind, scene), Vec::new())],
+            false => distinct(choices),
+        },
+    };
+    dimensions.into_iter().map(dimension).collect()
+}
+
+/// What is swept where the scene has no `[study]`: cell sizes and orders.
+///
+/// # Errors
+/// If the scene has no cell size that could be swept.
+pub(super) fn by_default(scene: &Table, name: &str) -> Result<Vec<Dimension>, Vec<Defect>> {
+    let sizes = own_sizes(scene);
+    if sizes.is_empty() {
+        let problem = "there is no [study], and [mesh] parameters have no cell size `h` to sweep";
+        let remedy = "add a section [study], e.g. meshes = [{ h = 0.2 }, { h = 0.1 }]; `kluft study --help` shows all keys";
+        return Err(vec![Defect::new(name, problem, remedy)]);
+    }
+    let scaled = |factor: f64| -> Vec<(String, f64)> {
+        let scaled = |(name, size): &(String, f64)| (name.clone(), rounded(factor * size));
+        sizes.iter().map(scaled).collect()
+    };
+    let meshes = SIZES.map(scaled);
+    let choices = meshes.iter().map(|mesh| mesh_choice(mesh, &meshes, scene));
+    Ok(vec![
+        Dimension {
+            name: "mesh".into(),
+            kind: Kind::Mesh,
+            choices: choices.collect(),
+        },
+        Dimension {
+            name: "order".into(),
+            kind: Kind::Order,
+            choices: [1, 2].into_iter().map(order_choice).collect(),
+        },
+    ])
+}
+
+/// To the digits that matter in a size.
+fn rounded(size: f64) -> f64 {
+    format!("{size:.6e}").parse().unwrap_or(size)
+}
+
+/// The cell sizes among the parameters of the mesh.
+fn own_sizes(scene: &Table) -> Vec<(String, f64)> {
+    let parameters = scene.get("mesh").and_then(|mesh| mesh.get("parameters"));
+    let parameters = parameters.and_then(Value::as_table);
+    let sizes = parameters.into_iter().flatten();
+    let sizes = sizes.filter(|(name, _)| is_size(name));
+    let number = |value: &Value| value.as_float().or(value.as_integer().map(|n| n as f64));
+    sizes
+        .filter_map(|(name, value)| Some((name.clone(), number(value)?)))
+        .collect()
+}
+
+fn is_size(name: &str) -> bool {
+    name == "h" || name.starts_with("h_")
+}
+
+fn meshes(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
+    let wanted = "parameters of the mesh in braces, e.g. meshes = [{ h = 0.2 }, { h = 0.1 }]";
+    let mut meshes = Vec::new();
+    for entry in section.entries("meshes", wanted) {
+        match entry {
+            Entry::Section(entry) => meshes.push(entry.all_numbers()),
+            Entry::Text(text) => {
+                let problem = format!("`meshes` in [study] holds the text \"{text}\"");
+                section.refuse("meshes", problem, format!("write {wanted}"));
+            }
+        }
+    }
+    let choices = meshes.iter().map(|mesh| mesh_choice(mesh, &meshes, scene));
+    choices.collect()
+}
+
+/// A mesh among others; only what differs is in its label. Cells grow in number with the third power of
+/// what their size shrinks by.
+fn mesh_choice(mesh: &[(String, f64)], all: &[Vec<(String, f64)>], scene: &Table) -> Choice {
+    let own = own_sizes(scene);
+    let finer = |(name, size): &(String, f64)| {
+        let own = own.iter().find(|(own, _)| own == name);
+        own.map_or(1.0, |(_, own)| *own) / size
+    };
+    let sizes = || mesh.iter().filter(|(name, _)| is_size(name));
+    let finest = sizes().map(finer).reduce(f64::max);
+    let differs = |entry: &&(String, f64)| !all.iter().all(|other| other.contains(entry));
+    let told = mesh.iter().filter(|entry| all.len() == 1 || differs(entry));
+    let labels: Vec<String> = told
+        .map(|(name, value)| format!("{name}={value}"))
+        .collect();
+    let set = |(name, value): &(String, f64)| Edit::set(&["mesh", "parameters", name], *value);
+    Choice {
+        number: sizes().next().map(|(_, size)| *size),
+        cost: finest.unwrap_or(1.0).abs().powi(3),
+        ..plain(&labels.join(" "), mesh.iter().map(set).collect())
+    }
+}
+
+fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
+    let orders = section.numbers("orders", Accept::Within(1.0, 2.0));
+    let orders = orders.unwrap_or_default();
+    if orders.iter().any(|order| order.fract() != 0.0) {
+        let remedy = "write orders = [1, 2]";
+        section.refuse("orders", "elements have order 1 or 2".into(), remedy);
+    }
+    let is_file = scene
+        .get("mesh")
+        .is_some_and(|mesh| mesh.get("file").is_some());
+    for key in ["meshes", "orders"] {
+        if is_file && section.has(key) {
+            let problem = format!("`{key}` has no effect on a mesh file");
+            let remedy = "remove it, or give the geometry instead of the file in [mesh]";
+            section.refuse(key, problem, remedy);
+        }
+    }
+    orders
+        .into_iter()
+        .map(|order| order_choice(order as i64))
+        .collect()
+}
+
+/// Elements of second order have about eight times the nodes.
+fn order_choice(order: i64) -> Choice {
+    Choice {
+        number: Some(order as f64),
+        cost: (order as f64).powi(3),
+        ..plain(
+            &format!("order {order}"),
+            vec![Edit::set(&["mesh", "order"], order)],
+        )
+    }
+}
+
+fn closures(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Choice> {
+    let wanted = "names of closure laws or keys of fractures in braces, e.g. closures = [\"contact\", { label = \"cut\", cutoff_aperture = 1e-6 }]";
+    let values = asked.get("closures").and_then(Value::as_array);
+    let entries = section.entries("closures", wanted).into_iter();
+    let entries = entries.zip(values.into_iter().flatten());
+    let mut choices = Vec::new();
+    for (entry, value) in entries {
+        match entry {
+            Entry::Text(name) => {
+                let keys = Table::from_iter([("closure".to_owned(), Value::from(name))]);
+                choices.push((name.to_owned(), keys));
+            }
+            Entry::Section(entry) => {
+                let label = entry.text("label").map(str::to_owned);
+                let mut keys = value.as_table().cloned().unwrap_or_default();
+                keys.remove("label");
+                choices.push((label.unwrap_or_else(|| label_of(&keys)), keys));
+            }
+        }
+    }
+    for (_, keys) in &choices {
+        let name = keys.get("closure").and_then(Value::as_str);
+        if let Some(name) = name.filter(|name| !CLOSURES.contains(name)) {
+            let problem = format!("unknown closure law \"{name}\"");
+            let remedy = format!("write one of {}", CLOSURES.join(", "));
+            section.refuse("closures", problem, remedy);
+        }
+    }
+    let choice = |(label, keys): (String, Table)| plain(&label, closure_edits(&keys, scene));
+    choices.into_iter().map(choice).collect()
+}
+
+fn label_of(keys: &Table) -> String {
+    let labels = keys.iter().map(|(key, value)| match value {
+        Value::String(text) => text.clone(),
+        value => format!("{key}={value}"),
+    });
+    labels.collect::<Vec<_>>().join(" ")
+}
+
+/// The names of the fractures of a scene.
+fn fractures(scene: &Table) -> impl Iterator<Item = (&String, &Value)> {
+    let fractures = scene.get("fracture").and_then(Value::as_table);
+    fractures.into_iter().flatten()
+}
+
+/// Keys of all fractures; what a new law would refuse goes away, and what is `false`.
+fn closure_edits(keys: &Table, scene: &Table) -> Vec<Edit> {
+    let is_off = |value: &Value| *value == Value::Boolean(false);
+    let mut edits = Vec::new();
+    for (name, fracture) in fractures(scene) {
+        if let Some(law) = keys.get("closure").and_then(Value::as_str) {
+            let angle = keys.get("friction_angle");
+            let angle = angle.or(fracture.get("friction_angle"));
+            let rubs = angle.is_some_and(|angle| !is_off(angle));
+            let refused = refused_keys(law, rubs).into_iter();
+            let refused = refused.filter(|key| fracture.get(key).is_some());
+            edits.extend(refused.map(|key| Edit::remove(&["fracture", name, key])));
+        }
+        edits.extend(keys.iter().map(|(key, value)| match is_off(value) {
+            true => Edit::remove(&["fracture", name, key]),
+            false => Edit::set(&["fracture", name, key], value.clone()),
+        }));
+    }
+    edits
+}
+
+/// Numbers of fractures: of all that have the key, of one (`"NAME.key"`), or of all if none has it.
+fn values_of(
+    section: &Section<'_, '_>,
+    values: &Section<'_, '_>,
+    scene: &Table,
+) -> Vec<(String, Vec<Choice>)> {
+    let mut swept = Vec::new();
+    for (name, numbers) in values.number_lists() {
+        let (wanted, key) = match name.rsplit_once('.') {
+            Some((fracture, key)) => (Some(fracture), key),
+            None => (None, name.as_str()),
+        };
+        let fits = |name: &str| wanted.is_none_or(|wanted| wanted == name);
+        let all: Vec<(&String, &Value)> = fractures(scene).filter(|(name, _)| fits(name)).collect();
+        if all.is_empty() {
+            let names: Vec<&str> = fractures(scene).map(|(name, _)| name.as_str()).collect();
+            let remedy = format!("the scene has: {}", names.join(", "));
+            section.refuse("values", format!("`{name}` is of no fracture"), remedy);
+        }
+        let mut own = all.clone();
+        own.retain(|(_, fracture)| fracture.get(key).is_some());
+        let own = if own.is_empty() { all } else { own };
+        let set = |number: f64| {
+            own.iter()
+                .map(move |(n, _)| Edit::set(&["fracture", n, key], number))
+        };
+        let choice = |number: f64| Choice {
+            number: Some(number),
+            ..plain(
+                &format!("{key}={}", digits(number, 4)),
+                set(number).collect(),
+            )
+        };
+        swept.push((name.clone(), numbers.into_iter().map(choice).collect()));
+    }
+    swept
+}
+
+/// What the scene itself has in a dimension.
+fn own(kind: Kind, scene: &Table) -> &'static str {
+    let order = scene.get("mesh").and_then(|mesh| mesh.get("order"));
+    match kind {
+        Kind::Order if order.and_then(Value::as_integer) == Some(2) => "order 2",
+        Kind::Order => "order 1",
+        Kind::Mesh | Kind::Closure | Kind::Value | Kind::Facets | Kind::Solver => "as in the scene",
+    }
+}
+
+fn plain(label: &str, edits: Vec<Edit>) -> Choice {
+    Choice {
+        label: label.to_owned(),
+        edits,
+        number: None,
+        cost: 1.0,
+    }
+}
+
+/// Equal entries are one; others with the same label get a number.
+fn distinct(choices: Vec<Choice>) -> Vec<Choice> {
+    let mut found: Vec<Choice> = Vec::new();
+    for mut choice in choices {
+        if found.iter().any(|other| other.edits == choice.edits) {
+            continue;
+        }
+        let alike = found
+            .iter()
+            .filter(|other| other.label == choice.label)
+            .count();
+        if alike > 0 {
+            choice.label = format!("{} ({})", choice.label, alike + 1);
+        }
+        found.push(choice);
+    }
+    found
+}
