@@ -1,7 +1,7 @@
 """Measures accuracy and time of Kluft and OpenGeoSys on a penny-shaped crack; writes docs/penny-peers.md and its chart.
 
 Everything lies in target/penny. Both programs run in turn on the same meshes, smallest first; what was measured is
-kept in results.json there, and `--report` writes the page from it again without measuring.
+kept in results.json there. `--resume` goes on with a run that was stopped; `--report` writes the page without measuring.
 """
 
 import argparse
@@ -27,7 +27,7 @@ LONGEST = 300
 SHORT, ROUNDS = 5.0, 3
 """Runs shorter than so many seconds are made so often, and the median is kept."""
 
-SIZES = {"linear": (0.14, 0.1, 0.062, 0.045), "quadratic": (0.3, 0.2, 0.13), "quarter": (0.3, 0.2, 0.13)}
+SIZES = {"linear": (0.14, 0.1, 0.062), "quadratic": (0.3, 0.2, 0.13), "quarter": (0.3, 0.2, 0.13, 0.1)}
 """Sizes of the cells at the rim (m), by elements: tetrahedra of 4 nodes, of 10, and of 10 with quarter points."""
 
 TOLERANCES = (0.05, 0.02, 0.01)
@@ -80,7 +80,8 @@ def run_kluft(folder):
 
 
 def keep(records, key, measured):
-    """Keeps what was measured, on disk too."""
+    """Keeps what was measured, on disk too, in place of what an interrupted run measured."""
+    records[:] = [record for record in records if not key.items() <= record.items()]
     records.append(key | (measured or {"failed": True}))
     (WORK / "results.json").write_text(json.dumps(records, indent=1))
     if measured:
@@ -126,24 +127,41 @@ def adapt(tolerance, records):
     shutil.rmtree(folder)
 
 
+def measure(records):
+    """Measures what is not among the records yet."""
+
+    def is_done(elements, size):
+        programs = {record["program"] for record in records if (record["elements"], record["size"]) == (elements, size)}
+        return "kluft" in programs
+
+    for tolerance in TOLERANCES:
+        if not is_done("adaptive", tolerance):
+            adapt(tolerance, records)
+    meshes = [(elements, size) for elements, sizes in SIZES.items() for size in sizes]
+    for elements, size in sorted(meshes, key=lambda mesh: SIZES[mesh[0]].index(mesh[1])):
+        if not is_done(elements, size):
+            compare(elements, size, records)
+
+
 def main():
     """The whole comparison."""
     parser = argparse.ArgumentParser(prog="sh benches/peers/penny.sh", description=__doc__.splitlines()[0])
+    parser.add_argument("--resume", action="store_true", help="go on with a run that was stopped, with the same program")
     parser.add_argument("--report", action="store_true", help="write the page from what was measured before")
+    parser.add_argument("--note", default="", help="what readers should know about this run, for the page")
     options = parser.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
-    if not options.report:
+    kept = WORK / "results.json"
+    if not options.resume and not options.report:
         # A copy: a build meanwhile must not change what is measured.
         shutil.copy(ROOT / "target/release/kluft", WORK / "program")
-        records = []
-        for tolerance in TOLERANCES:
-            adapt(tolerance, records)
-        meshes = [(elements, size) for elements, sizes in SIZES.items() for size in sizes]
-        for elements, size in sorted(meshes, key=lambda mesh: SIZES[mesh[0]].index(mesh[1])):
-            compare(elements, size, records)
+        kept.unlink(missing_ok=True)
+    records = json.loads(kept.read_text()) if kept.exists() else []
+    if not options.report:
+        measure(records)
     tolerances = ", ".join(f"{100 * tolerance:g} %" for tolerance in TOLERANCES)
-    limits = {"short": SHORT, "rounds": ROUNDS, "longest": LONGEST, "tolerances": tolerances}
-    penny_report.write(json.loads((WORK / "results.json").read_text()), ROOT / "docs", limits)
+    limits = {"short": SHORT, "rounds": ROUNDS, "longest": LONGEST, "tolerances": tolerances, "note": options.note}
+    penny_report.write(records, ROOT / "docs", limits)
     say("wrote docs/penny-peers.md and docs/penny-peers.svg")
 
 
