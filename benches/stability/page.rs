@@ -1,6 +1,6 @@
 //! Writes what the studies found: numbers, charts, and the page.
 //!
-//! What the page says of a study is kept in `stability/findings.json`, so that one study can be run
+//! What the page says of a study is kept in `findings.json` beside its numbers, so that one study can be run
 //! again without the others.
 
 use std::fmt::Write as _;
@@ -10,11 +10,27 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use crate::studies::{ALL, Finding, PROMISE, PROMISE_WITH_FRICTION, Study, Table};
+use crate::studies::{Finding, Study, Table};
+
+/// A page of studies.
+pub struct Page<'a> {
+    /// Its name, and that of the folder with its numbers and charts.
+    pub name: &'static str,
+    /// What it begins with: a title, and what it is.
+    pub head: &'static str,
+    /// Heads of the last two columns of its overview.
+    pub columns: [&'static str; 2],
+    /// Its studies, in their order.
+    pub studies: &'a [Study],
+    /// Studies whose tables it prints; they should be short.
+    pub tables: &'a [&'static str],
+    /// What all cases must hold.
+    pub promise: String,
+}
 
 /// Writes the files of a study, and keeps what the page says of it.
-pub fn keep(folder: &Path, study: &Study, finding: &Finding) -> io::Result<()> {
-    let own = folder.join("stability");
+pub fn keep(page: &Page<'_>, folder: &Path, study: &Study, finding: &Finding) -> io::Result<()> {
+    let own = folder.join(page.name);
     fs::create_dir_all(&own)?;
     fs::write(own.join(format!("{}.csv", study.name)), csv(&finding.table))?;
     for (name, chart) in &finding.charts {
@@ -25,13 +41,15 @@ pub fn keep(folder: &Path, study: &Study, finding: &Finding) -> io::Result<()> {
         .iter()
         .map(|(name, chart)| json!([name, chart.title]))
         .collect();
-    let mut findings = kept(folder)?;
+    let mut findings = kept(page, folder)?;
+    let shown = page.tables.contains(&study.name);
     let entry = json!({
         "breaks": finding.breaks,
         "ours": finding.ours,
         "paragraph": finding.paragraph,
         "charts": charts,
         "misses": finding.misses,
+        "table": if shown { markdown(&finding.table) } else { String::new() },
     });
     findings.insert(study.name.to_owned(), entry);
     let text = serde_json::to_string_pretty(&findings)? + "\n";
@@ -39,8 +57,8 @@ pub fn keep(folder: &Path, study: &Study, finding: &Finding) -> io::Result<()> {
 }
 
 /// What was found before, by study.
-fn kept(folder: &Path) -> io::Result<Map<String, Value>> {
-    match fs::read_to_string(folder.join("stability/findings.json")) {
+fn kept(page: &Page<'_>, folder: &Path) -> io::Result<Map<String, Value>> {
+    match fs::read_to_string(folder.join(page.name).join("findings.json")) {
         Ok(text) => Ok(serde_json::from_str(&text)?),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Map::new()),
         Err(error) => Err(error),
@@ -67,24 +85,50 @@ fn csv(table: &Table) -> String {
     head.chain(rows).map(line).collect()
 }
 
-const HEAD: &str = "# Stability map
+/// The table as the page prints it.
+fn markdown(table: &Table) -> String {
+    let rule = format!("|{}\n", "---|".repeat(table.head.len()));
+    let rows = table.rows.iter();
+    let rows = rows.map(|row| format!("| {} |\n", row.join(" | ")));
+    format!("| {} |\n{rule}", table.head.join(" | ")) + &rows.collect::<String>()
+}
 
-Written by `cargo bench --bench stability`: every parameter is swept over many decades, beside a method that breaks,
-on small meshes and with default settings. Nothing here is typed in: numbers come from the run, and stand in
-`docs/stability/*.csv`. Short forms of all studies are tests (`tests/physics/stability.rs`).
-
-";
+/// A paragraph and charts: what stands after an empty line of the paragraph belongs to the charts, one each.
+fn story(page: &Page<'_>, finding: &Value) -> String {
+    let paragraph = finding["paragraph"].as_str().unwrap_or_default();
+    let mut parts = paragraph.split("\n\n").map(wrapped);
+    let mut text = parts.next().unwrap_or_default() + "\n\n";
+    for chart in finding["charts"].as_array().into_iter().flatten() {
+        let (name, title) = (
+            chart[0].as_str().unwrap_or(""),
+            chart[1].as_str().unwrap_or(""),
+        );
+        let _ = writeln!(text, "![{title}]({}/{name}.svg)\n", page.name);
+        if let Some(part) = parts.next() {
+            text += &(part + "\n\n");
+        }
+    }
+    match finding["table"].as_str() {
+        Some(table) if !table.is_empty() => text + table + "\n",
+        _ => text,
+    }
+}
 
 /// Writes the page from all that is kept.
-pub fn write(folder: &Path) -> io::Result<()> {
-    let findings = kept(folder)?;
+pub fn write(of: &Page<'_>, folder: &Path) -> io::Result<()> {
+    let findings = kept(of, folder)?;
     let known = || {
-        ALL.iter()
+        of.studies
+            .iter()
             .filter_map(|study| Some((study, findings.get(study.name)?)))
     };
     let text = |finding: &Value, key: &str| finding[key].as_str().unwrap_or_default().to_owned();
-    let mut page = HEAD.to_owned();
-    page += "| study | sweep | what breaks | Kluft |\n|---|---|---|---|\n";
+    let mut page = of.head.to_owned();
+    let [breaks, ours] = of.columns;
+    let _ = writeln!(
+        page,
+        "| study | sweep | {breaks} | {ours} |\n|---|---|---|---|"
+    );
     for (study, finding) in known() {
         let anchor = study
             .title
@@ -99,27 +143,11 @@ pub fn write(folder: &Path) -> io::Result<()> {
         );
     }
     for (study, finding) in known() {
-        let _ = writeln!(
-            page,
-            "\n## {}\n\n{}\n",
-            study.title,
-            wrapped(&text(finding, "paragraph"))
-        );
-        for chart in finding["charts"].as_array().into_iter().flatten() {
-            let (name, title) = (
-                chart[0].as_str().unwrap_or(""),
-                chart[1].as_str().unwrap_or(""),
-            );
-            let _ = writeln!(page, "![{title}](stability/{name}.svg)\n");
-        }
-        let _ = writeln!(page, "Numbers: [{0}.csv](stability/{0}.csv)", study.name);
+        let _ = write!(page, "\n## {}\n\n{}", study.title, story(of, finding));
+        let _ = writeln!(page, "Numbers: [{0}.csv]({1}/{0}.csv)", study.name, of.name);
     }
     page += "\n## What did not\n\n";
-    page += &wrapped(&format!(
-        "Promised is: every case with a solution converges with default settings in at most {PROMISE} Newton iterations \
-         a step, {PROMISE_WITH_FRICTION} with friction in each part that it divides a step into; every case without one \
-         ends with exit code 1 and the name of a fracture or block; and what the studies compare agrees as they say."
-    ));
+    page += &wrapped(&of.promise);
     page += "\n\n";
     let mut all = true;
     for (study, finding) in known() {
@@ -131,7 +159,7 @@ pub fn write(folder: &Path) -> io::Result<()> {
     if all {
         page += "Every case held.\n";
     }
-    fs::write(folder.join("stability.md"), page)
+    fs::write(folder.join(format!("{}.md", of.name)), page)
 }
 
 /// Lines of at most 120 characters.

@@ -4,6 +4,10 @@
     reason = "tables are what some of these tests are read for"
 )]
 
+#[path = "../../benches/closures/augmented.rs"]
+#[allow(dead_code, reason = "the benchmark also counts")]
+mod augmented;
+mod augmented_lagrangian;
 mod closed_forms;
 mod closing;
 mod conditions;
@@ -25,6 +29,9 @@ mod newton;
 mod oracles;
 mod oscillation;
 mod patch;
+#[path = "../../benches/closures/pressed.rs"]
+#[allow(dead_code, reason = "the benchmark has another scene")]
+mod pressed;
 mod random_networks;
 mod scenes;
 mod sphere;

@@ -1,0 +1,118 @@
+//! Treatments of closing walls compared on equal terms; see README.md.
+//!
+//!     cargo bench --bench closures -- [--quick] [STUDY...]
+//!
+//! writes `docs/closures.md` and, for each study, its numbers and charts in `docs/closures`. With
+//! `--quick` a few values only, into `target/closures`.
+#![allow(clippy::print_stdout, reason = "progress is what one waits for")]
+#![allow(
+    dead_code,
+    reason = "the stability map and the tests use more of the shared scenes"
+)]
+
+mod augmented;
+#[path = "../../tests/physics/closing.rs"]
+mod closing;
+#[path = "../../tests/physics/crack_front.rs"]
+mod crack_front;
+#[path = "../../tests/physics/dice.rs"]
+mod dice;
+mod equal_terms;
+mod meshes;
+#[path = "../../tests/physics/networks.rs"]
+mod networks;
+#[path = "../../tests/physics/oracles.rs"]
+mod oracles;
+#[path = "../stability/page.rs"]
+mod page;
+mod pressed;
+#[path = "../../tests/physics/scenes.rs"]
+mod scenes;
+#[path = "../../tests/physics/spherical_joint.rs"]
+mod spherical_joint;
+#[path = "../../tests/physics/split_nodes.rs"]
+mod split_nodes;
+#[path = "../stability/studies/mod.rs"]
+mod studies;
+mod treatments;
+#[path = "../../tests/physics/voigt.rs"]
+mod voigt;
+
+use std::path::Path;
+use std::time::Instant;
+
+use page::Page;
+use studies::{Effort, Study, front};
+
+const HEAD: &str = "# Treatments of closing walls
+
+Written by `cargo bench --bench closures`: how walls can be kept from passing each other, on equal terms: the same meshes,
+facets integrated at their nodes, the same linear solver and tolerances, one load step from nothing. Nothing here is typed
+in: numbers come from the run, and stand in `docs/closures/*.csv`. Stiffnesses are in units of E/h, with the size h of the
+cells beside the fracture. Every law begins to resist where contact and the augmented Lagrangian touch, carries no tension, and has
+an aperture b0 of 0.1 mm: walls that close by more than b0 pass each other. Times are those of one run and mean little
+in themselves.
+
+";
+
+/// All studies, in the order of the page.
+const ALL: [Study; 5] = [
+    equal_terms::INCLINED,
+    equal_terms::CRACK,
+    Study {
+        name: "facets",
+        title: "Gauss points or nodes on the facets",
+        ..front::STUDY
+    },
+    meshes::CELLS,
+    meshes::SOLVERS,
+];
+
+fn page() -> Page<'static> {
+    Page {
+        name: "closures",
+        head: HEAD,
+        columns: ["what breaks", "what holds"],
+        studies: &ALL,
+        tables: &["cells", "solvers"],
+        promise: "Expected is: every law of Kluft converges at every stiffness; the logarithmic law without cutoff and the \
+                  hyperbolic one leave apertures above 0; contact agrees with closed forms and with the settled \
+                  augmented Lagrangian."
+            .into(),
+    }
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
+    let quick = arguments.iter().any(|argument| argument == "--quick");
+    let asked: Vec<&String> = arguments.iter().filter(|a| *a != "--quick").collect();
+    for name in &asked {
+        let known = ALL.map(|study| study.name);
+        assert!(
+            known.contains(&name.as_str()),
+            "no study {name}; there are {known:?}"
+        );
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (effort, folder) = if quick {
+        (Effort::Quick, root.join("target/closures"))
+    } else {
+        (Effort::Full, root.join("docs"))
+    };
+    for study in ALL {
+        if asked.is_empty() || asked.iter().any(|name| *name == study.name) {
+            let start = Instant::now();
+            let finding = (study.run)(effort);
+            page::keep(&page(), &folder, &study, &finding).expect("files of the study");
+            let seconds = start.elapsed().as_secs_f64();
+            println!("{}: {seconds:.0} s. {}", study.name, finding.ours);
+            for miss in &finding.misses {
+                println!("  did not hold: {miss}");
+            }
+        }
+    }
+    page::write(&page(), &folder).expect("a page");
+}
