@@ -37,6 +37,7 @@ mod studies;
 mod treatments;
 #[path = "../../tests/physics/voigt.rs"]
 mod voigt;
+mod words;
 
 use std::path::Path;
 use std::time::Instant;
