@@ -113,6 +113,18 @@ impl Outcome {
         bound.problem
     }
 
+    /// Mean magnitude of the slip (m), over the area.
+    pub fn mean_slip(&self) -> f64 {
+        let problem = self.problem();
+        let solution = scenes::solve(&problem);
+        let interface = Discretisation::of(&problem).expect("supported").interface;
+        let points = || interface.points.iter().zip(&solution.facet_points);
+        let slip: f64 = points()
+            .map(|(point, found)| point.area * found.slip.length())
+            .sum();
+        slip / points().map(|(point, _)| point.area).sum::<f64>()
+    }
+
     /// Nodes of the facets and the results there.
     pub fn facet_nodes(&self) -> Vec<(DVec3, FacetResult)> {
         let problem = self.problem();

@@ -56,6 +56,9 @@ fn kept(folder: &Path) -> io::Result<Map<String, Value>> {
     }
 }
 
+/// Longer tables are in the CSV file only.
+const MOST_ROWS: usize = 30;
+
 fn text(page: &Page, found: &Found) -> String {
     let mut text = format!("# {}\n\n{}\n", page.title, wrapped(&found.problem));
     let _ = writeln!(text, "\n## Closed form\n\n{}\n", page.closed_form.trim());
@@ -64,7 +67,10 @@ fn text(page: &Page, found: &Found) -> String {
         let _ = writeln!(text, "\n![{}]({name}.svg)", chart.title);
     }
     for (name, table) in &found.tables {
-        let _ = writeln!(text, "\n{}\n[{name}.csv]({name}.csv)", markdown(table));
+        if table.rows.len() <= MOST_ROWS {
+            let _ = write!(text, "\n{}", markdown(table));
+        }
+        let _ = writeln!(text, "\nNumbers: [{name}.csv]({name}.csv)");
     }
     let _ = writeln!(text, "\n## What it shows\n\n{}", wrapped(&found.shows));
     let command = format!("cargo bench --bench book -- {}", page.name);
@@ -106,8 +112,11 @@ pub fn write_index(folder: &Path) -> io::Result<()> {
             page.name,
             page.oracle,
             entry["reached"].as_str().unwrap_or_default(),
-            entry["unknowns"],
-            entry["seconds"]
+            match entry["unknowns"].as_u64() {
+                Some(count @ 1..) => count.to_string(),
+                _ => String::new(),
+            },
+            entry["seconds"].as_f64().unwrap_or(f64::NAN)
         );
     }
     if known().any(|(_, entry)| entry["busy"] == true) {

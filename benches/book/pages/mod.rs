@@ -2,13 +2,19 @@
 //!
 //! A new page is a file here and an entry of [`ALL`].
 
+mod barton_bandis;
+mod estimate;
 mod inclined_crack;
 mod inclined_penny;
+mod joint_sets;
 mod line_crack;
 mod log_law;
+mod oscillation;
 mod patch_test;
+mod paths;
 mod penny;
 mod single_joint;
+mod spherical_joint;
 
 use kluft::chart::Chart;
 
@@ -29,7 +35,7 @@ pub struct Page {
 }
 
 /// All benchmarks, in the order of the book.
-pub const ALL: [Page; 7] = [
+pub const ALL: [Page; 13] = [
     penny::PAGE,
     line_crack::PAGE,
     inclined_crack::PAGE,
@@ -37,6 +43,12 @@ pub const ALL: [Page; 7] = [
     single_joint::PAGE,
     log_law::PAGE,
     patch_test::PAGE,
+    joint_sets::PAGE,
+    spherical_joint::PAGE,
+    oscillation::PAGE,
+    paths::PAGE,
+    barton_bandis::PAGE,
+    estimate::PAGE,
 ];
 
 /// What a benchmark found.
@@ -70,6 +82,15 @@ pub fn digits(value: f64) -> String {
         return format!("{value:.2e}");
     }
     format!("{value:.*}", (2.0 - power).max(0.0) as usize)
+}
+
+/// A number of unknowns, in words if there are many.
+pub fn count(value: f64) -> String {
+    match value {
+        ..1e3 => format!("{value:.0}"),
+        ..1e6 => format!("{} thousand", digits(1e-3 * value)),
+        _ => format!("{} million", digits(1e-6 * value)),
+    }
 }
 
 /// `p` of `y ~ x^p` between two points.

@@ -1,8 +1,8 @@
 //! Sneddon's disc: meshes of both orders, uniform, graded and adaptive.
 
-use kluft::chart::{Axis, Chart, Rate, Series};
+use kluft::chart::{Axis, Chart, Series};
 
-use super::{Found, Page, digits, half_circle, percent, reaches, slope};
+use super::{Found, Page, count, digits, half_circle, percent, reaches, slope};
 use crate::scene::{self, Outcome};
 use crate::studies::Table;
 
@@ -93,7 +93,7 @@ fn families() -> Vec<Family> {
             graded(h) + "\nquarter_points = false"
         }),
         Family::of("graded, quarter points", &[0.2, 0.1, 0.05, 0.025], graded),
-        Family::of("adaptive", &[0.2, 0.1, 0.05, 0.03], adaptive),
+        Family::of("adaptive", &[0.1, 0.05, 0.03, 0.02], adaptive),
     ]
 }
 
@@ -143,10 +143,6 @@ fn error_chart(families: &[Family], measure: &str, what: &str) -> Chart {
     let series = series.map(|family| Series::line(family.name, family.curve(measure)));
     Chart {
         series: series.collect(),
-        rates: vec![Rate {
-            series: 1,
-            rate: -0.33,
-        }],
         ..Chart::new(
             format!("Disc under pressure: error of the {what}"),
             Axis::logarithmic("unknowns"),
@@ -186,7 +182,7 @@ fn profile_chart(families: &[Family]) -> Chart {
 fn at_aim(family: &Family, measure: &str) -> (String, f64) {
     let (unknowns, continued) = reaches(&family.curve(measure), AIM);
     let how = if continued { " (extrapolated)" } else { "" };
-    (format!("{}{how}", digits(unknowns)), unknowns)
+    (format!("{}{how}", count(unknowns)), unknowns)
 }
 
 fn run() -> Found {
