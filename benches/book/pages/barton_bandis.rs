@@ -74,7 +74,7 @@ fn run() -> Found {
         errors.push(error);
         slopes.push((secant / tangent - 1.0).abs());
     }
-    let curve = (-70..=140).map(|i| 10.0_f64.powf(f64::from(i) / 40.0));
+    let curve = (-14..=28).map(|i| 10.0_f64.powf(f64::from(i) / 8.0));
     let worst = largest(errors);
     Found {
         problem: "A column of rock of 1 m by 1 m by 2 m with a level hyperbolic joint (b0 = v_m) under nine loads over five decades, one load \

@@ -225,7 +225,10 @@ fn run() -> Found {
         .collect();
     let misses = match names.is_empty() {
         true => "None misses.".to_owned(),
-        false => format!("It does not on: {}.", names.join("; ")),
+        false => format!(
+            "It does not on: {}. Where facets stand for a curved surface that is an error too, and none that the stress shows.",
+            names.join("; ")
+        ),
     };
     let share = |case: &Case, which: usize| case.mean[which] / case.mean[2];
     let groups = ["disc", "line", "sphere"];

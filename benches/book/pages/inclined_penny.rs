@@ -37,7 +37,7 @@ fn run() -> Found {
         problem: "A closed disc of radius 1 m in a cube of side 20 m, pressed by 100 MPa at 20 degrees to its plane, slides \
                   against a friction of 30 degrees; its walls are in contact without a stiffness \
                   (`geometries/inclined-penny`). Second-order tetrahedra with quarter points. \"Inside\" leaves out the \
-                  ring of a fifth of the radius next to the front."
+ ring next to the front that the scene names (`ring`, a share of the radius)."
             .to_owned(),
         reached: format!(
             "slip in L2 {}, inside {}",
@@ -47,8 +47,7 @@ fn run() -> Found {
         unknowns: fine.unknowns(),
         shows: format!(
             "With h = {finest} m at the front the slip is {} off in L2 ({} with h = {coarsest} m), inside {} in L2 and {} at \
-             most; the normal traction inside {} in L2. The slip is a vector: in the closed form it points along the \
-             shear everywhere, though Poisson's ratio makes the disc stiffer against shear along its front than across.",
+             most; the normal traction inside {} in L2.",
             percent(fine.error("slip_l2")),
             percent(coarse.error("slip_l2")),
             percent(fine.error("slip_l2_inside")),

@@ -101,6 +101,9 @@ pub fn slope(from: (f64, f64), to: (f64, f64)) -> f64 {
 /// Where a curve through points on two logarithmic axes reaches `y`: between two points that enclose it, else
 /// continued from the two nearest; and whether it was continued.
 pub fn reaches(points: &[(f64, f64)], y: f64) -> (f64, bool) {
+    let mut points = points.to_vec();
+    // Two tolerances may lead to one mesh.
+    points.dedup_by(|a, b| a.0 == b.0);
     let enclosing = points
         .windows(2)
         .find(|pair| pair[0].1 >= y && pair[1].1 <= y);

@@ -93,7 +93,7 @@ fn families() -> Vec<Family> {
             graded(h) + "\nquarter_points = false"
         }),
         Family::of("graded, quarter points", &[0.2, 0.1, 0.05, 0.025], graded),
-        Family::of("adaptive", &[0.1, 0.05, 0.03, 0.02], adaptive),
+        Family::of("adaptive", &[0.1, 0.05, 0.03, 0.015], adaptive),
     ]
 }
 
