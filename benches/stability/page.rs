@@ -66,7 +66,7 @@ fn kept(page: &Page<'_>, folder: &Path) -> io::Result<Map<String, Value>> {
 }
 
 /// A table with commas; entries that have one are quoted.
-fn csv(table: &Table) -> String {
+pub fn csv(table: &Table) -> String {
     let line = |entries: Vec<&str>| {
         let quoted = entries.into_iter().map(|entry| {
             if entry.contains([',', '"']) {
@@ -163,7 +163,7 @@ pub fn write(of: &Page<'_>, folder: &Path) -> io::Result<()> {
 }
 
 /// Lines of at most 120 characters.
-fn wrapped(text: &str) -> String {
+pub fn wrapped(text: &str) -> String {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {
         let line = lines.last_mut().expect("a line");

@@ -8,11 +8,12 @@ use lie_solver::{Fracture, Problem, Support};
 use crate::oracles::{closed_aperture, jointed_moduli};
 use crate::scenes::{self, EXACT, ROCK, joint};
 
-const SPACING: f64 = 0.5;
+/// Of the joints of a set (m): the edge of the cube.
+pub const SPACING: f64 = 0.5;
 const PLANES: [(&str, usize); 3] = [("x", 0), ("y", 1), ("z", 2)];
 
 /// A cube of rock with `sets` joint sets, one joint a set through its middle.
-fn jointed_cube(sets: usize, stress: DMat3, fracture: Fracture) -> Problem {
+pub fn jointed_cube(sets: usize, stress: DMat3, fracture: Fracture) -> Problem {
     let on: Vec<_> = PLANES
         .iter()
         .map(|&(_, axis)| move |x: [f64; 3]| x[axis] == SPACING / 2.0)
@@ -31,7 +32,7 @@ fn jointed_cube(sets: usize, stress: DMat3, fracture: Fracture) -> Problem {
 }
 
 /// Displacement of the corner opposite to the fixed one, over the spacing.
-fn strain_of_the_diagonal(problem: &Problem) -> DVec3 {
+pub fn strain_of_the_diagonal(problem: &Problem) -> DVec3 {
     let solution = scenes::solve(problem);
     let corner = scenes::node_at(&problem.mesh, DVec3::splat(SPACING));
     let point: u32 = problem.mesh.sectors.count[..corner as usize].iter().sum();

@@ -2,6 +2,7 @@
 
 mod adapt;
 mod bad_input;
+mod book;
 mod fuzz_scene;
 mod harness;
 mod inspect;
