@@ -9,6 +9,8 @@ use crate::summary::FractureSummary;
 pub struct Accuracy {
     /// Error of the stress as a share of it, in the energy norm.
     pub relative: f64,
+    /// Energy that the loads have stored in the rock (J).
+    pub energy: f64,
     /// Error of the stress in each cell (Pa): the uniaxial stress with the same energy.
     pub stress_errors: Vec<f64>,
     /// Share of each cell in the square of `relative`.
@@ -54,6 +56,7 @@ pub fn of(
     let has_jumps = !solution.facet_points.is_empty();
     Accuracy {
         relative: error.relative(),
+        energy: 0.5 * error.energy,
         stress_errors: stress_errors.collect(),
         energy_shares: error
             .of_cell

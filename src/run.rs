@@ -14,7 +14,7 @@ use crate::accuracy::{self, Accuracy};
 use crate::checkpoint::{self, Identity, Progress};
 use crate::decisions;
 use crate::memory;
-use crate::oracle::{Oracle, measures};
+use crate::oracle::{Oracle, energy, measures};
 use crate::output::Output;
 use crate::prepare::{self, MeshFile};
 use crate::report::{Failure, Report};
@@ -369,6 +369,7 @@ impl<'a> Run<'a> {
         // Closed forms speak of the end of the loads.
         let oracles = if is_last { &self.oracles[..] } else { &[] };
         self.summary.measures = measures(system, &solution, oracles);
+        self.summary.measures.push(energy(accuracy.energy));
         self.summary.warnings = decisions::warnings(&self.summary.fractures);
         Ok(one(written)?)
     }

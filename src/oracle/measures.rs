@@ -14,7 +14,6 @@ pub struct Measure {
     /// What is measured.
     pub name: String,
     /// The fracture; none for the whole body.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fracture: Option<String>,
     /// Its value, if it is one number.
     pub value: Option<f64>,
@@ -55,6 +54,11 @@ pub fn measures(
         .collect::<Vec<_>>()
     };
     names.iter().enumerate().flat_map(of).collect()
+}
+
+/// The measure of the whole body: the energy stored in the rock (J).
+pub fn energy(joules: f64) -> Measure {
+    plain("energy", joules)
 }
 
 /// A fracture of a solution.

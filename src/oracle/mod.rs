@@ -18,7 +18,7 @@ use glam::DVec3;
 use lie_core::Rock;
 
 use crate::reader::{Accept, Section};
-pub use measures::{Measure, measures};
+pub use measures::{Measure, energy, measures};
 
 /// Share of the radius next to the front that measures "inside" leave out, unless given.
 const RING: f64 = 0.1;
