@@ -44,10 +44,10 @@ const SLIPS: f64 = 1e-3;
 pub fn of(
     system: &System<'_>,
     newton: &mut Newton,
+    estimator: &Estimator,
     solution: &Solution,
     of_jumps: bool,
 ) -> Accuracy {
-    let estimator = Estimator::of(system);
     let error = estimator.stress_error(system, &solution.displacements);
     let stress_errors = (0..error.of_cell.len()).map(|cell| {
         let modulus = system.problem.rock(cell).young_modulus;
@@ -64,7 +64,7 @@ pub fn of(
             .map(|part| part / error.energy)
             .collect(),
         jumps: (of_jumps && has_jumps)
-            .then(|| of_all_jumps(&estimator, system, newton, solution, &error))
+            .then(|| of_all_jumps(estimator, system, newton, solution, &error))
             .flatten(),
     }
 }

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use lie_io::load_msh;
 use lie_mesh::{Defect, Draft, Faces, Mesh};
 use lie_solver::{
-    Discretisation, LinearFailure, Newton, NewtonSettings, Plan, Problem, State, StepRecord,
-    System, Workload, solution,
+    Discretisation, Estimator, LinearFailure, Newton, NewtonSettings, Plan, Problem, State,
+    StepRecord, System, Workload, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -176,7 +176,8 @@ impl<'a> Run<'a> {
         self.summary.steps.clear();
         let solution = solution(&system, &state);
         let unknowns = system.discretisation.unknown_count();
-        let accuracy = accuracy::of(&system, &mut newton, &solution, true);
+        let estimator = Estimator::of(&system);
+        let accuracy = accuracy::of(&system, &mut newton, &estimator, &solution, true);
         Ok((unknowns, accuracy))
     }
 
@@ -200,6 +201,8 @@ impl<'a> Run<'a> {
             None => self.begin(&system, plan)?,
             Some(former) => self.go_on(&system, plan, former.progress)?,
         };
+        // Made with the first results, so that it takes no memory from the first solve.
+        let mut estimator = None;
         for index in self.finished.len()..problem.schedule.steps.len() {
             let record = self.solve_step(&system, &mut newton, &mut state, index);
             if !record.converged() {
@@ -207,7 +210,7 @@ impl<'a> Run<'a> {
                 return Err(Failure::NotConverged(why));
             }
             self.finished.push((&record).into());
-            self.write_step(&system, &mut newton, &state)?;
+            self.write_step(&system, &mut newton, &mut estimator, &state)?;
             one(self.write_summary())?;
             self.write_checkpoint(problem, &newton, &state)?;
         }
@@ -349,12 +352,14 @@ impl<'a> Run<'a> {
         &mut self,
         system: &System<'_>,
         newton: &mut Newton,
+        estimator: &mut Option<Estimator>,
         state: &State,
     ) -> Result<(), Failure> {
         let is_last = self.finished.len() == system.problem.schedule.steps.len();
         let solution = solution(system, state);
         let (accuracy, took) = self.report.stage("estimating the error", |_| {
-            accuracy::of(system, newton, &solution, is_last)
+            let estimator = estimator.get_or_insert_with(|| Estimator::of(system));
+            accuracy::of(system, newton, estimator, &solution, is_last)
         });
         self.summary.seconds.estimate += took.as_secs_f64();
         let (written, took) = self.report.stage("writing", |_| {
@@ -368,7 +373,7 @@ impl<'a> Run<'a> {
         accuracy.note_in(&mut self.summary.fractures);
         // Closed forms speak of the end of the loads.
         let oracles = if is_last { &self.oracles[..] } else { &[] };
-        self.summary.measures = measures(system, &solution, oracles);
+        self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
         self.summary.measures.push(energy(accuracy.energy));
         self.summary.warnings = decisions::warnings(&self.summary.fractures);
         Ok(one(written)?)

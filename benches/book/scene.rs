@@ -100,17 +100,10 @@ impl Outcome {
     /// The problem on the mesh of the run.
     pub fn problem(&self) -> Problem {
         let file = self.folder.path().join("scene.toml");
-        let scene = Scene::read(&file).unwrap_or_else(|defects| panic!("{defects:?}"));
         let mesh = self.folder.path().join("out/mesh.msh");
         let draft = lie_io::load_msh(&mesh, self.folder.path());
         let draft = draft.unwrap_or_else(|defects| panic!("{defects:?}"));
-        let faces = Faces::of(&draft);
-        let inner = faces.inner_surfaces(&draft);
-        let roles = kluft::surface_roles(&scene, &draft, |group| inner[group]);
-        let roles = roles.unwrap_or_else(|defects| panic!("{defects:?}"));
-        let mesh = Mesh::build_on(draft, faces, &roles).unwrap_or_else(|d| panic!("{d:?}"));
-        let bound = kluft::bind(&scene, mesh).unwrap_or_else(|defects| panic!("{defects:?}"));
-        bound.problem
+        scenes::bound(&file, draft)
     }
 
     /// Mean magnitude of the slip (m), over the area.

@@ -39,11 +39,8 @@ mod treatments;
 mod voigt;
 mod words;
 
-use std::path::Path;
-use std::time::Instant;
-
 use page::Page;
-use studies::{Effort, Study, front};
+use studies::{Study, front};
 
 const HEAD: &str = "# Treatments of closing walls
 
@@ -84,36 +81,5 @@ fn page() -> Page<'static> {
 }
 
 fn main() {
-    let arguments: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|a| a != "--bench")
-        .collect();
-    let quick = arguments.iter().any(|argument| argument == "--quick");
-    let asked: Vec<&String> = arguments.iter().filter(|a| *a != "--quick").collect();
-    for name in &asked {
-        let known = ALL.map(|study| study.name);
-        assert!(
-            known.contains(&name.as_str()),
-            "no study {name}; there are {known:?}"
-        );
-    }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (effort, folder) = if quick {
-        (Effort::Quick, root.join("target/closures"))
-    } else {
-        (Effort::Full, root.join("docs"))
-    };
-    for study in ALL {
-        if asked.is_empty() || asked.iter().any(|name| *name == study.name) {
-            let start = Instant::now();
-            let finding = (study.run)(effort);
-            page::keep(&page(), &folder, &study, &finding).expect("files of the study");
-            let seconds = start.elapsed().as_secs_f64();
-            println!("{}: {seconds:.0} s. {}", study.name, finding.ours);
-            for miss in &finding.misses {
-                println!("  did not hold: {miss}");
-            }
-        }
-    }
-    page::write(&page(), &folder).expect("a page");
+    page::run(&page());
 }

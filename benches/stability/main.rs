@@ -28,11 +28,8 @@ mod studies;
 #[path = "../../tests/physics/voigt.rs"]
 mod voigt;
 
-use std::path::Path;
-use std::time::Instant;
-
 use page::Page;
-use studies::{ALL, Effort, PROMISE, PROMISE_WITH_FRICTION, Study};
+use studies::{ALL, PROMISE, PROMISE_WITH_FRICTION};
 
 const HEAD: &str = "# Stability map
 
@@ -58,44 +55,5 @@ fn map() -> Page<'static> {
 }
 
 fn main() {
-    let arguments: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|a| a != "--bench")
-        .collect();
-    let quick = arguments.iter().any(|argument| argument == "--quick");
-    let asked: Vec<&String> = arguments.iter().filter(|a| *a != "--quick").collect();
-    for name in &asked {
-        let known = ALL.map(|study| study.name);
-        assert!(
-            known.contains(&name.as_str()),
-            "no study {name}; there are {known:?}"
-        );
-    }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (effort, folder) = if quick {
-        (Effort::Quick, root.join("target/stability"))
-    } else {
-        (Effort::Full, root.join("docs"))
-    };
-    for study in ALL {
-        if asked.is_empty() || asked.iter().any(|name| *name == study.name) {
-            run(&study, effort, &folder);
-        }
-    }
-    page::write(&map(), &folder).expect("a page");
-}
-
-fn run(study: &Study, effort: Effort, folder: &Path) {
-    let start = Instant::now();
-    let finding = (study.run)(effort);
-    page::keep(&map(), folder, study, &finding).expect("files of the study");
-    println!(
-        "{}: {:.0} s. {}",
-        study.name,
-        start.elapsed().as_secs_f64(),
-        finding.ours
-    );
-    for miss in &finding.misses {
-        println!("  did not hold: {miss}");
-    }
+    page::run(&map());
 }

@@ -7,10 +7,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io;
 use std::path::Path;
+use std::time::Instant;
 
 use serde_json::{Map, Value, json};
 
-use crate::studies::{Finding, Study, Table};
+use crate::studies::{Effort, Finding, Study, Table};
 
 /// A page of studies.
 pub struct Page<'a> {
@@ -26,6 +27,47 @@ pub struct Page<'a> {
     pub tables: &'a [&'static str],
     /// What all cases must hold.
     pub promise: String,
+}
+
+/// Runs the studies that the command line names, all if it names none, and writes the page into `docs`; with
+/// `--quick` a few values only, into `target/NAME`.
+pub fn run(page: &Page<'_>) {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
+    let quick = arguments.iter().any(|argument| argument == "--quick");
+    let asked: Vec<&String> = arguments.iter().filter(|a| *a != "--quick").collect();
+    let known: Vec<&str> = page.studies.iter().map(|study| study.name).collect();
+    for name in &asked {
+        assert!(
+            known.contains(&name.as_str()),
+            "no study {name}; there are {known:?}"
+        );
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (effort, folder) = if quick {
+        (Effort::Quick, root.join("target").join(page.name))
+    } else {
+        (Effort::Full, root.join("docs"))
+    };
+    for study in page.studies {
+        if asked.is_empty() || asked.iter().any(|name| *name == study.name) {
+            run_study(page, study, effort, &folder);
+        }
+    }
+    write(page, &folder).expect("a page");
+}
+
+fn run_study(page: &Page<'_>, study: &Study, effort: Effort, folder: &Path) {
+    let start = Instant::now();
+    let finding = (study.run)(effort);
+    keep(page, folder, study, &finding).expect("files of the study");
+    let seconds = start.elapsed().as_secs_f64();
+    println!("{}: {seconds:.0} s. {}", study.name, finding.ours);
+    for miss in &finding.misses {
+        println!("  did not hold: {miss}");
+    }
 }
 
 /// Writes the files of a study, and keeps what the page says of it.

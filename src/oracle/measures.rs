@@ -1,12 +1,13 @@
 //! How far a run is from closed forms, and what it amounts to where there are none.
 
 use glam::DVec3;
-use lie_core::{Rock, RulePoint, rule};
+use lie_core::{FacetQuadrature, FacetRulePoint, Rock, facet_points};
 use lie_solver::{FacetResult, Solution, System};
 use serde::{Deserialize, Serialize};
 
 use super::front::{Behind, stress_intensity};
 use super::{Extent, Oracle, Profile};
+use crate::summary::FractureSummary;
 
 /// One number by which runs are compared.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,28 +33,37 @@ struct Sample {
     area: f64,
 }
 
-/// The measures of a solution: of each fracture, and errors where it has a closed form (`oracles`, one
-/// entry for each fracture). Fields are compared at the quadrature points of the facets, between nodes
-/// too.
+/// The measures of a solution: of each fracture, what its summary says, and errors where it has a closed form
+/// (`oracles`, one entry for each fracture). Fields are compared at the quadrature points of the facets, between
+/// nodes too.
 pub fn measures(
     system: &System<'_>,
     solution: &Solution,
+    fractures: &[(String, FractureSummary)],
     oracles: &[Option<Oracle>],
 ) -> Vec<Measure> {
-    let names = &system.problem.mesh.fractures;
-    let of = |(fracture, name): (usize, &String)| {
-        let fracture = Fracture::of(system, solution, fracture);
-        let oracle = oracles.get(fracture.index).copied().flatten();
-        let found = oracle.map(|oracle| fracture.errors(&oracle));
-        let plain = fracture.plain().into_iter();
-        let all = found.into_iter().flatten().chain(plain);
+    let of = |(index, (name, summary)): (usize, &(String, FractureSummary))| {
+        let oracle = oracles.get(index).copied().flatten();
+        let errors = oracle.map(|oracle| Fracture::of(system, solution, index).errors(&oracle));
+        let all = errors.into_iter().flatten().chain(values(summary));
         all.map(|measure| Measure {
             fracture: Some(name.clone()),
             ..measure
         })
         .collect::<Vec<_>>()
     };
-    names.iter().enumerate().flat_map(of).collect()
+    fractures.iter().enumerate().flat_map(of).collect()
+}
+
+/// What is measured without a closed form.
+fn values(summary: &FractureSummary) -> [Measure; 4] {
+    [
+        ("mean_aperture", summary.aperture.mean),
+        ("max_aperture", summary.aperture.max),
+        ("mean_normal_traction", summary.normal_traction.mean),
+        ("max_slip", summary.slip_max),
+    ]
+    .map(|(name, value)| plain(name, value))
 }
 
 /// The measure of the whole body: the energy stored in the rock (J).
@@ -63,13 +73,10 @@ pub fn energy(joules: f64) -> Measure {
 
 /// A fracture of a solution.
 struct Fracture<'a> {
-    index: usize,
     rock: Rock,
     samples: Vec<Sample>,
     /// Results at the facet points, with their places and areas.
     points: Vec<(&'a FacetResult, DVec3, f64)>,
-    /// Results at the nodes of its facets.
-    nodes: Vec<FacetResult>,
 }
 
 impl<'a> Fracture<'a> {
@@ -82,47 +89,15 @@ impl<'a> Fracture<'a> {
         let points = points.filter(|(point, _)| point.fracture as usize == index);
         let beside = own.first().map_or(0, |&facet| facets.plus[facet] as usize);
         Self {
-            index,
             rock: *system.problem.rock(beside),
             samples: own
                 .iter()
                 .flat_map(|&facet| samples(system, solution, facet))
                 .collect(),
-            nodes: {
-                let nodes = solution.facet_nodes(system.problem, &system.discretisation.interface);
-                let ranges = own.iter().flat_map(|&facet| facets.elements.range(facet));
-                ranges.map(|slot| nodes[slot]).collect()
-            },
             points: points
                 .map(|(point, result)| (result, point.position, point.area))
                 .collect(),
         }
-    }
-
-    /// What is measured without a closed form.
-    fn plain(&self) -> Vec<Measure> {
-        let area: f64 = self.points.iter().map(|(.., area)| area).sum();
-        let mean = |of: fn(&FacetResult) -> f64| {
-            let parts = self
-                .points
-                .iter()
-                .map(|(result, _, area)| of(result) * area);
-            parts.sum::<f64>() / area
-        };
-        let largest = |of: fn(&FacetResult) -> f64| {
-            let values = self.nodes.iter().map(of);
-            values.fold(f64::NEG_INFINITY, f64::max)
-        };
-        let values = [
-            ("mean_aperture", mean(|result| result.aperture)),
-            ("max_aperture", largest(|result| result.aperture)),
-            (
-                "mean_normal_traction",
-                mean(|result| result.normal_traction),
-            ),
-            ("max_slip", largest(|result| result.slip.length())),
-        ];
-        values.map(|(name, value)| plain(name, value)).to_vec()
     }
 
     /// Errors against a closed form.
@@ -267,25 +242,20 @@ fn samples(system: &System<'_>, solution: &Solution, facet: usize) -> Vec<Sample
     let jump =
         |local: usize| wall(&mesh.facets.plus_slots, local) - wall(&mesh.facets.minus_slots, local);
     let jumps: Vec<DVec3> = (0..nodes.len()).map(jump).collect();
-    let sample = |point: &RulePoint| {
-        let along = |axis: usize| -> DVec3 {
-            let terms = nodes.iter().zip(&point.gradient);
-            terms.map(|(x, gradient)| *x * gradient[axis]).sum()
-        };
-        let mix = |values: &[DVec3]| -> DVec3 {
-            let terms = values.iter().zip(&point.shape);
-            terms.map(|(value, share)| *value * *share).sum()
-        };
-        let area = along(0).cross(along(1));
-        let (normal, jump) = (area.normalize(), mix(&jumps));
+    let sample = |point: &FacetRulePoint| {
+        let shares = point.nodes.iter();
+        let jump: DVec3 = shares
+            .map(|&(local, share)| share * jumps[local as usize])
+            .sum();
+        let normal = point.area.normalize();
         let opening = jump.dot(normal);
         Sample {
-            position: mix(&nodes),
+            position: point.position,
             opening,
             slip: (jump - opening * normal).length(),
-            area: point.weight * area.length(),
+            area: point.area.length(),
         }
     };
-    let places = &rule(elements.shapes[facet]).points;
-    places.iter().map(sample).collect()
+    let rule = facet_points(elements.shapes[facet], &nodes, FacetQuadrature::Gauss);
+    rule.iter().map(sample).collect()
 }

@@ -155,8 +155,12 @@ pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> 
 pub fn scene_file(name: &str, parameters: &[(&str, f64)]) -> Problem {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let file = root.join(format!("geometries/{name}/scene.toml"));
-    let scene = kluft::Scene::read(&file).unwrap_or_else(|defects| panic!("{defects:?}"));
-    let draft = geometry(name, parameters);
+    bound(&file, geometry(name, parameters))
+}
+
+/// The problem of a scene file on a mesh.
+pub fn bound(file: &Path, draft: Draft) -> Problem {
+    let scene = kluft::Scene::read(file).unwrap_or_else(|defects| panic!("{defects:?}"));
     let faces = Faces::of(&draft);
     let inner = faces.inner_surfaces(&draft);
     let roles = kluft::surface_roles(&scene, &draft, |group| inner[group]);

@@ -91,7 +91,7 @@ fn run() -> Found {
         problem: "A closed crack of half-length 1 m in a plate of side 40 m in plane strain, pressed by 100 MPa at 20 degrees \
                   to the crack, slides against a friction of 30 degrees; its walls are in contact without a stiffness \
                   (`geometries/inclined-crack`). Second-order prisms with quarter points. \"Inside\" leaves out the \
-                  fifth next to each front."
+                  tenth next to each front."
             .to_owned(),
         reached: format!(
             "slip in L2 {}, inside {}",

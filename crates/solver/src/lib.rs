@@ -7,6 +7,7 @@
 //! of threads: every sum has a fixed order.
 
 mod assembly;
+mod cell;
 mod cell_forces;
 mod conjugate_gradients;
 mod estimate;

@@ -1,11 +1,12 @@
 //! What a converged state means: displacement, stress, jump, aperture, traction.
 
 use glam::{DMat3, DVec3};
-use lie_core::kernel::{self, MAX_NODES};
+use lie_core::kernel;
 use lie_core::{FacetQuadrature, SymmetricStress, bezier_function};
 use lie_mesh::Shape;
 use rayon::prelude::*;
 
+use crate::cell::{Cell, components};
 use crate::interface::{FacetPoint, Interface};
 use crate::problem::Problem;
 use crate::system::{FacetPointState, State, System};
@@ -125,25 +126,14 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
 }
 
 fn cell_stress(system: &System<'_>, displacements: &[DVec3], cell: usize) -> SymmetricStress {
-    let mesh = &system.problem.mesh;
-    let mut nodes = [DVec3::ZERO; MAX_NODES];
-    let mut moved = [DVec3::ZERO; MAX_NODES];
-    let range = mesh.cells.range(cell);
-    let count = range.len();
-    for (local, slot) in range.enumerate() {
-        nodes[local] = mesh.nodes[mesh.cells.nodes[slot] as usize];
-        moved[local] = displacements[system.discretisation.points.of_cell_node[slot] as usize];
-    }
-    let (nodes, moved) = (&nodes[..count], &moved[..count]);
-    let shape = mesh.cells.shapes[cell];
-    let initial = system.problem.initial_stress.map_or(DMat3::ZERO, |stress| {
-        stress.at(kernel::centre(shape, nodes))
+    let problem = system.problem;
+    let points = &system.discretisation.points;
+    let cell = Cell::of(problem, points, displacements, cell);
+    let initial = problem.initial_stress.map_or(DMat3::ZERO, |stress| {
+        stress.at(kernel::centre(cell.shape, cell.nodes()))
     });
-    let gradient = kernel::mean_gradient(shape, nodes, moved);
-    let s = system.problem.rock(cell).stress(gradient) + initial;
-    [
-        s.x_axis.x, s.y_axis.y, s.z_axis.z, s.x_axis.y, s.y_axis.z, s.x_axis.z,
-    ]
+    let gradient = kernel::mean_gradient(cell.shape, cell.nodes(), cell.moved());
+    components(cell.rock.stress(gradient) + initial)
 }
 
 fn facet_result(

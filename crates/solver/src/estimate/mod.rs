@@ -6,7 +6,6 @@
 //! both solutions, the error of the mean jump is `a(e, e_z) / A <= sum |e|_K |e_z|_K / A`, in energy norms
 //! (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
 
-mod cell;
 mod patches;
 mod reach;
 mod sizes;
@@ -16,11 +15,11 @@ use lie_core::{kernel, recovery_rule};
 use lie_mesh::Mesh;
 use rayon::prelude::*;
 
+use crate::cell::{Cell, components};
 use crate::linear::LinearFailure;
 use crate::newton::Newton;
 use crate::schedule::Load;
 use crate::system::System;
-use cell::{Cell, components};
 use patches::Patches;
 
 pub use sizes::target_sizes;

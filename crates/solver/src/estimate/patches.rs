@@ -7,12 +7,11 @@ use lie_core::{SymmetricStress, kernel, recovery_rule};
 use lie_mesh::Elements;
 use rayon::prelude::*;
 
+use crate::cell::{Cell, components};
 use crate::multigrid::small::inverse_factor;
 use crate::pattern::Lists;
 use crate::points::Points;
 use crate::problem::Problem;
-
-use super::cell::{Cell, components};
 
 /// Terms of a complete linear and a complete quadratic polynomial in space.
 const LINEAR: usize = 4;

@@ -9,16 +9,16 @@ use crate::points::Points;
 use crate::problem::Problem;
 
 /// Nodes and displacements of one cell.
-pub(super) struct Cell<'a> {
-    pub(super) shape: Shape,
-    pub(super) rock: &'a Rock,
+pub(crate) struct Cell<'a> {
+    pub(crate) shape: Shape,
+    pub(crate) rock: &'a Rock,
     count: usize,
     nodes: [DVec3; MAX_NODES],
     moved: [DVec3; MAX_NODES],
 }
 
 impl<'a> Cell<'a> {
-    pub(super) fn of(
+    pub(crate) fn of(
         problem: &'a Problem,
         points: &Points,
         displacements: &[DVec3],
@@ -43,18 +43,18 @@ impl<'a> Cell<'a> {
     }
 
     /// Places of the nodes (m).
-    pub(super) fn nodes(&self) -> &[DVec3] {
+    pub(crate) fn nodes(&self) -> &[DVec3] {
         &self.nodes[..self.count]
     }
 
     /// Displacements of the nodes (m).
-    pub(super) fn moved(&self) -> &[DVec3] {
+    pub(crate) fn moved(&self) -> &[DVec3] {
         &self.moved[..self.count]
     }
 }
 
 /// Components of a symmetric tensor.
-pub(super) fn components(s: DMat3) -> SymmetricStress {
+pub(crate) fn components(s: DMat3) -> SymmetricStress {
     [
         s.x_axis.x, s.y_axis.y, s.z_axis.z, s.x_axis.y, s.y_axis.z, s.x_axis.z,
     ]
