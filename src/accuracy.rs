@@ -25,7 +25,7 @@ pub struct JumpAccuracy {
     pub aperture: Vec<f64>,
     /// What the mean slip of each fracture may be off (m), if any slips.
     pub slip: Option<Vec<f64>>,
-    /// For each cell the sum of its parts in both, as shares of the mean jump of its fracture.
+    /// For each cell the larger of its parts in both, as a share of the mean jump of its fracture.
     pub of_cell: Vec<f64>,
     /// That fracture; beyond all numbers where there is none.
     pub nearest_fracture: Vec<u32>,
@@ -115,7 +115,7 @@ fn of_all_jumps(
             return 0.0;
         };
         let of_slip = slip.as_ref().map_or(0.0, |slip| slip.of_cell[cell]);
-        safety * (opening.of_cell[cell] + of_slip) * area / sum
+        safety * opening.of_cell[cell].max(of_slip) * area / sum
     });
     let uncertainty = |error: &MeanError| -> Vec<f64> {
         let errors = error.of_fracture.iter();

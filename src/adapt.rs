@@ -77,6 +77,10 @@ const NEAR: f64 = 4.0;
 /// Part of the largest number of unknowns that counts as having used it: gmsh does not hit numbers.
 const FULL: f64 = 0.7;
 
+/// Least growth of the number of cells that a mesh is asked for after one that is not good enough (gmsh makes fewer where they are
+/// large): on ever coarser meshes estimates mean nothing.
+const LEAST_GROWTH: f64 = 1.6;
+
 fn stopped(adapt: &Adapt, is_met: bool, error: f64) -> String {
     let (error, tolerance) = (100.0 * error, 100.0 * adapt.tolerance);
     match is_met {
@@ -105,10 +109,9 @@ fn next_sizes(
         }
     };
     let growth = cells(mesh, &sizes) / mesh.cells.len() as f64;
-    let excess = growth * unknowns as f64 / adapt.max_unknowns;
-    if excess > 1.0 {
-        sizes.iter_mut().for_each(|size| *size *= excess.cbrt());
-    }
+    let budget = adapt.max_unknowns / unknowns as f64;
+    let scale = (growth / growth.max(LEAST_GROWTH).min(budget)).cbrt();
+    sizes.iter_mut().for_each(|size| *size *= scale);
     sizes
 }
 

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::harness::{Workshop, summary};
 
 const COARSE: (&str, &str) = (
-    "parameters = { h = 0.08, half = 10 }",
+    "parameters = { h = 0.06, grow = 0.4, half = 10 }\norder = 2",
     "parameters = { h = 0.4 }\norder = 2\nadapt = { tolerance = 0.1 }",
 );
 
@@ -13,6 +13,14 @@ fn measure<'a>(said: &'a Value, name: &str) -> &'a Value {
     let measures = said["measures"].as_array().expect("measures");
     let found = measures.iter().find(|measure| measure["name"] == name);
     found.unwrap_or_else(|| panic!("{name}"))
+}
+
+/// Stated uncertainty of the mean opening, as a share of it.
+fn uncertainty(said: &Value) -> f64 {
+    let crack = &said["fractures"]["penny"];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let mean = number(&crack["aperture"]["mean"]) - 1e-5;
+    number(&crack["aperture_uncertainty"]) / mean
 }
 
 /// Refined until the estimate is below a tenth; the closed form (Sneddon 1946) confirms it.
@@ -29,17 +37,15 @@ fn a_penny_is_refined_until_its_opening_is_good_enough() {
         "{meshes:?}"
     );
     assert_eq!(last["unknowns"], said["unknowns"]["total"]);
-    assert!(
-        measure(&said, "volume")["error"]
-            .as_f64()
-            .expect("an error")
-            < 0.1
-    );
-    let crack = &said["fractures"]["penny"];
-    let share = crack["aperture_uncertainty"]
+    let off = measure(&said, "volume")["error"]
         .as_f64()
-        .expect("an uncertainty");
-    assert!(share / crack["aperture"]["mean"].as_f64().expect("an aperture") < 0.1);
+        .expect("an error");
+    // The volume is the mean opening times the area.
+    let stated = uncertainty(&said);
+    assert!(off < stated && stated < 0.1, "{off} {stated}");
+    // Errors go as one over the unknowns. Graded by hand, 18480 unknowns are 3.06 % off (docs/book/penny.md).
+    let unknowns = last["unknowns"].as_f64().expect("a number");
+    assert!(unknowns * off < 18480.0 * 0.0306, "{unknowns} {off}");
     let decisions = said["decisions"].to_string();
     for text in ["quarter points", "10 % was asked for"] {
         assert!(decisions.contains(text), "{text:?} is not in {decisions}");

@@ -181,7 +181,10 @@ fn the_unknowns_are_those_of_the_run() {
 fn a_penny_has_a_tip_all_around() {
     let report = report(&Workshop::new(
         "penny",
-        &[("parameters = { h = 0.08", "parameters = { h = 0.4")],
+        &[(
+            "parameters = { h = 0.06, grow = 0.4, half = 10 }\norder = 2",
+            "parameters = { h = 0.4 }",
+        )],
     ));
     let penny = named(&report["fractures"], "penny");
     // Chords of a circle cut into 12 or more edges are at most 2 % shorter, the polygon 5 % smaller.

@@ -14,7 +14,10 @@ use toml::{Table, Value};
 use crate::harness::{Run, Workshop, kluft, summary};
 
 const SMALL: [(&str, &str); 4] = [
-    ("h = 0.08, half = 10", "h = 0.5, half = 2"),
+    (
+        "h = 0.06, grow = 0.4, half = 10 }\norder = 2",
+        "h = 0.5, half = 2 }",
+    ),
     ("at = [-10.0, -10.0, -10.0]", "at = [-2, -2, -2]"),
     ("at = [10.0, -10.0, -10.0]", "at = [2, -2, -2]"),
     ("at = [-10.0, 10.0, -10.0]", "at = [-2, 2, -2]"),

@@ -2,6 +2,7 @@
 //!
 //! A new page is a file here and an entry of [`ALL`].
 
+mod adaptive;
 mod barton_bandis;
 mod estimate;
 mod inclined_crack;
@@ -35,8 +36,9 @@ pub struct Page {
 }
 
 /// All benchmarks, in the order of the book.
-pub const ALL: [Page; 13] = [
+pub const ALL: [Page; 14] = [
     penny::PAGE,
+    adaptive::PAGE,
     line_crack::PAGE,
     inclined_crack::PAGE,
     inclined_penny::PAGE,

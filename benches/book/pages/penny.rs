@@ -229,7 +229,8 @@ fn shows(families: &[Family]) -> String {
          of order 1, {} of order 2 and {} with quarter points; graded by hand with quarter points {}; adaptive {}. So \
          an adaptive mesh has {} of the unknowns of a uniform one of order 2 and {} of order 1, and for a volume \
          within 1 % {} of order 2 ({} against {}). Numbers called extrapolated continue the line through the last \
-         two meshes, or the first two; no such mesh was solved. Errors below some tenths of a percent also hold what \
+         two meshes, or the first two; no such mesh was solved. \"Uniform\" meshes here still grow away from the disc; \
+         [Adaptive and uniform meshes](adaptive.md) has truly uniform ones, none extrapolated, in a smaller body. Errors below some tenths of a percent also hold what \
          the cube of 20 m, which is not unbounded, does to the opening.",
         families[0].order(),
         families[1].order(),
