@@ -152,7 +152,7 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
     Defect::new(
         place,
         format!(
-            "the {} solver needs {} and may take {}",
+            "the {} solver needs {} with the estimate of errors, and may take {}",
             chosen.method,
             gigabytes(chosen.memory_bytes),
             gigabytes(limit)

@@ -187,7 +187,7 @@ pub struct Summary {
     /// Where the time went.
     pub seconds: Seconds,
     /// Largest resident memory predicted before the solver was set up: what the process held then,
-    /// and what the solver needs (bytes).
+    /// and what solver and error estimate need (bytes).
     pub predicted_memory_bytes: u64,
     /// Largest resident memory of the process, gmsh left out (bytes).
     pub peak_memory_bytes: u64,

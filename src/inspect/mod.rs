@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use lie_io::{load_msh, write_atomically, write_vtu};
 use lie_mesh::{Defect, Draft, Faces, Mesh, Survey};
-use lie_solver::{Discretisation, Problem, Workload, difficulty};
+use lie_solver::{Discretisation, Problem, Workload, difficulty, estimate_bytes};
 
 use crate::output::Output;
 use crate::prepare::{self, folder_for, mesh_file};
@@ -80,6 +80,7 @@ fn one_step(mesh: &Mesh) -> Workload {
         is_smooth: true,
         is_path_dependent: false,
         difficulty: difficulty(mesh, &[]),
+        estimate_bytes: estimate_bytes(mesh),
     }
 }
 

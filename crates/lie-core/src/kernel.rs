@@ -16,13 +16,9 @@ struct Gradients {
     volume: f64,
 }
 
-/// `J = sum_a x_a (x) dN_a/dxi`, `grad N_a = J^-T dN_a/dxi`.
+/// `grad N_a = J^-T dN_a/dxi` with the Jacobian matrix `J = sum_a x_a (x) dN_a/dxi`.
 fn gradients(point: &RulePoint, nodes: &[DVec3]) -> Gradients {
-    let jacobian: DMat3 = nodes
-        .iter()
-        .zip(&point.gradient)
-        .map(|(x, gradient)| outer(*x, *gradient))
-        .sum();
+    let jacobian = reference_gradient(point, nodes);
     let to_space = jacobian.inverse().transpose();
     let mut of_node = [DVec3::ZERO; MAX_NODES];
     for (slot, gradient) in of_node.iter_mut().zip(&point.gradient) {
@@ -53,44 +49,45 @@ pub fn stiffness(shape: Shape, nodes: &[DVec3], rock: &Rock, blocks: &mut [DMat3
     let lame = rock.lame();
     for a in 0..count {
         for b in a..count {
-            let block = of_gradients(blocks[a * count + b], lame);
+            let block = of_moments(blocks[a * count + b], lame);
             blocks[a * count + b] = block;
             blocks[b * count + a] = block.transpose();
         }
     }
 }
 
-/// `lambda M + mu M^T + mu tr(M) I`.
-fn of_gradients(m: DMat3, (lambda, mu): (f64, f64)) -> DMat3 {
+/// Stiffness between two nodes (N/m) from `M = int g_a (x) g_b dV` (m) and Lamé's constants (Pa):
+/// `K_ab = lambda M + mu M^T + mu tr(M) I`.
+#[inline]
+pub fn of_moments(m: DMat3, (lambda, mu): (f64, f64)) -> DMat3 {
     let trace = m.x_axis.x + m.y_axis.y + m.z_axis.z;
     lambda * m + mu * m.transpose() + DMat3::from_diagonal(DVec3::splat(mu * trace))
 }
 
 /// Row `a` of [`stiffness`] of a linear tetrahedron, `row[b] = K_ab` (N/m), from Lamé's constants
-/// (Pa).
-///
-/// With edges `e` from node `a`, the gradients at the other nodes are `e x e / 6V`; a row adds up to
-/// zero, because translations cost nothing.
-pub fn tetrahedron_row(
-    nodes: &[DVec3; 4],
-    (lambda, mu): (f64, f64),
-    a: usize,
-    row: &mut [DMat3; 4],
-) {
+/// (Pa); a row adds up to zero, because translations cost nothing.
+pub fn tetrahedron_row(nodes: &[DVec3; 4], lame: (f64, f64), a: usize, row: &mut [DMat3; 4]) {
     // The order a, a^1, a^2, a^3 is an even permutation: the volume keeps its sign.
-    let [e1, e2, e3] = [1, 2, 3].map(|k| nodes[a ^ k] - nodes[a]);
-    let faces = [e2.cross(e3), e3.cross(e1), e1.cross(e2)];
-    let own = -1.0 / (6.0 * e1.dot(faces[0])) * (faces[0] + faces[1] + faces[2]);
-    let (by_lambda, by_mu) = (lambda * own, mu * own);
+    let moments = tetrahedron_moments(&[0, 1, 2, 3].map(|k| nodes[a ^ k]));
     let mut sum = DMat3::ZERO;
-    for (k, face) in faces.into_iter().enumerate() {
-        let block = outer(by_lambda, face)
-            + outer(face, by_mu)
-            + DMat3::from_diagonal(DVec3::splat(by_mu.dot(face)));
+    for (k, moment) in moments.into_iter().enumerate() {
+        let block = of_moments(moment, lame);
         sum += block;
         row[a ^ (k + 1)] = block;
     }
     row[a] = -sum;
+}
+
+/// `M_b = int g_0 (x) g_b dV` (m) for the nodes `b` = 1, 2, 3 of a linear tetrahedron of positive volume;
+/// together with `M_0` they add up to zero.
+///
+/// With edges `e` from node 0, the gradients at the other nodes are `e x e / 6V`.
+#[inline]
+pub fn tetrahedron_moments(nodes: &[DVec3; 4]) -> [DMat3; 3] {
+    let [e1, e2, e3] = [1, 2, 3].map(|k| nodes[k] - nodes[0]);
+    let faces = [e2.cross(e3), e3.cross(e1), e1.cross(e2)];
+    let own = -1.0 / (6.0 * e1.dot(faces[0])) * (faces[0] + faces[1] + faces[2]);
+    faces.map(|face| outer(own, face))
 }
 
 /// Adds the nodal forces of a stress field, `f_a = int sigma(x) . grad N_a dV` (N).
@@ -117,7 +114,7 @@ pub fn add_body_forces(
     forces: &mut [DVec3],
 ) {
     for point in &rule(shape).points {
-        let force = gradients(point, nodes).volume * q(position(point, nodes));
+        let force = volume(point, nodes) * q(position(point, nodes));
         for (sum, value) in forces.iter_mut().zip(&point.shape) {
             *sum += *value * force;
         }
@@ -128,7 +125,7 @@ pub fn add_body_forces(
 /// at some quadrature point.
 pub fn is_folded(shape: Shape, nodes: &[DVec3]) -> bool {
     let mut points = rule(shape).points.iter();
-    points.any(|point| gradients(point, nodes).volume <= 0.0)
+    points.any(|point| volume(point, nodes) <= 0.0)
 }
 
 /// Mean displacement gradient of a cell, `H = 1/V int u_a (x) grad N_a dV`.
@@ -136,11 +133,9 @@ pub fn mean_gradient(shape: Shape, nodes: &[DVec3], displacement: &[DVec3]) -> D
     let mut sum = DMat3::ZERO;
     let mut whole = 0.0;
     for point in &rule(shape).points {
-        let Gradients { of_node: g, volume } = gradients(point, nodes);
+        let (gradient, volume) = gradient_at(point, nodes, displacement);
         whole += volume;
-        for (u, gradient) in displacement.iter().zip(g) {
-            sum += outer(*u, volume * gradient);
-        }
+        sum += volume * gradient;
     }
     sum * (1.0 / whole)
 }
@@ -150,7 +145,7 @@ pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
     let mut sum = DVec3::ZERO;
     let mut whole = 0.0;
     for point in &rule(shape).points {
-        let volume = gradients(point, nodes).volume;
+        let volume = volume(point, nodes);
         whole += volume;
         sum += volume * position(point, nodes);
     }
@@ -160,9 +155,22 @@ pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
 /// Displacement gradient `H = sum_a u_a (x) grad N_a` at a point of a cell, and the volume (m^3) of that
 /// point.
 pub fn gradient_at(point: &RulePoint, nodes: &[DVec3], displacement: &[DVec3]) -> (DMat3, f64) {
-    let Gradients { of_node, volume } = gradients(point, nodes);
-    let terms = displacement.iter().zip(of_node);
-    (terms.map(|(u, gradient)| outer(*u, gradient)).sum(), volume)
+    let jacobian = reference_gradient(point, nodes);
+    let gradient = reference_gradient(point, displacement) * jacobian.inverse();
+    (gradient, point.weight * jacobian.determinant())
+}
+
+/// `sum_a v_a (x) dN_a/dxi` at a point: of places the Jacobian matrix.
+fn reference_gradient(point: &RulePoint, values: &[DVec3]) -> DMat3 {
+    let terms = values.iter().zip(&point.gradient);
+    terms
+        .map(|(value, gradient)| outer(*value, *gradient))
+        .sum()
+}
+
+/// Volume (m^3) of a point of a cell.
+fn volume(point: &RulePoint, nodes: &[DVec3]) -> f64 {
+    point.weight * reference_gradient(point, nodes).determinant()
 }
 
 /// Place (m) of a point of a cell.

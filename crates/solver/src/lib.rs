@@ -33,7 +33,7 @@ pub use conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
     conjugate_gradients,
 };
-pub use estimate::{Estimator, MeanError, StressError, target_sizes};
+pub use estimate::{Estimator, MeanError, StressError, estimate_bytes, target_sizes};
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
     Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,

@@ -11,8 +11,8 @@ mod reach;
 mod sizes;
 
 use glam::DVec3;
-use lie_core::{kernel, recovery_rule};
-use lie_mesh::Mesh;
+use lie_core::{FinePoint, SymmetricStress, kernel, recovery_rule};
+use lie_mesh::{Mesh, Shape};
 use rayon::prelude::*;
 
 use crate::cell::{Cell, components};
@@ -24,8 +24,26 @@ use patches::Patches;
 
 pub use sizes::target_sizes;
 
-/// Error of the linear solve for `z`, as a share of its forces: enough for an estimate.
-const ROUGH: f64 = 1e-2;
+/// Error of the linear solve for `z`, as a share of its forces. In a network of a hundred fractures the
+/// errors of the means are then within 2 % of those of an exact `z`, which takes four times the iterations.
+const ROUGH: f64 = 0.1;
+
+/// Memory (bytes) that estimates on a mesh take: patches, samples, polynomials, and what is known of each cell of
+/// two states.
+pub fn estimate_bytes(mesh: &Mesh) -> usize {
+    let cells = &mesh.cells;
+    const OF_SLOT: usize = 8;
+    const OF_SAMPLE: usize = size_of::<DVec3>() + size_of::<SymmetricStress>();
+    const OF_CELL: usize = 128;
+    let samples: usize = (cells.shapes.iter())
+        .map(|&shape| recovery_rule(shape).samples.len())
+        .sum();
+    let terms = patches::terms(cells) * size_of::<SymmetricStress>();
+    OF_SLOT * cells.nodes.len()
+        + OF_SAMPLE * samples
+        + OF_CELL * cells.len()
+        + terms * mesh.nodes.len()
+}
 
 /// Recovers stresses on one mesh, for any number of states.
 pub struct Estimator {
@@ -115,11 +133,18 @@ impl Estimator {
             let first = problem.mesh.cells.range(cell).start;
             let cell = Cell::of(problem, points, displacements, cell);
             let (mut error, mut energy, mut whole) = (0.0, 0.0, 0.0);
-            for fine in &recovery_rule(cell.shape).fine {
-                let place = kernel::position(&fine.point, cell.nodes());
+            let at = |fine: &FinePoint| {
                 let (gradient, volume) =
                     kernel::gradient_at(&fine.point, cell.nodes(), cell.moved());
-                let found = components(cell.rock.stress(gradient));
+                let stress = components(cell.rock.stress(gradient));
+                (stress, volume / fine.point.weight)
+            };
+            let rule = &recovery_rule(cell.shape).fine;
+            let uniform = (cell.shape == Shape::Tet4).then(|| at(&rule[0]));
+            for fine in rule {
+                let place = kernel::position(&fine.point, cell.nodes());
+                let (found, density) = uniform.unwrap_or_else(|| at(fine));
+                let volume = density * fine.point.weight;
                 let smooth = self.patches.stress(&recovered, first, &fine.corners, place);
                 let difference = std::array::from_fn(|i| smooth[i] - found[i]);
                 error += volume * cell.rock.energy_density(&difference);

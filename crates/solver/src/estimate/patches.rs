@@ -2,14 +2,16 @@
 //! the cells there that are of one rock and in one sector, so that stresses may jump at fractures and
 //! between rocks (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 33, 1992).
 
+use std::ops::Range;
+
 use glam::DVec3;
-use lie_core::{SymmetricStress, kernel, recovery_rule};
+use lie_core::{RulePoint, SymmetricStress, kernel, recovery_rule};
 use lie_mesh::Elements;
 use rayon::prelude::*;
 
 use crate::cell::{Cell, components};
 use crate::multigrid::small::inverse_factor;
-use crate::pattern::Lists;
+use crate::pattern::{CellOfSlot, Lists, split};
 use crate::points::Points;
 use crate::problem::Problem;
 
@@ -19,6 +21,8 @@ const QUADRATIC: usize = 10;
 /// A term that depends on the ones before it but for this share is left out: what is extrapolated with it
 /// would be noise.
 const DEPENDENT: f64 = 1e-4;
+/// Cells whose samples one task takes.
+const CELLS_PER_TASK: usize = 1024;
 /// Samples for each term, below which cells farther away help, and then a polynomial of lower degree is
 /// fitted.
 const SAMPLES_PER_TERM: f64 = 1.5;
@@ -27,12 +31,13 @@ const SAMPLES_PER_TERM: f64 = 1.5;
 pub(super) struct Patches {
     /// Patch of each corner of the cells, by slot in their flat node list; `NONE` for other nodes.
     pub(super) of_slot: Vec<u32>,
-    /// Slots of each patch.
-    slots: Lists,
-    /// Cell of each slot.
-    cell_of_slot: Vec<u32>,
+    /// Cells of each patch, ascending.
+    cells: Lists,
     /// Middle (m) and size (m) of each patch.
     frames: Vec<(DVec3, f64)>,
+    /// Where the stress of each cell is sampled (m); start of each cell's samples, and their number.
+    samples: Vec<DVec3>,
+    sample_offset: Vec<usize>,
     /// Number of terms of the polynomials: quadratic ones if any cell is quadratic.
     terms: usize,
 }
@@ -49,14 +54,11 @@ impl Patches {
     /// The patches of a mesh: one for each point that is a corner and each rock around it.
     pub(super) fn of(problem: &Problem, points: &Points) -> Self {
         let cells = &problem.mesh.cells;
-        let mut cell_of_slot = vec![0; cells.nodes.len()];
         let mut corners: Vec<(u64, u32)> = Vec::with_capacity(4 * cells.len());
         for cell in 0..cells.len() {
-            let range = cells.range(cell);
-            cell_of_slot[range.clone()].fill(cell as u32);
             let rock = u64::from(problem.rock_of_cell[cell]);
             let count = cells.shapes[cell].corner_count();
-            let keys = range.take(count).map(|slot| {
+            let keys = cells.range(cell).take(count).map(|slot| {
                 let point = u64::from(points.of_cell_node[slot]);
                 (point << 32 | rock, slot as u32)
             });
@@ -64,46 +66,78 @@ impl Patches {
         }
         corners.par_sort_unstable();
         let mut of_slot = vec![NONE; cells.nodes.len()];
-        let mut slots = Lists {
+        let mut around = Lists {
             offset: vec![0],
             entries: Vec::with_capacity(corners.len()),
         };
+        let cell_of_slot = CellOfSlot::of(cells);
         for (patch, group) in corners.chunk_by(|a, b| a.0 == b.0).enumerate() {
             for &(_, slot) in group {
                 of_slot[slot as usize] = patch as u32;
-                slots.entries.push(slot);
+                let (cell, _) = cell_of_slot.locate(slot, cells);
+                around.entries.push(cell as u32);
             }
-            slots.offset.push(slots.entries.len());
+            around.offset.push(around.entries.len());
         }
         let mut patches = Self {
             of_slot,
-            slots,
-            cell_of_slot,
+            cells: around,
             frames: Vec::new(),
-            terms: match cells.shapes.iter().any(|shape| shape.is_quadratic()) {
-                true => QUADRATIC,
-                false => LINEAR,
-            },
+            sample_offset: sample_offset(cells),
+            samples: Vec::new(),
+            terms: terms(cells),
         };
         patches.frames = (0..patches.len())
             .into_par_iter()
             .map(|patch| patches.frame(problem, patch))
             .collect();
+        patches.samples = patches.sampled(cells, |cell, point| {
+            let nodes = cells.nodes_of(cell).iter();
+            let terms = nodes.zip(&point.shape);
+            let places = terms.map(|(&node, share)| *share * problem.mesh.nodes[node as usize]);
+            places.sum()
+        });
         patches
     }
 
     fn len(&self) -> usize {
-        self.slots.offset.len() - 1
+        self.cells.offset.len() - 1
     }
 
     fn cells_of(&self, patch: usize) -> impl Iterator<Item = usize> + '_ {
-        let slots = self.slots.of(patch).iter();
-        slots.map(|&slot| self.cell_of_slot[slot as usize] as usize)
+        self.cells.of(patch).iter().map(|&cell| cell as usize)
+    }
+
+    fn samples_of(&self, cell: usize) -> Range<usize> {
+        self.sample_offset[cell]..self.sample_offset[cell + 1]
+    }
+
+    /// Values at all samples, cell by cell.
+    fn sampled<T: Send + Clone + Default>(
+        &self,
+        cells: &Elements,
+        value: impl Fn(usize, &RulePoint) -> T + Sync,
+    ) -> Vec<T> {
+        let mut values = vec![T::default(); self.sample_offset[cells.len()]];
+        let shares = split(&mut values, &self.sample_offset, CELLS_PER_TASK);
+        shares.into_par_iter().for_each(|(owned, mut rest)| {
+            for cell in owned {
+                let samples = &recovery_rule(cells.shapes[cell]).samples;
+                let (own, tail) = rest.split_at_mut(samples.len());
+                for (target, sample) in own.iter_mut().zip(samples) {
+                    *target = value(cell, sample);
+                }
+                rest = tail;
+            }
+        });
+        values
     }
 
     fn frame(&self, problem: &Problem, patch: usize) -> (DVec3, f64) {
         let mesh = &problem.mesh;
-        let slot = self.slots.of(patch)[0] as usize;
+        let own = self.cells_of(patch).flat_map(|cell| mesh.cells.range(cell));
+        let at_middle = |slot: &usize| self.of_slot[*slot] == patch as u32;
+        let slot = own.into_iter().find(at_middle).unwrap_or_default();
         let middle = mesh.nodes[mesh.cells.nodes[slot] as usize];
         let corners = self.cells_of(patch).flat_map(|cell| {
             let count = mesh.cells.shapes[cell].corner_count();
@@ -120,16 +154,19 @@ impl Patches {
         points: &Points,
         displacements: &[DVec3],
     ) -> Recovered {
-        let source = Source {
-            problem,
-            points,
-            displacements,
-        };
+        let cells = &problem.mesh.cells;
+        let stresses = self.sampled(cells, |cell, sample| {
+            let cell = Cell::of(problem, points, displacements, cell);
+            let (gradient, _) = kernel::gradient_at(sample, cell.nodes(), cell.moved());
+            components(cell.rock.stress(gradient))
+        });
         let mut coefficients = vec![[0.0; 6]; self.terms * self.len()];
         let patches = coefficients.par_chunks_mut(self.terms).enumerate();
         patches.for_each(|(patch, coefficients)| match self.terms {
-            QUADRATIC => coefficients.copy_from_slice(&self.fit::<QUADRATIC>(&source, patch)),
-            _ => coefficients.copy_from_slice(&self.fit::<LINEAR>(&source, patch)),
+            QUADRATIC => {
+                coefficients.copy_from_slice(&self.fit::<QUADRATIC>(cells, &stresses, patch));
+            }
+            _ => coefficients.copy_from_slice(&self.fit::<LINEAR>(cells, &stresses, patch)),
         });
         Recovered { coefficients }
     }
@@ -141,8 +178,7 @@ impl Patches {
         let quadratic = around.iter().any(|&cell| cells.shapes[cell].is_quadratic());
         let wanted = if quadratic { QUADRATIC } else { LINEAR };
         let suffices = |around: &[usize], terms: usize| {
-            let samples = around.iter();
-            let samples = samples.map(|&cell| recovery_rule(cells.shapes[cell]).samples.len());
+            let samples = around.iter().map(|&cell| self.samples_of(cell).len());
             samples.sum::<usize>() as f64 >= SAMPLES_PER_TERM * terms as f64
         };
         if !suffices(&around, wanted) {
@@ -160,22 +196,22 @@ impl Patches {
         (around, terms.unwrap_or(1))
     }
 
-    fn fit<const TERMS: usize>(&self, source: &Source<'_>, patch: usize) -> [[f64; 6]; TERMS] {
+    fn fit<const TERMS: usize>(
+        &self,
+        cells: &Elements,
+        stresses: &[SymmetricStress],
+        patch: usize,
+    ) -> [[f64; 6]; TERMS] {
         let mut normal = [[0.0; TERMS]; TERMS];
         let mut right = [[0.0; 6]; TERMS];
-        let (around, used) = self.around(&source.problem.mesh.cells, patch);
-        for cell in around {
-            let cell = Cell::of(source.problem, source.points, source.displacements, cell);
-            for sample in &recovery_rule(cell.shape).samples {
-                let terms = self.terms(patch, kernel::position(sample, cell.nodes()));
-                let (gradient, _) = kernel::gradient_at(sample, cell.nodes(), cell.moved());
-                let stress = components(cell.rock.stress(gradient));
-                for i in 0..TERMS {
-                    for j in 0..=i {
-                        normal[i][j] += terms[i] * terms[j];
-                    }
-                    add(&mut right[i], terms[i], &stress);
+        let (around, used) = self.around(cells, patch);
+        for sample in around.into_iter().flat_map(|cell| self.samples_of(cell)) {
+            let terms = self.terms(patch, self.samples[sample]);
+            for i in 0..TERMS {
+                for j in 0..=i {
+                    normal[i][j] += terms[i] * terms[j];
                 }
+                add(&mut right[i], terms[i], &stresses[sample]);
             }
         }
         // Rows of zeros have no pivot.
@@ -213,11 +249,22 @@ impl Patches {
     }
 }
 
-/// What stresses follow from.
-struct Source<'a> {
-    problem: &'a Problem,
-    points: &'a Points,
-    displacements: &'a [DVec3],
+/// Number of terms of polynomials on these cells.
+pub(super) fn terms(cells: &Elements) -> usize {
+    match cells.shapes.iter().any(|shape| shape.is_quadratic()) {
+        true => QUADRATIC,
+        false => LINEAR,
+    }
+}
+
+/// Start of each cell's samples, and their number.
+fn sample_offset(cells: &Elements) -> Vec<usize> {
+    let mut offset = vec![0];
+    offset.extend(cells.shapes.iter().scan(0, |end, &shape| {
+        *end += recovery_rule(shape).samples.len();
+        Some(*end)
+    }));
+    offset
 }
 
 /// `A c = b` for positive semidefinite `A`, given by its lower triangle, with zeros for terms that depend

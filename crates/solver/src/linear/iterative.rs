@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::jump_block::JumpBlock;
 use super::{LinearFailure, LinearSolution, SolverHistory, TangentSolver};
 use crate::conjugate_gradients::{
-    ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
+    ConjugateGradientOutcome, ConjugateGradientSettings, PER_TASK, conjugate_gradients,
 };
 use crate::multigrid::{BlockRows, Multigrid, MultigridFailure, Workspace, rigid_modes};
 use crate::system::{System, norm};
@@ -249,6 +249,20 @@ impl Parts {
     }
 }
 
+/// Writes `entries` of the unknowns `places` (ascending) into a vector over all unknowns, and zero elsewhere.
+fn spread(places: &[u32], entries: &[DVec3], vector: &mut [DVec3]) {
+    let tasks = vector.par_chunks_mut(PER_TASK).enumerate();
+    tasks.for_each(|(task, chunk)| {
+        let start = task * PER_TASK;
+        let before = |end: usize| places.partition_point(|&place| (place as usize) < end);
+        let own = before(start)..before(start + chunk.len());
+        chunk.fill(DVec3::ZERO);
+        for (&place, entry) in places[own.clone()].iter().zip(&entries[own]) {
+            chunk[place as usize - start] = *entry;
+        }
+    });
+}
+
 /// One symmetric step: jumps, rock, jumps.
 fn precondition(
     (multigrid, workspace): (&Multigrid, &mut Workspace),
@@ -262,10 +276,7 @@ fn precondition(
     gathered.for_each(|(force, &unknown)| *force = residual[unknown as usize]);
     jumps.subtract_from_rock(rows, &first, &mut parts.rock);
     multigrid.apply(&parts.rock, &mut parts.correction, workspace);
-    correction.fill(DVec3::ZERO);
-    for (&unknown, change) in rock.iter().zip(&parts.correction) {
-        correction[unknown as usize] = *change;
-    }
+    spread(rock, &parts.correction, correction);
     let second = jumps.solve(&jumps.remaining(rows, &forces, &first, correction));
     for ((&unknown, first), second) in jumps.unknowns().iter().zip(first).zip(second) {
         correction[unknown as usize] = first + second;

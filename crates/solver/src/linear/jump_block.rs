@@ -296,7 +296,7 @@ impl JumpBlock {
 
     /// The jumps' entries of a vector over all unknowns.
     pub(super) fn gather(&self, vector: &[DVec3]) -> Vec<DVec3> {
-        let entries = self.unknowns.iter();
+        let entries = self.unknowns.par_iter();
         entries.map(|&unknown| vector[unknown as usize]).collect()
     }
 

@@ -11,6 +11,7 @@ use lie_core::Rock;
 use lie_mesh::Mesh;
 
 use super::{Analysis, Condensed, Iterative, LinearFailure, NodeOrder, TangentSolver, Whole};
+use crate::estimate::estimate_bytes;
 use crate::newton::subspace_bytes;
 use crate::pattern::Pattern;
 use crate::points::Points;
@@ -107,6 +108,8 @@ pub struct Workload {
     pub is_path_dependent: bool,
     /// Factor on the iterations of the multigrid, 1 for cells of about equal edges.
     pub difficulty: f64,
+    /// Memory that the estimate of errors takes while the solver stands (bytes).
+    pub estimate_bytes: usize,
 }
 
 impl Workload {
@@ -119,6 +122,7 @@ impl Workload {
             is_smooth: laws().all(|law| law.is_smooth()),
             is_path_dependent: laws().any(|law| law.is_path_dependent()),
             difficulty: difficulty(&problem.mesh, &problem.rocks),
+            estimate_bytes: estimate_bytes(&problem.mesh),
         }
     }
 
@@ -142,7 +146,7 @@ pub struct Prediction {
     pub method: LinearMethod,
     /// Time of all linear solves of the run on an ordinary machine (s).
     pub seconds: f64,
-    /// Memory that the solver needs beside mesh and matrix (bytes).
+    /// Memory that solver and error estimate need beside mesh and matrix (bytes).
     pub memory_bytes: usize,
     /// Entries of its Cholesky factor; 0 if it has none.
     pub factor_entries: usize,
@@ -283,7 +287,7 @@ fn predict(
     Prediction {
         method,
         seconds: seconds + ANALYSIS * 3.0 * unknowns.points.len() as f64,
-        memory_bytes: analysis.memory_bytes() + extra as usize,
+        memory_bytes: analysis.memory_bytes() + extra as usize + workload.estimate_bytes,
         factor_entries: analysis.factor_entries(),
         operations: analysis.factor_operations(),
     }
@@ -314,7 +318,7 @@ fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
         method: LinearMethod::Iterative,
         seconds: blocks * (SETUP_BYTES + workload.difficulty * iterations * ITERATION_BYTES)
             / BYTES,
-        memory_bytes: (blocks * MEMORY_BYTES) as usize + recycled,
+        memory_bytes: (blocks * MEMORY_BYTES) as usize + recycled + workload.estimate_bytes,
         factor_entries: 0,
         operations: 0.0,
     }
