@@ -3,7 +3,9 @@
 use lie_mesh::Shape;
 use lie_solver::LinearMethod;
 
-use crate::equal_terms::{inside, profile};
+use crate::crack::{inside, profile};
+use crate::measured::megabytes;
+use crate::memory::{Peak, Place, Run, SHAPES, measured};
 use crate::pressed::bent_crack;
 use crate::studies::{Effort, Finding, Study, Table};
 use crate::treatments::{Point, Solved, Treatment, apart, solve, traction_error};
@@ -41,6 +43,16 @@ fn contact(shape: Shape, parts: usize, linear: LinearMethod) -> Option<Solved> {
     solve(&bent_crack(shape, parts), Treatment::Contact, 0.0, linear)
 }
 
+/// Memory that the same takes in a process of its own.
+fn memory(shape: Shape, parts: usize, linear: LinearMethod) -> Option<Peak> {
+    measured(&Run {
+        place: Place::Crack(shape, parts),
+        treatment: Treatment::Contact,
+        stiffness: 0.0,
+        linear,
+    })
+}
+
 fn run_cells(effort: Effort) -> Finding {
     let (sizes, finest): (&[usize], usize) = match effort {
         Effort::Quick => (&[1], 2),
@@ -56,10 +68,11 @@ fn run_cells(effort: Effort) -> Finding {
         "largest opening, error",
         "resultant, error",
         "seconds",
+        "peak memory measured (MB)",
     ]);
     let mut misses = Vec::new();
     let mut errors = Vec::new();
-    for shape in [Shape::Tet4, Shape::Hex8, Shape::Tet10, Shape::Hex20] {
+    for shape in SHAPES {
         for &parts in sizes {
             let case = format!("{shape:?}, 1/{} m", 8 * parts);
             let Some(solved) = contact(shape, parts, LinearMethod::Direct) else {
@@ -77,6 +90,9 @@ fn run_cells(effort: Effort) -> Finding {
                 format!("{:+.2} %", 100.0 * opening),
                 format!("{:+.2} %", 100.0 * force),
                 format!("{:.2}", solved.seconds),
+                megabytes(memory(shape, parts, LinearMethod::Direct), |peak| {
+                    peak.process
+                }),
             ]);
         }
     }
@@ -121,7 +137,9 @@ fn run_solvers(effort: Effort) -> Finding {
         "traction error",
         "openings against direct / b0",
         "seconds",
-        "memory predicted (MB)",
+        "peak memory measured (MB)",
+        "of it during the solve (MB)",
+        "solve, memory predicted (MB)",
     ]);
     let mut misses = Vec::new();
     let mut farthest: f64 = 0.0;
@@ -134,6 +152,7 @@ fn run_solvers(effort: Effort) -> Finding {
             };
             let differs = apart(&solved.points, &direct.points);
             farthest = farthest.max(differs);
+            let peak = memory(Shape::Hex8, parts, method);
             let error = traction_error(&inside(&solved.points), |point| reference(point.x));
             table.push([
                 method.to_string(),
@@ -144,6 +163,8 @@ fn run_solvers(effort: Effort) -> Finding {
                 format!("{error:.3e}"),
                 format!("{differs:.0e}"),
                 format!("{:.2}", solved.seconds),
+                megabytes(peak, |peak| peak.process),
+                megabytes(peak, |peak| peak.solve),
                 format!("{:.0}", solved.memory as f64 / 1e6),
             ]);
         }

@@ -38,6 +38,12 @@ pub fn inclined_traction() -> f64 {
     -PRESSURE * DIP.to_radians().cos().powi(2)
 }
 
+/// Slip of the inclined joint (m) in the same stress.
+pub fn inclined_slip(scene: &Pressed) -> f64 {
+    let (sine, cosine) = DIP.to_radians().sin_cos();
+    PRESSURE * sine * cosine / scene.shear
+}
+
 /// A column with a joint that dips 50 degrees, under 10 MPa on top, free to all sides: walls may slip.
 pub fn inclined() -> Pressed {
     let h = 0.3;

@@ -44,7 +44,7 @@ pub const ALL: [(Treatment, &str); 6] = [
 
 impl Treatment {
     /// Its law; that of the augmented Lagrangian is only asked for its shear.
-    fn closure(self, stiffness: f64) -> Closure {
+    pub fn closure(self, stiffness: f64) -> Closure {
         let kind = match self {
             Self::Contact | Self::Augmented => return Closure::contact(0.0),
             Self::Linear => ClosureKind::Linear,
@@ -117,11 +117,22 @@ pub fn solve(
     let problem = scene.with(treatment.closure(stiffness));
     let discretisation = Discretisation::of(&problem).ok()?;
     let system = System::assemble(&problem, discretisation);
+    solve_assembled(&system, treatment, stiffness, linear)
+}
+
+/// The same of a system that is assembled with the law of the treatment.
+pub fn solve_assembled(
+    system: &System<'_>,
+    treatment: Treatment,
+    stiffness: f64,
+    linear: LinearMethod,
+) -> Option<Solved> {
+    let (problem, settings) = (system.problem, settings(linear));
     let start = Instant::now();
     let mut solved = if treatment == Treatment::Augmented {
-        by_multipliers(&problem, &system, stiffness, settings(linear))?
+        by_multipliers(problem, system, stiffness, settings)?
     } else {
-        by_law(&problem, &system, settings(linear))?
+        by_law(problem, system, settings)?
     };
     solved.seconds = start.elapsed().as_secs_f64();
     Some(solved)

@@ -1,7 +1,9 @@
 //! What the comparison on equal terms says in words.
 
-use crate::equal_terms::{Curve, of, range};
-use crate::treatments::Treatment;
+use crate::equal_terms::of;
+use crate::measured::{Case, Curve, range};
+use crate::memory::Peak;
+use crate::treatments::{Solved, Treatment};
 
 /// The sentences that both scenes share: closure, and iterations.
 pub fn closure_text(curves: &[Curve]) -> String {
@@ -74,7 +76,7 @@ pub fn ours(curves: &[Curve]) -> String {
     let laws = || {
         curves
             .iter()
-            .filter(|c| c.treatment != Treatment::Augmented)
+            .filter(|c| c.cases[0].treatment != Treatment::Augmented)
     };
     let most = laws().map(|curve| range(curve, |_, solved| solved.newton as f64).1);
     let contact = range(of(curves, Treatment::Contact), |case, _| case.closure).1;
@@ -86,4 +88,53 @@ pub fn ours(curves: &[Curve]) -> String {
         cases - failures,
         most.fold(0.0, f64::max)
     )
+}
+
+/// What all cases took of memory, measured and predicted.
+pub fn memory_text(curves: &[Curve]) -> String {
+    let over = |of: &dyn Fn(&Case, &Solved) -> f64| {
+        let each = curves.iter().map(|curve| range(curve, of));
+        each.fold((f64::INFINITY, 0.0_f64), |all, one| {
+            (all.0.min(one.0), all.1.max(one.1))
+        })
+    };
+    let peak = |case: &Case, of: &dyn Fn(Peak) -> usize| {
+        case.peak.map_or(f64::NAN, |peak| of(peak) as f64 / 1e6)
+    };
+    let solve = over(&|case, _| peak(case, &|peak| peak.solve));
+    let process = over(&|case, _| peak(case, &|peak| peak.process));
+    let predicted = over(&|_, solved| solved.memory as f64 / 1e6);
+    format!(
+        "Memory is measured: every case runs once more in a process of its own, whose resident memory grows by {} MB at most during \
+         the solve; {} MB were predicted for the linear solver. The whole process has {} MB at its peak, with mesh and \
+         assembly. On one mesh all have the same matrix; what they differ by is mostly threads and allocator.",
+        between(solve),
+        between(predicted),
+        between(process)
+    )
+}
+
+/// How many cases of some curves converged, and in how many iterations.
+pub fn solved_text(curves: &[Curve]) -> String {
+    let cases: usize = curves.iter().map(|curve| curve.cases.len()).sum();
+    let failures: usize = curves.iter().map(Curve::failures).sum();
+    let count = |curve: &Curve| range(curve, |_, solved| solved.newton as f64);
+    let fewest = curves.iter().map(|curve| count(curve).0);
+    let most = curves.iter().map(|curve| count(curve).1);
+    format!(
+        "{} of {cases} cases converge in {} to {} iterations, one factorisation each",
+        cases - failures,
+        fewest.fold(f64::INFINITY, f64::min),
+        most.fold(0.0, f64::max)
+    )
+}
+
+/// Smallest and largest, to a tenth; one number if they are the same.
+fn between((low, high): (f64, f64)) -> String {
+    let [low, high] = [low, high].map(|value| format!("{value:.1}"));
+    if low == high {
+        low
+    } else {
+        format!("{low} to {high}")
+    }
 }

@@ -7,6 +7,7 @@ use lie_solver::{
     Discretisation, Fracture, NewtonSettings, Outcome, Problem, Solution, StepRecord, Support,
 };
 
+use crate::pressed;
 use crate::scenes::{self, EXACT};
 
 const FREE: Option<f64> = None;
@@ -235,6 +236,22 @@ fn opening_and_closing_leaves_nothing_behind() {
             if load > 0.8 {
                 assert_eq!(point.traction, DVec3::ZERO);
             }
+        }
+    }
+}
+
+/// Walls in contact slip to and fro on an inclined joint. Statics knows the traction of every facet (uniaxial
+/// stress), and steps must not add to its error: 1e-12 is round-off.
+#[test]
+fn contact_that_slips_keeps_its_traction_over_many_steps() {
+    let problem = pressed::inclined().with(Closure::contact(0.0));
+    let path: Vec<f64> = (0..20).map(|step| [1.0, 0.5][step % 2]).collect();
+    for (load, (record, solution)) in path.iter().zip(walk(&problem, &path)) {
+        assert!(record.converged(), "{:?}", record.outcome);
+        let exact = load * pressed::inclined_traction();
+        for point in &solution.facet_points {
+            let error = (point.normal_traction / exact - 1.0).abs();
+            assert!(error < 1e-12, "load {load}: {error:e}");
         }
     }
 }

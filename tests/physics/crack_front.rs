@@ -8,15 +8,15 @@ use glam::DVec3;
 use lie_core::{ClosureKind, FacetQuadrature};
 use lie_mesh::Shape;
 use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{Discretisation, Support};
+use lie_solver::{Discretisation, Problem, Support};
 
 use crate::scenes::{self, ROCK, joint};
 
 /// Cubes along an edge.
 pub const CUBES: usize = 8;
 
-/// Places of the facet points of the joint ahead of the crack, and the normal tractions there (Pa).
-pub fn tractions(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> Vec<(DVec3, f64)> {
+/// The cube with its crack and its joint.
+pub fn problem(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> Problem {
     let on: Vec<_> = (0..6)
         .map(|face| move |x: [f64; 3]| x[face / 2] == f64::from(face as u32 % 2))
         .collect();
@@ -48,6 +48,12 @@ pub fn tractions(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> V
     scenes::support(&mut problem, "top", pull(1e-4));
     scenes::support(&mut problem, "left", Support::Symmetry);
     scenes::support(&mut problem, "front", Support::Symmetry);
+    problem
+}
+
+/// Places of the facet points of the joint ahead of the crack, and the normal tractions there (Pa).
+pub fn tractions(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> Vec<(DVec3, f64)> {
+    let problem = problem(shape, quadrature, stiffness);
     let solution = scenes::solve(&problem);
     let interface = Discretisation::of(&problem).expect("supported").interface;
     let nodes = &problem.mesh.facets.elements.nodes;

@@ -1,7 +1,11 @@
 //! Opening, closing, and the way there: cycles, and the number of load steps.
 
+use lie_solver::Discretisation;
+
 use super::{Found, Page};
-use crate::studies::{Effort, Finding, cycles, increments, opening, steps};
+use crate::studies::{
+    Effort, Finding, Table, cycles, entry, increments, largest, most, opening, steps,
+};
 
 pub const PAGE: Page = Page {
     name: "paths",
@@ -14,6 +18,88 @@ one step leads where a hundred do. A column with a level joint, moved by z at it
     opening w and traction t   of   w(t) + t H/E = z   in compression,   w = z and t = 0   once open without tension",
     run,
 };
+
+/// Unknowns of the largest scene.
+fn unknowns() -> usize {
+    let scenes = [
+        steps::problems(Effort::Full),
+        cycles::problems(Effort::Full),
+    ];
+    let counts = scenes.iter().flatten().map(|(_, problem)| {
+        let discretisation = Discretisation::of(problem).expect("supported");
+        discretisation.unknown_count()
+    });
+    counts.max().unwrap_or(0)
+}
+
+/// The numbers of a column in the rows that a test of their second entry takes; what failed is not a number.
+fn numbers(finding: &Finding, column: &str, rows: fn(&str) -> bool) -> Vec<f64> {
+    let Table { head, rows: all } = &finding.table;
+    let place = head.iter().position(|head| *head == column);
+    let place = place.expect("a column of the study");
+    let own = all.iter().filter(|row| rows(&row[1]));
+    own.map(|row| row[place].parse().unwrap_or(f64::NAN))
+        .collect()
+}
+
+/// What each study of runs compares, in how many cases, and how far apart they are at most.
+fn summary([opened, cycled, stepped, _]: &[Finding; 4]) -> Table {
+    let mut table = Table::new(&[
+        "study",
+        "compared with",
+        "cases",
+        "most Newton iterations of a step",
+        "largest difference (relative)",
+    ]);
+    let all: fn(&str) -> bool = |_| true;
+    let cycles = |case: &str| case.ends_with("cycles");
+    let floats = |case: &str| case.starts_with("floating");
+    let newton = "most Newton iterations of a step";
+    let form = "error against the closed form";
+    let mut row = |study: &str, with: &str, counts: Vec<f64>, differences: Vec<f64>| {
+        let converged = |count: f64| count.is_finite().then_some(count as usize);
+        let counts = counts.into_iter().map(converged);
+        table.push([
+            study.to_owned(),
+            with.to_owned(),
+            differences.len().to_string(),
+            entry(most(counts)),
+            format!("{:.2e}", largest(differences)),
+        ]);
+    };
+    let of = numbers;
+    row(
+        "opening and closing",
+        "closed form",
+        of(opened, newton, cycles),
+        of(opened, form, cycles),
+    );
+    row(
+        "opening and closing",
+        "first cycle",
+        of(opened, newton, cycles),
+        of(opened, "hysteresis", cycles),
+    );
+    row(
+        "floating block",
+        "its weight",
+        of(opened, newton, floats),
+        of(opened, form, floats),
+    );
+    row(
+        "loading and unloading",
+        "first cycle",
+        of(cycled, newton, all),
+        of(cycled, "hysteresis", all),
+    );
+    row(
+        "1 to 100 load steps",
+        "one step",
+        of(stepped, "most of a step", all),
+        of(stepped, "difference from one step", all),
+    );
+    table
+}
 
 fn run() -> Found {
     let findings: [Finding; 4] = [
@@ -36,6 +122,7 @@ fn run() -> Found {
         .chain([held.as_str()])
         .collect::<Vec<_>>()
         .join(" ");
+    let summary = summary(&findings);
     let [opened, cycled, stepped, incremented] = findings;
     Found {
         problem: "The studies of the stability map on joints without tension that open and close for 20 cycles, blocks that float in between, \
@@ -43,7 +130,7 @@ fn run() -> Found {
                   incremental form."
             .to_owned(),
         reached: format!("cycles: {}; steps: {}", cycled.ours, stepped.ours),
-        unknowns: 0,
+        unknowns: unknowns(),
         charts: [&opened, &cycled, &stepped, &incremented]
             .into_iter()
             .flat_map(|finding| finding.charts.clone())
@@ -51,7 +138,9 @@ fn run() -> Found {
             .collect(),
         shows,
         tables: vec![
+            ("paths", summary),
             ("paths-opening", opened.table),
+            ("paths-cycles", cycled.table),
             ("paths-steps", stepped.table),
             ("paths-increments", incremented.table),
         ],

@@ -149,22 +149,25 @@ fn table(cases: &[Case], misses: &mut Vec<String>) -> Table {
     table
 }
 
-fn run(effort: Effort) -> Finding {
-    let (cycles, scenes): (usize, &[(&str, f64)]) = match effort {
-        Effort::Quick => (3, &[("x-junction", 0.3)]),
-        Effort::Full => (
-            20,
-            &[
-                ("x-junction", 0.25),
-                ("t-junction", 0.25),
-                ("three-planes", 0.25),
-                ("closing-blocks", 0.4),
-            ],
-        ),
+/// Its scenes.
+pub fn problems(effort: Effort) -> Vec<(&'static str, Problem)> {
+    let scenes: &[(&str, f64)] = match effort {
+        Effort::Quick => &[("x-junction", 0.3)],
+        Effort::Full => &[
+            ("x-junction", 0.25),
+            ("t-junction", 0.25),
+            ("three-planes", 0.25),
+            ("closing-blocks", 0.4),
+        ],
     };
+    let of = |&(scene, h)| (scene, scenes::scene_file(scene, &[("h", h)]));
+    scenes.iter().map(of).collect()
+}
+
+fn run(effort: Effort) -> Finding {
+    let cycles = if effort == Effort::Quick { 3 } else { 20 };
     let mut cases = Vec::new();
-    for &(scene, h) in scenes {
-        let problem = scenes::scene_file(scene, &[("h", h)]);
+    for (scene, problem) in problems(effort) {
         cases.push(case(format!("{scene}, logarithmic"), &problem, cycles));
         cases.push(case(
             format!("{scene}, linear"),

@@ -21,6 +21,9 @@ const RULES: [(FacetQuadrature, &str); 2] = [
     (FacetQuadrature::Nodal, "nodal"),
 ];
 
+/// Cells of the whole study.
+pub const SHAPES: [Shape; 3] = [Shape::Tet4, Shape::Tet10, Shape::Hex8];
+
 /// One curve: a shape and a rule.
 struct Curve {
     shape: Shape,
@@ -42,10 +45,7 @@ fn worst(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> (f64, f64
 fn curves(effort: Effort) -> Vec<Curve> {
     let (shapes, exponents): (&[Shape], Vec<i32>) = match effort {
         Effort::Quick => (&[Shape::Tet4], vec![-3, 4, 8]),
-        Effort::Full => (
-            &[Shape::Tet4, Shape::Tet10, Shape::Hex8],
-            (-3..=8).collect(),
-        ),
+        Effort::Full => (&SHAPES, (-3..=8).collect()),
     };
     let mut curves = Vec::new();
     for &shape in shapes {

@@ -61,11 +61,8 @@ impl Case {
     }
 }
 
-fn cases(effort: Effort) -> Vec<Case> {
-    let steps: &[usize] = match effort {
-        Effort::Quick => &[1, 10],
-        Effort::Full => &[1, 2, 5, 10, 20, 50, 100],
-    };
+/// Its scenes.
+pub fn problems(effort: Effort) -> Vec<(&'static str, Problem)> {
     let mut problems = vec![
         ("column", column(EXACT, 20.0)),
         ("three planes", three_planes(EXACT, 20.0)),
@@ -80,8 +77,16 @@ fn cases(effort: Effort) -> Vec<Case> {
             scenes::scene_file("closing-blocks", &[("h", 0.4)]),
         ));
     }
+    problems
+}
+
+fn cases(effort: Effort) -> Vec<Case> {
+    let steps: &[usize] = match effort {
+        Effort::Quick => &[1, 10],
+        Effort::Full => &[1, 2, 5, 10, 20, 50, 100],
+    };
     let mut cases: Vec<Case> = Vec::new();
-    for (scene, problem) in problems {
+    for (scene, problem) in problems(effort) {
         let mut one: Option<Solution> = None;
         for &steps in steps {
             let loads = (1..=steps).map(|step| step as f64 / steps as f64);

@@ -17,6 +17,7 @@ use crate::pattern::Lists;
 use crate::points::Points;
 use crate::problem::Problem;
 use crate::schedule::Load;
+use crate::shared_walls;
 use crate::supports::Supports;
 
 /// One point of one facet.
@@ -132,7 +133,7 @@ impl Interface {
             interface.term_offset.push(interface.terms.len());
         }
         if problem.facet_quadrature != FacetQuadrature::Gauss {
-            share_springs(problem, points, &mut interface.points);
+            shared_walls::share(problem, points, &mut interface.points);
         }
         interface.connect();
         interface
@@ -266,35 +267,6 @@ impl Interface {
             }
         }
         blocks
-    }
-}
-
-/// Gives the facet points between the same two walls one spring, their mean by area. Where walls in
-/// contact or stuck are as stiff as their springs say, springs that differ would share a uniform
-/// traction unevenly among the facets around a node.
-fn share_springs(problem: &Problem, points: &Points, facet_points: &mut [FacetPoint]) {
-    let facets = &problem.mesh.facets;
-    let slots = std::iter::zip(&facets.plus_slots, &facets.minus_slots);
-    let wall = |slot: u32| points.of_cell_node[slot as usize];
-    let walls = slots.map(|(&plus, &minus)| (wall(plus), wall(minus)));
-    let mut order: Vec<((u32, u32), usize)> = walls.zip(0..facet_points.len()).collect();
-    order.sort_unstable();
-    for group in order.chunk_by(|a, b| a.0 == b.0) {
-        let (mut area, mut weighed, mut sum) = (0.0, 0.0, 0.0);
-        for &(_, index) in group {
-            let point = &facet_points[index];
-            area += point.area;
-            weighed += point.area * point.spring;
-            sum += point.spring;
-        }
-        let mean = if area > 0.0 {
-            weighed / area
-        } else {
-            sum / group.len() as f64
-        };
-        for &(_, index) in group {
-            facet_points[index].spring = mean;
-        }
     }
 }
 

@@ -24,6 +24,7 @@ mod points;
 mod problem;
 mod rigid_modes;
 mod schedule;
+mod shared_walls;
 mod solution;
 mod supports;
 mod system;
