@@ -156,6 +156,9 @@ pub fn hold_promise_with_friction(misses: &mut Vec<String>, case: &str, record: 
 
 /// The largest of some numbers; not a number if one of them is not.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    let values = values.into_iter();
-    values.fold(0.0, |most, value| if most >= value { most } else { value })
+    let larger = |most: f64, value: f64| match most.is_nan() || most >= value {
+        true => most,
+        false => value,
+    };
+    values.into_iter().fold(0.0, larger)
 }

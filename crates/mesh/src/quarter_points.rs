@@ -54,6 +54,16 @@ impl Mesh {
         is_front
     }
 
+    /// Cells with a node among [`Self::front_nodes`].
+    pub fn front_cells(&self) -> Vec<bool> {
+        let is_front = self.front_nodes();
+        let touches = |cell: usize| {
+            let mut nodes = self.cells.nodes_of(cell).iter();
+            nodes.any(|&node| is_front[node as usize])
+        };
+        (0..self.cells.len()).map(touches).collect()
+    }
+
     /// Moves the middles of faces and cells as their edges say: by half the sum over the edges of a quadrangle,
     /// by a quarter of it in a hexahedron, because corners stay.
     fn drag_middles(&self, moves: &mut [Option<DVec3>]) {

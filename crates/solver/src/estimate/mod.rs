@@ -68,13 +68,9 @@ impl StressError {
     /// Gives cells at crack fronts the density of error of the cells next to them: no polynomial follows the
     /// stresses of quarter-point elements.
     fn take_over_at_fronts(&mut self, mesh: &Mesh) {
-        let is_front = mesh.front_nodes();
-        let at_front = |cell: usize| {
-            let mut nodes = mesh.cells.nodes_of(cell).iter();
-            nodes.any(|&node| is_front[node as usize])
-        };
+        let is_at_front = mesh.front_cells();
         let (at_front, beside): (Vec<usize>, Vec<usize>) =
-            (0..mesh.cells.len()).partition(|&cell| at_front(cell));
+            (0..mesh.cells.len()).partition(|&cell| is_at_front[cell]);
         let mut around = vec![(0.0, 0.0); mesh.nodes.len()];
         for cell in beside {
             for &node in mesh.cells.nodes_of(cell) {

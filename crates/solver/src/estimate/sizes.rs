@@ -28,7 +28,7 @@ const AIM: f64 = 0.8;
 pub fn target_sizes(mesh: &Mesh, errors: &[f64], groups: &[u32], tolerance: f64) -> Vec<f64> {
     let is_quadratic = mesh.cells.shapes.iter().any(|shape| shape.is_quadratic());
     let rate = if is_quadratic { 4.0 } else { 2.0 };
-    let at_front = at_fronts(mesh);
+    let at_front = mesh.front_cells();
     let last = groups.iter().filter(|&&group| group != u32::MAX).max();
     let mut sums = vec![Sums::default(); last.map_or(0, |&last| last as usize + 1)];
     for (cell, &group) in groups.iter().enumerate() {
@@ -106,16 +106,6 @@ impl Sums {
 /// `s_K` of a cell away from fronts.
 fn smooth_factor(error: f64, multiplier: f64, rate: f64) -> f64 {
     (3.0 / (rate * multiplier * error)).powf(1.0 / (rate + 3.0))
-}
-
-/// Cells that touch the tips of fractures, where both walls are one.
-fn at_fronts(mesh: &Mesh) -> Vec<bool> {
-    let is_front = mesh.front_nodes();
-    let touches = |cell: usize| {
-        let mut nodes = mesh.cells.nodes_of(cell).iter();
-        nodes.any(|&node| is_front[node as usize])
-    };
-    (0..mesh.cells.len()).map(touches).collect()
 }
 
 /// Median distance of the corners of a cell (m): in a layer of flat or slender cells the size in its
