@@ -159,45 +159,38 @@ fn failed_text(curves: &[Curve]) -> String {
     )
 }
 
+/// A chart to draw: the name of its file, what of the law it shows, its axis, the measure.
+type Drawn = (&'static str, &'static str, Axis, fn(&Case) -> f64);
+
 fn charts(
     curves: &[Curve],
-    x: &str,
-    of_law: Vec<(&'static str, Chart)>,
-    names: [&'static str; 3],
     law: &str,
+    x: &str,
+    drawn: impl IntoIterator<Item = Drawn>,
 ) -> Vec<(&'static str, Chart)> {
-    let draw = |what: &str, y: &str, of: &dyn Fn(&Case) -> f64| {
+    let drawn = drawn.into_iter();
+    let draw = |(name, what, y, of): Drawn| {
         let title = format!("{law}: {what}");
-        chart(curves, &title, x, Axis::logarithmic(y).from(1e-16), of)
+        (name, chart(curves, &title, x, y, of))
     };
-    let mut charts = of_law;
-    charts.push((
-        names[0],
-        draw("traction", "error of the traction, L2", &|case| {
-            case.traction
-        }),
-    ));
-    charts.push((
-        names[1],
-        chart(
-            curves,
-            &format!("{law}: iterations"),
-            x,
-            Axis::linear("Newton iterations"),
-            newton,
-        ),
-    ));
-    charts.push((
-        names[2],
-        chart(
-            curves,
-            &format!("{law}: time"),
-            x,
-            Axis::logarithmic("seconds"),
-            seconds,
-        ),
-    ));
-    charts
+    drawn.map(draw).collect()
+}
+
+/// Axes that both laws have charts of.
+fn traction_axis() -> Axis {
+    Axis::logarithmic("error of the traction, L2").from(1e-16)
+}
+
+fn newton_axis() -> Axis {
+    Axis::linear("Newton iterations")
+}
+
+fn seconds_axis() -> Axis {
+    Axis::logarithmic("seconds")
+}
+
+fn in_table(curve: &Curve, case: &Case) -> [String; 2] {
+    [curve.name.clone(), format!("{:e}", case.parameter)]
 }
 
 fn run_cutoff(effort: Effort) -> Finding {
@@ -207,28 +200,27 @@ fn run_cutoff(effort: Effort) -> Finding {
         contrasts: [1e-4, 1e-2, 1.0],
     };
     let curves = sweep.curves(effort);
-    let x = "cutoff b_min / b0; lines: scene, K_n0";
-    let axis = || Axis::logarithmic("overlap of the walls / b0").from(1e-12);
-    let of_law = vec![(
-        "cutoff-overlap",
-        chart(
-            &curves,
-            "Cutoff of the logarithmic law: overlap",
-            x,
-            axis(),
-            overlap,
-        ),
-    )];
-    let names = ["cutoff-traction", "cutoff-iterations", "cutoff-seconds"];
+    let overlap_axis = Axis::logarithmic("overlap of the walls / b0").from(1e-12);
+    let drawn: [Drawn; 4] = [
+        ("cutoff-overlap", "overlap", overlap_axis, overlap),
+        ("cutoff-traction", "traction", traction_axis(), |case| {
+            case.traction
+        }),
+        ("cutoff-iterations", "iterations", newton_axis(), newton),
+        ("cutoff-seconds", "time", seconds_axis(), seconds),
+    ];
     let most = worst(&curves, |case, _| overlap(case));
     Finding {
         breaks: format!("walls overlap by up to {most:.1} b0"),
         ours: solved_text(&curves),
         paragraph: cutoff_text(&curves),
-        charts: charts(&curves, x, of_law, names, "Cutoff of the logarithmic law"),
-        table: table(&curves, ["scene and K_n0", "b_min / b0"], |curve, case| {
-            [curve.name.clone(), format!("{:e}", case.parameter)]
-        }),
+        charts: charts(
+            &curves,
+            "Cutoff of the logarithmic law",
+            "cutoff b_min / b0; lines: scene, K_n0",
+            drawn,
+        ),
+        table: table(&curves, ["scene and K_n0", "b_min / b0"], in_table),
         misses: misses(&curves),
     }
 }
@@ -261,35 +253,27 @@ fn run_largest(effort: Effort) -> Finding {
         contrasts: [1e-4, 1.0, 1e4],
     };
     let curves = sweep.curves(effort);
-    let x = "largest closure v_m / b0; lines: scene, K_n0";
-    let closure = Axis::logarithmic("deepest closure / b0").from(1e-12);
-    let apart = Axis::logarithmic("mean difference of the openings / b0").from(1e-12);
-    let of_law = vec![
+    let closure_axis = Axis::logarithmic("deepest closure / b0").from(1e-12);
+    let apart_axis = Axis::logarithmic("mean difference of the openings / b0").from(1e-12);
+    let against = "openings against contact";
+    let drawn: [Drawn; 5] = [
+        ("max-closure-closure", "closure", closure_axis, |case| {
+            case.closure
+        }),
+        ("max-closure-apart", against, apart_axis, |case| case.apart),
         (
-            "max-closure-closure",
-            chart(
-                &curves,
-                "Largest closure of the hyperbolic law: closure",
-                x,
-                closure,
-                |case| case.closure,
-            ),
+            "max-closure-traction",
+            "traction",
+            traction_axis(),
+            |case| case.traction,
         ),
         (
-            "max-closure-apart",
-            chart(
-                &curves,
-                "Largest closure of the hyperbolic law: openings against contact",
-                x,
-                apart,
-                |case| case.apart,
-            ),
+            "max-closure-iterations",
+            "iterations",
+            newton_axis(),
+            newton,
         ),
-    ];
-    let names = [
-        "max-closure-traction",
-        "max-closure-iterations",
-        "max-closure-seconds",
+        ("max-closure-seconds", "time", seconds_axis(), seconds),
     ];
     let mut misses = misses(&curves);
     for (curve, case) in curves
@@ -310,14 +294,11 @@ fn run_largest(effort: Effort) -> Finding {
         paragraph: largest_text(&curves),
         charts: charts(
             &curves,
-            x,
-            of_law,
-            names,
             "Largest closure of the hyperbolic law",
+            "largest closure v_m / b0; lines: scene, K_n0",
+            drawn,
         ),
-        table: table(&curves, ["scene and K_n0", "v_m / b0"], |curve, case| {
-            [curve.name.clone(), format!("{:e}", case.parameter)]
-        }),
+        table: table(&curves, ["scene and K_n0", "v_m / b0"], in_table),
         misses,
     }
 }

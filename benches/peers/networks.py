@@ -14,7 +14,7 @@ import re
 import statistics
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from driver import HERE, ROOT, build, linear_commands, run, say
 
@@ -62,7 +62,7 @@ def mesh(case):
     made = WORK / f"{case.name}-unfinished.msh"
     options = ["-format", "msh41", "-bin", "-o", made]
     if case.refined:
-        source = mesh(Case(case.network, case.sizes, case.pressure, case.thousands, case.rounds))
+        source = mesh(replace(case, refined=False))
         command = [GMSH, source, "-refine", *options]
     else:
         geometry = ROOT / "geometries" / case.network / f"{case.network}.geo"

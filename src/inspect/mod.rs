@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use lie_io::{load_msh, write_atomically, write_vtu};
 use lie_mesh::{Defect, Draft, Faces, Mesh, Survey};
-use lie_solver::{Discretisation, Problem, Workload, difficulty, estimate_bytes};
+use lie_solver::{Discretisation, Problem, Workload};
 
 use crate::output::Output;
 use crate::prepare::{self, folder_for, mesh_file};
@@ -72,18 +72,6 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
     load_msh(&file.path, &scratch)
 }
 
-/// What a mesh without a scene is predicted for.
-fn one_step(mesh: &Mesh) -> Workload {
-    Workload {
-        steps: 1,
-        is_nonlinear: true,
-        is_smooth: true,
-        is_path_dependent: false,
-        difficulty: difficulty(mesh, &[]),
-        estimate_bytes: estimate_bytes(mesh),
-    }
-}
-
 /// Fills the inspection as far as the input allows; returns what is wrong with it.
 fn look(
     draft: Draft,
@@ -113,7 +101,7 @@ fn look(
     let grid = grid::of(&mesh, &survey);
     defects.extend(write_vtu(&output.path("inspect.vtu"), &grid).err());
     let Some(scene) = scene else {
-        cost::predict(&mesh, None, one_step(&mesh), inspection);
+        cost::predict(&mesh, None, Workload::one_step(&mesh, &[]), inspection);
         return defects;
     };
     match bind(scene, mesh) {

@@ -1,8 +1,8 @@
 //! Adaptive meshes beside truly uniform ones: Sneddon's disc in a body small enough for both.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft::chart::{Chart, Series};
 
-use super::{Found, Page, count, digits, percent, reaches, slope};
+use super::{Found, Page, count, digits, error_chart, percent, reaches, slope};
 use crate::scene::{self, Outcome};
 use crate::studies::Table;
 
@@ -193,16 +193,9 @@ fn table(families: &[Family]) -> Table {
 
 fn chart(families: &[Family], measure: usize) -> Chart {
     let what = MEASURES[measure];
-    let series = families.iter();
-    let series = series.map(|family| Series::line(family.name, family.curve(measure)));
-    Chart {
-        series: series.collect(),
-        ..Chart::new(
-            format!("Disc in a cube: error of the {what}"),
-            Axis::logarithmic("unknowns"),
-            Axis::logarithmic(format!("error of the {what} (relative)")),
-        )
-    }
+    let lines = families.iter();
+    let lines = lines.map(|family| Series::line(family.name, family.curve(measure)));
+    error_chart("Disc in a cube", what, lines)
 }
 
 /// How many times fewer unknowns adaptive meshes take for the aim, in words.

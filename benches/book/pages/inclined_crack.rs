@@ -1,5 +1,6 @@
 //! A closed crack that slides against friction under compression.
 
+use glam::DVec3;
 use kluft::chart::{Axis, Chart, Series};
 
 use super::{Found, Page, half_circle, percent};
@@ -20,42 +21,55 @@ With E = 25 GPa, nu = 0.25, p = 100 MPa, psi = 20 degrees, phi = 30 degrees, a =
 
 const SIZES: [f64; 4] = [0.16, 0.08, 0.04, 0.02];
 
-/// A row of a table of sliding cracks.
-pub fn row(h: f64, outcome: &Outcome) -> [String; 8] {
-    let error = |measure: &str| percent(outcome.error(measure));
-    [
-        h.to_string(),
-        outcome.unknowns().to_string(),
-        format!("{:.5e}", outcome.value("max_slip")),
-        error("slip_l2"),
-        error("slip_l2_inside"),
-        error("slip_max_inside"),
-        error("normal_traction_l2"),
-        error("normal_traction_l2_inside"),
-    ]
+/// The table of a sliding crack: sizes at the front (m), and what came of them.
+pub fn table(cases: &[(f64, Outcome)]) -> Table {
+    let mut table = Table::new(&[
+        "h (m)",
+        "unknowns",
+        "largest slip (m)",
+        "slip, L2",
+        "slip, L2 inside",
+        "slip, largest inside",
+        "normal traction, L2",
+        "normal traction, L2 inside",
+    ]);
+    for (h, outcome) in cases {
+        let error = |measure: &str| percent(outcome.error(measure));
+        table.push([
+            h.to_string(),
+            outcome.unknowns().to_string(),
+            format!("{:.5e}", outcome.value("max_slip")),
+            error("slip_l2"),
+            error("slip_l2_inside"),
+            error("slip_max_inside"),
+            error("normal_traction_l2"),
+            error("normal_traction_l2_inside"),
+        ]);
+    }
+    table
 }
 
-/// Heads of its columns.
-pub const HEAD: [&str; 8] = [
-    "h (m)",
-    "unknowns",
-    "largest slip (m)",
-    "slip, L2",
-    "slip, L2 inside",
-    "slip, largest inside",
-    "normal traction, L2",
-    "normal traction, L2 inside",
-];
+/// Its errors in a few words.
+pub fn reached(outcome: &Outcome) -> String {
+    format!(
+        "slip in L2 {}, inside {}",
+        percent(outcome.error("slip_l2")),
+        percent(outcome.error("slip_l2_inside"))
+    )
+}
 
-/// Slip from the middle to the front, in 1e-3 m, of a closed form and some meshes.
-pub fn profiles(what: &str, height: f64, meshes: &[(f64, &Outcome)]) -> Chart {
+/// Slip over the `distance` from the middle, in 1e-3 m, of a closed form and some meshes.
+pub fn profiles(
+    what: &str,
+    height: f64,
+    distance: fn(DVec3) -> f64,
+    meshes: &[(f64, &Outcome)],
+) -> Chart {
     let profile = |&(h, outcome): &(f64, &Outcome)| {
         let nodes = outcome.facet_nodes();
-        let is_line = what.starts_with("Line");
-        let place = |x: glam::DVec3| if is_line { x.x.abs() } else { x.length() };
         let points = nodes
             .iter()
-            .map(|(x, found)| (place(*x), 1e3 * found.slip.length()));
+            .map(|(x, found)| (distance(*x), 1e3 * found.slip.length()));
         Series::scatter(
             format!("Kluft, h = {h} m"),
             scene::thinned(points.collect(), 1.0, 26),
@@ -77,14 +91,11 @@ pub fn profiles(what: &str, height: f64, meshes: &[(f64, &Outcome)]) -> Chart {
 fn run() -> Found {
     let mesh = |h: f64| format!("parameters = {{ h = {h} }}\norder = 2");
     let cases = SIZES.map(|h| (h, scene::run("inclined-crack", &mesh(h), &[])));
-    let mut table = Table::new(&HEAD);
-    for (h, outcome) in &cases {
-        table.push(row(*h, outcome));
-    }
     let [(coarsest, coarse), .., (finest, fine)] = &cases;
     let chart = profiles(
         "Line crack with friction",
         3.807_850e-3,
+        |x| x.x.abs(),
         &[(*coarsest, coarse), (*finest, fine)],
     );
     Found {
@@ -93,11 +104,7 @@ fn run() -> Found {
                   (`geometries/inclined-crack`). Second-order prisms with quarter points. \"Inside\" leaves out the \
                   tenth next to each front."
             .to_owned(),
-        reached: format!(
-            "slip in L2 {}, inside {}",
-            percent(fine.error("slip_l2")),
-            percent(fine.error("slip_l2_inside"))
-        ),
+        reached: reached(fine),
         unknowns: fine.unknowns(),
         shows: format!(
             "The whole crack slides and stays closed. With h = {finest} m the slip is {} off in L2, inside {} at most; with h = \
@@ -108,6 +115,6 @@ fn run() -> Found {
             percent(fine.error("normal_traction_l2_inside")),
         ),
         charts: vec![("inclined-crack-slip", chart)],
-        tables: vec![("inclined-crack", table)],
+        tables: vec![("inclined-crack", table(&cases))],
     }
 }

@@ -1,9 +1,10 @@
 //! A closed disc that slides against friction under compression.
 
-use super::inclined_crack::{HEAD, profiles, row};
+use glam::DVec3;
+
+use super::inclined_crack::{profiles, reached, table};
 use super::{Found, Page, percent};
 use crate::scene;
-use crate::studies::Table;
 
 pub const PAGE: Page = Page {
     name: "inclined-penny",
@@ -26,24 +27,16 @@ fn run() -> Found {
         format!("parameters = {{ h = {h}, h_disc = {middle}, grow = {grow} }}\norder = 2")
     };
     let cases = MESHES.map(|sizes| (sizes[0], scene::run("inclined-penny", &mesh(sizes), &[])));
-    let mut table = Table::new(&HEAD);
-    for (h, outcome) in &cases {
-        table.push(row(*h, outcome));
-    }
     let [(coarsest, coarse), .., (finest, fine)] = &cases;
     let meshes = [(*coarsest, coarse), (*finest, fine)];
-    let chart = profiles("Disc with friction", 2.770_460e-3, &meshes);
+    let chart = profiles("Disc with friction", 2.770_460e-3, DVec3::length, &meshes);
     Found {
         problem: "A closed disc of radius 1 m in a cube of side 20 m, pressed by 100 MPa at 20 degrees to its plane, slides \
                   against a friction of 30 degrees; its walls are in contact without a stiffness \
                   (`geometries/inclined-penny`). Second-order tetrahedra with quarter points. \"Inside\" leaves out the \
- ring next to the front that the scene names (`ring`, a share of the radius)."
+                  ring next to the front that the scene names (`ring`, a share of the radius)."
             .to_owned(),
-        reached: format!(
-            "slip in L2 {}, inside {}",
-            percent(fine.error("slip_l2")),
-            percent(fine.error("slip_l2_inside"))
-        ),
+        reached: reached(fine),
         unknowns: fine.unknowns(),
         shows: format!(
             "With h = {finest} m at the front the slip is {} off in L2 ({} with h = {coarsest} m), inside {} in L2 and {} at \
@@ -55,6 +48,6 @@ fn run() -> Found {
             percent(fine.error("normal_traction_l2_inside")),
         ),
         charts: vec![("inclined-penny-slip", chart)],
-        tables: vec![("inclined-penny", table)],
+        tables: vec![("inclined-penny", table(&cases))],
     }
 }

@@ -17,7 +17,7 @@ mod penny;
 mod single_joint;
 mod spherical_joint;
 
-use kluft::chart::Chart;
+use kluft::chart::{Axis, Chart, Series};
 
 use crate::studies::Table;
 
@@ -118,6 +118,18 @@ pub fn reaches(points: &[(f64, f64)], y: f64) -> (f64, bool) {
     let power = slope(pair[0], pair[1]);
     let x = pair[1].0 * (y / pair[1].1).powf(1.0 / power);
     (x, enclosing.is_none())
+}
+
+/// Errors of something over the unknowns, a line for each family of meshes.
+pub fn error_chart(body: &str, what: &str, families: impl Iterator<Item = Series>) -> Chart {
+    Chart {
+        series: families.collect(),
+        ..Chart::new(
+            format!("{body}: error of the {what}"),
+            Axis::logarithmic("unknowns"),
+            Axis::logarithmic(format!("error of the {what} (relative)")),
+        )
+    }
 }
 
 /// `sqrt(1 - x^2)` times a height, dense where it is steep.

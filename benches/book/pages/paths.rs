@@ -51,53 +51,69 @@ fn summary([opened, cycled, stepped, _]: &[Finding; 4]) -> Table {
         "most Newton iterations of a step",
         "largest difference (relative)",
     ]);
-    let all: fn(&str) -> bool = |_| true;
+    let all = |_: &str| true;
     let cycles = |case: &str| case.ends_with("cycles");
     let floats = |case: &str| case.starts_with("floating");
     let newton = "most Newton iterations of a step";
     let form = "error against the closed form";
-    let mut row = |study: &str, with: &str, counts: Vec<f64>, differences: Vec<f64>| {
+    let steps = "most of a step";
+    let first = "hysteresis";
+    let once = "difference from one step";
+    type Row<'a> = (
+        &'a str,
+        &'a str,
+        &'a Finding,
+        [&'a str; 2],
+        fn(&str) -> bool,
+    );
+    let rows: [Row<'_>; 5] = [
+        (
+            "opening and closing",
+            "closed form",
+            opened,
+            [newton, form],
+            cycles,
+        ),
+        (
+            "opening and closing",
+            "first cycle",
+            opened,
+            [newton, first],
+            cycles,
+        ),
+        (
+            "floating block",
+            "its weight",
+            opened,
+            [newton, form],
+            floats,
+        ),
+        (
+            "loading and unloading",
+            "first cycle",
+            cycled,
+            [newton, first],
+            all,
+        ),
+        (
+            "1 to 100 load steps",
+            "one step",
+            stepped,
+            [steps, once],
+            all,
+        ),
+    ];
+    for (study, with, finding, columns, rows) in rows {
+        let [counts, differences] = columns.map(|column| numbers(finding, column, rows));
         let converged = |count: f64| count.is_finite().then_some(count as usize);
-        let counts = counts.into_iter().map(converged);
         table.push([
             study.to_owned(),
             with.to_owned(),
             differences.len().to_string(),
-            entry(most(counts)),
+            entry(most(counts.into_iter().map(converged))),
             format!("{:.2e}", largest(differences)),
         ]);
-    };
-    let of = numbers;
-    row(
-        "opening and closing",
-        "closed form",
-        of(opened, newton, cycles),
-        of(opened, form, cycles),
-    );
-    row(
-        "opening and closing",
-        "first cycle",
-        of(opened, newton, cycles),
-        of(opened, "hysteresis", cycles),
-    );
-    row(
-        "floating block",
-        "its weight",
-        of(opened, newton, floats),
-        of(opened, form, floats),
-    );
-    row(
-        "loading and unloading",
-        "first cycle",
-        of(cycled, newton, all),
-        of(cycled, "hysteresis", all),
-    );
-    row(
-        "1 to 100 load steps",
-        "one step",
-        of(stepped, "most of a step", all),
-        of(stepped, "difference from one step", all),
-    );
+    }
     table
 }
 

@@ -2,7 +2,7 @@
 
 use kluft::chart::{Axis, Chart, Series};
 
-use super::{Found, Page, count, digits, half_circle, percent, reaches, slope};
+use super::{Found, Page, count, digits, error_chart, half_circle, percent, reaches, slope};
 use crate::scene::{self, Outcome};
 use crate::studies::Table;
 
@@ -138,17 +138,10 @@ fn table(families: &[Family]) -> Table {
     table
 }
 
-fn error_chart(families: &[Family], measure: &str, what: &str) -> Chart {
-    let series = families.iter();
-    let series = series.map(|family| Series::line(family.name, family.curve(measure)));
-    Chart {
-        series: series.collect(),
-        ..Chart::new(
-            format!("Disc under pressure: error of the {what}"),
-            Axis::logarithmic("unknowns"),
-            Axis::logarithmic(format!("error of the {what} (relative)")),
-        )
-    }
+fn chart(families: &[Family], measure: &str, what: &str) -> Chart {
+    let lines = families.iter();
+    let lines = lines.map(|family| Series::line(family.name, family.curve(measure)));
+    error_chart("Disc under pressure", what, lines)
 }
 
 /// Opening over the radius, in 1e-4 m.
@@ -209,8 +202,8 @@ fn run() -> Found {
         unknowns: unknowns.expect("cases"),
         tables: vec![("penny", table(&families))],
         charts: vec![
-            ("penny-opening", error_chart(&families, "opening_l2", "opening in L2")),
-            ("penny-volume", error_chart(&families, "volume", "volume")),
+            ("penny-opening", chart(&families, "opening_l2", "opening in L2")),
+            ("penny-volume", chart(&families, "volume", "volume")),
             ("penny-profile", profile_chart(&families)),
         ],
         shows: shows(&families),

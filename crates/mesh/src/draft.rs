@@ -36,6 +36,11 @@ impl Elements {
         }
     }
 
+    /// Whether any is of second order.
+    pub fn has_quadratic(&self) -> bool {
+        self.shapes.iter().any(|shape| shape.is_quadratic())
+    }
+
     /// Number of elements.
     pub fn len(&self) -> usize {
         self.shapes.len()

@@ -15,6 +15,7 @@ use lie_core::kernel::{self, MAX_NODES};
 use lie_mesh::Shape;
 use rayon::prelude::*;
 
+use crate::cell;
 use crate::matrix::BlockMatrix;
 use crate::pattern::{self, Pattern};
 use crate::points::Points;
@@ -40,20 +41,6 @@ pub(crate) struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Positions of the nodes of a cell (m), in the front of `positions`.
-    pub(crate) fn positions<'p>(
-        &self,
-        cell: usize,
-        positions: &'p mut [DVec3; MAX_NODES],
-    ) -> &'p [DVec3] {
-        let mesh = &self.problem.mesh;
-        let nodes = mesh.cells.nodes_of(cell);
-        for (position, &node) in positions.iter_mut().zip(nodes) {
-            *position = mesh.nodes[node as usize];
-        }
-        &positions[..nodes.len()]
-    }
-
     /// Slots of a node that lie in a range of slots.
     pub(crate) fn slots(&self, node: usize, within: &Range<usize>) -> &[u32] {
         let slots = self.pattern.slots.of(node);
@@ -155,7 +142,7 @@ impl<'a> Rock<'a> {
             let shape = elements.shapes[cell];
             if shape != Shape::Tet4 {
                 let mut positions = [DVec3::ZERO; MAX_NODES];
-                let positions = self.frame.positions(cell, &mut positions);
+                let positions = cell::positions(&problem.mesh, cell, &mut positions);
                 let matrix = &mut matrix[..positions.len().pow(2)];
                 kernel::stiffness(shape, positions, problem.rock(cell), matrix);
             }

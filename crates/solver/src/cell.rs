@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use lie_core::kernel::MAX_NODES;
 use lie_core::{Rock, SymmetricStress};
-use lie_mesh::Shape;
+use lie_mesh::{Mesh, Shape};
 
 use crate::points::Points;
 use crate::problem::Problem;
@@ -27,11 +27,9 @@ impl<'a> Cell<'a> {
         let mesh = &problem.mesh;
         let mut nodes = [DVec3::ZERO; MAX_NODES];
         let mut moved = [DVec3::ZERO; MAX_NODES];
-        let range = mesh.cells.range(cell);
-        let count = range.len();
-        for (local, slot) in range.enumerate() {
-            nodes[local] = mesh.nodes[mesh.cells.nodes[slot] as usize];
-            moved[local] = displacements[points.of_cell_node[slot] as usize];
+        let count = positions(mesh, cell, &mut nodes).len();
+        for (moved, slot) in moved.iter_mut().zip(mesh.cells.range(cell)) {
+            *moved = displacements[points.of_cell_node[slot] as usize];
         }
         Self {
             shape: mesh.cells.shapes[cell],
@@ -51,6 +49,19 @@ impl<'a> Cell<'a> {
     pub(crate) fn moved(&self) -> &[DVec3] {
         &self.moved[..self.count]
     }
+}
+
+/// Places of the nodes of a cell (m), in the front of `positions`.
+pub(crate) fn positions<'p>(
+    mesh: &Mesh,
+    cell: usize,
+    positions: &'p mut [DVec3; MAX_NODES],
+) -> &'p [DVec3] {
+    let nodes = mesh.cells.nodes_of(cell);
+    for (position, &node) in positions.iter_mut().zip(nodes) {
+        *position = mesh.nodes[node as usize];
+    }
+    &positions[..nodes.len()]
 }
 
 /// Components of a symmetric tensor.

@@ -9,6 +9,7 @@ use lie_core::kernel::{self, MAX_NODES};
 use rayon::prelude::*;
 
 use crate::assembly::Frame;
+use crate::cell;
 
 /// Cells of one task.
 const CELLS_PER_TASK: usize = 256;
@@ -89,7 +90,7 @@ fn of_cells(
     tasks.into_par_iter().for_each(|(cells, mut rest)| {
         let mut positions = [DVec3::ZERO; MAX_NODES];
         for cell in cells {
-            let positions = frame.positions(cell, &mut positions);
+            let positions = cell::positions(&frame.problem.mesh, cell, &mut positions);
             let (own, tail) = rest.split_at_mut(positions.len());
             of_cell(cell, positions, own);
             rest = tail;
@@ -138,7 +139,7 @@ fn prescribed_cell(
 ) -> [DVec3; MAX_NODES] {
     let cells = &frame.problem.mesh.cells;
     let mut positions = [DVec3::ZERO; MAX_NODES];
-    let positions = frame.positions(cell, &mut positions);
+    let positions = cell::positions(&frame.problem.mesh, cell, &mut positions);
     let count = positions.len();
     let matrix = &mut matrix[..count * count];
     let rock = frame.problem.rock(cell);

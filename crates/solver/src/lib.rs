@@ -33,12 +33,12 @@ pub use conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
     conjugate_gradients,
 };
-pub use estimate::{Estimator, MeanError, StressError, estimate_bytes, target_sizes};
+pub use estimate::{Estimator, MeanError, StressError, target_sizes};
 pub use interface::{FacetPoint, Interface};
 pub use linear::{
     Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,
     LinearSolution, NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
-    Whole, Workload, difficulty,
+    Whole, Workload,
 };
 pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;

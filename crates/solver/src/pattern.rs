@@ -145,7 +145,7 @@ pub enum CellOfSlot {
 }
 
 impl CellOfSlot {
-    pub(crate) fn of(cells: &Elements) -> Self {
+    fn of(cells: &Elements) -> Self {
         let count = |cell: usize| cells.offsets[cell + 1] - cells.offsets[cell];
         let first = if cells.is_empty() { 1 } else { count(0) };
         if (0..cells.len())

@@ -30,12 +30,13 @@ const ROUGH: f64 = 0.1;
 
 /// Memory (bytes) that estimates on a mesh take: patches, samples, polynomials, and what is known of each cell of
 /// two states.
-pub fn estimate_bytes(mesh: &Mesh) -> usize {
-    let cells = &mesh.cells;
+pub(crate) fn estimate_bytes(mesh: &Mesh) -> usize {
     const OF_SLOT: usize = 8;
     const OF_SAMPLE: usize = size_of::<DVec3>() + size_of::<SymmetricStress>();
     const OF_CELL: usize = 128;
-    let samples: usize = (cells.shapes.iter())
+    let cells = &mesh.cells;
+    let samples = cells.shapes.iter();
+    let samples: usize = samples
         .map(|&shape| recovery_rule(shape).samples.len())
         .sum();
     let terms = patches::terms(cells) * size_of::<SymmetricStress>();
@@ -115,7 +116,7 @@ impl Estimator {
     /// Prepares for a system.
     pub fn of(system: &System<'_>) -> Self {
         Self {
-            patches: Patches::of(system.problem, &system.discretisation.points),
+            patches: Patches::of(system.problem, &system.discretisation),
             nearest_fracture: reach::nearest_fracture(&system.problem.mesh),
         }
     }

@@ -5,15 +5,17 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use lie_core::{RulePoint, SymmetricStress, kernel, recovery_rule};
-use lie_mesh::Elements;
+use lie_core::kernel::{self, MAX_NODES};
+use lie_core::{RulePoint, SymmetricStress, recovery_rule};
+use lie_mesh::{Elements, Mesh};
 use rayon::prelude::*;
 
-use crate::cell::{Cell, components};
+use crate::cell::{self, Cell, components};
 use crate::multigrid::small::inverse_factor;
-use crate::pattern::{CellOfSlot, Lists, split};
+use crate::pattern::{Lists, split};
 use crate::points::Points;
 use crate::problem::Problem;
+use crate::system::Discretisation;
 
 /// Terms of a complete linear and a complete quadratic polynomial in space.
 const LINEAR: usize = 4;
@@ -52,8 +54,12 @@ pub(super) struct Recovered {
 
 impl Patches {
     /// The patches of a mesh: one for each point that is a corner and each rock around it.
-    pub(super) fn of(problem: &Problem, points: &Points) -> Self {
-        let cells = &problem.mesh.cells;
+    pub(super) fn of(problem: &Problem, discretisation: &Discretisation) -> Self {
+        let Discretisation {
+            points, pattern, ..
+        } = discretisation;
+        let mesh = &problem.mesh;
+        let cells = &mesh.cells;
         let mut corners: Vec<(u64, u32)> = Vec::with_capacity(4 * cells.len());
         for cell in 0..cells.len() {
             let rock = u64::from(problem.rock_of_cell[cell]);
@@ -70,14 +76,16 @@ impl Patches {
             offset: vec![0],
             entries: Vec::with_capacity(corners.len()),
         };
-        let cell_of_slot = CellOfSlot::of(cells);
+        let mut middles = Vec::new();
         for (patch, group) in corners.chunk_by(|a, b| a.0 == b.0).enumerate() {
             for &(_, slot) in group {
                 of_slot[slot as usize] = patch as u32;
-                let (cell, _) = cell_of_slot.locate(slot, cells);
+                let (cell, _) = pattern.cell_of_slot.locate(slot, cells);
                 around.entries.push(cell as u32);
             }
             around.offset.push(around.entries.len());
+            let middle = cells.nodes[group[0].1 as usize];
+            middles.push(mesh.nodes[middle as usize]);
         }
         let mut patches = Self {
             of_slot,
@@ -87,15 +95,13 @@ impl Patches {
             samples: Vec::new(),
             terms: terms(cells),
         };
-        patches.frames = (0..patches.len())
-            .into_par_iter()
-            .map(|patch| patches.frame(problem, patch))
+        let middles = middles.into_par_iter().enumerate();
+        patches.frames = middles
+            .map(|(patch, middle)| (middle, patches.size(mesh, patch, middle)))
             .collect();
         patches.samples = patches.sampled(cells, |cell, point| {
-            let nodes = cells.nodes_of(cell).iter();
-            let terms = nodes.zip(&point.shape);
-            let places = terms.map(|(&node, share)| *share * problem.mesh.nodes[node as usize]);
-            places.sum()
+            let mut nodes = [DVec3::ZERO; MAX_NODES];
+            kernel::position(point, cell::positions(mesh, cell, &mut nodes))
         });
         patches
     }
@@ -133,18 +139,14 @@ impl Patches {
         values
     }
 
-    fn frame(&self, problem: &Problem, patch: usize) -> (DVec3, f64) {
-        let mesh = &problem.mesh;
-        let own = self.cells_of(patch).flat_map(|cell| mesh.cells.range(cell));
-        let at_middle = |slot: &usize| self.of_slot[*slot] == patch as u32;
-        let slot = own.into_iter().find(at_middle).unwrap_or_default();
-        let middle = mesh.nodes[mesh.cells.nodes[slot] as usize];
+    /// Distance of the farthest corner from the middle of a patch (m).
+    fn size(&self, mesh: &Mesh, patch: usize, middle: DVec3) -> f64 {
         let corners = self.cells_of(patch).flat_map(|cell| {
             let count = mesh.cells.shapes[cell].corner_count();
             &mesh.cells.nodes_of(cell)[..count]
         });
         let distance = corners.map(|&node| mesh.nodes[node as usize].distance(middle));
-        (middle, distance.fold(0.0, f64::max))
+        distance.fold(0.0, f64::max)
     }
 
     /// Fits a polynomial to the stresses of `displacements` in every patch.
@@ -251,7 +253,7 @@ impl Patches {
 
 /// Number of terms of polynomials on these cells.
 pub(super) fn terms(cells: &Elements) -> usize {
-    match cells.shapes.iter().any(|shape| shape.is_quadratic()) {
+    match cells.has_quadratic() {
         true => QUADRATIC,
         false => LINEAR,
     }

@@ -26,8 +26,7 @@ const AIM: f64 = 0.8;
 /// Sizes (m) at all nodes, from errors of cells that should add up to `tolerance` for each group of cells
 /// (`groups` numbers them; cells in none may grow).
 pub fn target_sizes(mesh: &Mesh, errors: &[f64], groups: &[u32], tolerance: f64) -> Vec<f64> {
-    let is_quadratic = mesh.cells.shapes.iter().any(|shape| shape.is_quadratic());
-    let rate = if is_quadratic { 4.0 } else { 2.0 };
+    let rate = if mesh.cells.has_quadratic() { 4.0 } else { 2.0 };
     let at_front = mesh.front_cells();
     let last = groups.iter().filter(|&&group| group != u32::MAX).max();
     let mut sums = vec![Sums::default(); last.map_or(0, |&last| last as usize + 1)];

@@ -22,7 +22,7 @@ pub use cholesky::Cholesky;
 pub use condensed::Condensed;
 pub use iterative::Iterative;
 pub use ordering::NodeOrder;
-pub use plan::{LinearMethod, Plan, Prediction, Unknowns, Workload, difficulty};
+pub use plan::{LinearMethod, Plan, Prediction, Unknowns, Workload};
 pub use tangent::AnyTangent;
 pub use whole::Whole;
 
