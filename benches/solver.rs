@@ -22,8 +22,8 @@ use block::{THREE_PLANES, draft, mesh, problem};
 
 /// Cubes along an edge: 9, 34 and 111 thousand unknowns.
 const SIZES: [usize; 3] = [12, 20, 32];
-/// Cubes along an edge for the kernels: half a million tetrahedra.
-const KERNEL_CUBES: usize = 44;
+/// Cubes along an edge for the kernels: a million tetrahedra.
+const KERNEL_CUBES: usize = 56;
 
 fn stages(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("stages");
@@ -83,6 +83,31 @@ fn bandwidth() -> f64 {
     1e-9 * (0..8).map(pass).fold(0.0, f64::max)
 }
 
+/// Seconds that all threads together take to write so many bytes into memory fresh from the system, and to
+/// read them back: the best of some passes. Whatever is assembled into fresh memory pays for its pages.
+fn write_and_read(bytes: usize) -> f64 {
+    let pass = |_| {
+        let start = Instant::now();
+        let mut fresh = vec![0.0; bytes / 8];
+        fresh.par_chunks_mut(1 << 16).for_each(|own| own.fill(1.0));
+        let sums = black_box(&fresh).par_chunks(1 << 16).map(sum);
+        black_box(sums.sum::<f64>());
+        start.elapsed().as_secs_f64()
+    };
+    (0..8).map(pass).fold(f64::INFINITY, f64::min)
+}
+
+/// Sum in an order that lets the processor add several at a time.
+fn sum(values: &[f64]) -> f64 {
+    let mut sums = [0.0; 16];
+    for values in values.chunks_exact(16) {
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += value;
+        }
+    }
+    sums.iter().sum()
+}
+
 /// What moves most of the bytes, with the time that the bytes alone take.
 fn kernels(criterion: &mut Criterion) {
     let problem = problem(KERNEL_CUBES, &THREE_PLANES);
@@ -97,12 +122,13 @@ fn kernels(criterion: &mut Criterion) {
     let alone = |bytes: usize| 1e-6 * bytes as f64 / rate;
     println!(
         "kernels: {} cells, {} blocks, {rate:.1} GB/s on {} threads; the bytes alone take {:.1} ms \
-         (assemble) and {:.1} ms (product)",
+         (assemble) and {:.1} ms (product); written to fresh memory and read back {:.1} ms (assemble)",
         problem.mesh.cells.len(),
         pattern.columns.len(),
         rayon::current_num_threads(),
         alone(values + mesh),
         alone(values + 2 * size_of_val(&*vector)),
+        1e3 * write_and_read(values + mesh),
     );
     let mut group = criterion.benchmark_group("kernels");
     group.sample_size(10);

@@ -67,27 +67,34 @@ pub fn of_moments(m: DMat3, (lambda, mu): (f64, f64)) -> DMat3 {
 /// Row `a` of [`stiffness`] of a linear tetrahedron, `row[b] = K_ab` (N/m), from Lamé's constants
 /// (Pa); a row adds up to zero, because translations cost nothing.
 pub fn tetrahedron_row(nodes: &[DVec3; 4], lame: (f64, f64), a: usize, row: &mut [DMat3; 4]) {
-    // The order a, a^1, a^2, a^3 is an even permutation: the volume keeps its sign.
-    let moments = tetrahedron_moments(&[0, 1, 2, 3].map(|k| nodes[a ^ k]));
+    let gradients = tetrahedron_gradients(nodes);
     let mut sum = DMat3::ZERO;
-    for (k, moment) in moments.into_iter().enumerate() {
-        let block = of_moments(moment, lame);
+    for b in (0..4).filter(|&b| b != a) {
+        let block = of_moments(tetrahedron_moment(gradients[a], gradients[b]), lame);
         sum += block;
-        row[a ^ (k + 1)] = block;
+        row[b] = block;
     }
     row[a] = -sum;
 }
 
-/// `M_b = int g_0 (x) g_b dV` (m) for the nodes `b` = 1, 2, 3 of a linear tetrahedron of positive volume;
-/// together with `M_0` they add up to zero.
+/// Gradients of the shape functions of a linear tetrahedron of positive volume, times the root of that
+/// volume: `sqrt(V) grad N_a` (m^1/2).
 ///
-/// With edges `e` from node 0, the gradients at the other nodes are `e x e / 6V`.
+/// With edges `e` from node 0, the gradients at the other nodes are `e x e / 6V`; all four add up to
+/// zero.
 #[inline]
-pub fn tetrahedron_moments(nodes: &[DVec3; 4]) -> [DMat3; 3] {
+pub fn tetrahedron_gradients(nodes: &[DVec3; 4]) -> [DVec3; 4] {
     let [e1, e2, e3] = [1, 2, 3].map(|k| nodes[k] - nodes[0]);
     let faces = [e2.cross(e3), e3.cross(e1), e1.cross(e2)];
-    let own = -1.0 / (6.0 * e1.dot(faces[0])) * (faces[0] + faces[1] + faces[2]);
-    faces.map(|face| outer(own, face))
+    let scale = 1.0 / (6.0 * e1.dot(faces[0])).sqrt();
+    let [g1, g2, g3] = faces.map(|face| scale * face);
+    [-(g1 + g2 + g3), g1, g2, g3]
+}
+
+/// `M_ab = int g_a (x) g_b dV` (m) from [`tetrahedron_gradients`].
+#[inline]
+pub fn tetrahedron_moment(a: DVec3, b: DVec3) -> DMat3 {
+    outer(a, b)
 }
 
 /// Adds the nodal forces of a stress field, `f_a = int sigma(x) . grad N_a dV` (N).

@@ -29,16 +29,15 @@ pub(crate) fn gravity(frame: Frame<'_>) -> Vec<DVec3> {
     })
 }
 
-/// Forces (N) by which the initial stress resists on all points: `f_a = int sigma_0 . grad N_a dV`.
-pub(crate) fn initial_stress(frame: Frame<'_>) -> Vec<DVec3> {
+/// Forces (N) by which the initial stress, if there is one, resists on all points:
+/// `f_a = int sigma_0 . grad N_a dV`.
+pub(crate) fn initial_stress(frame: Frame<'_>) -> Option<Vec<DVec3>> {
     let problem = frame.problem;
-    let Some(stress) = &problem.initial_stress else {
-        return vec![DVec3::ZERO; frame.points.len()];
-    };
-    gather(frame, |cell, positions, forces| {
+    let stress = problem.initial_stress.as_ref()?;
+    Some(gather(frame, |cell, positions, forces| {
         let shape = problem.mesh.cells.shapes[cell];
         kernel::add_stress_forces(shape, positions, |at| stress.at(at), forces);
-    })
+    }))
 }
 
 /// Forces (N) on all points, where `of_cell` adds one cell's nodal forces.
@@ -99,8 +98,12 @@ fn of_cells(
     forces
 }
 
-/// Forces (N) by which the rock resists the prescribed displacements of a load case alone: `f = K g`.
-pub(crate) fn prescribed(frame: Frame<'_>, case: usize) -> Vec<DVec3> {
+/// Forces (N) by which the rock resists the prescribed displacements of a load case alone, `f = K g`, if it
+/// prescribes any.
+pub(crate) fn prescribed(frame: Frame<'_>, case: usize) -> Option<Vec<DVec3>> {
+    if !frame.supports.prescribe(case) {
+        return None;
+    }
     let (problem, points) = (frame.problem, frame.points);
     let cells = &problem.mesh.cells;
     let is_moved = |point: u32| frame.supports.prescribed(point as usize, case) != DVec3::ZERO;
@@ -128,7 +131,7 @@ pub(crate) fn prescribed(frame: Frame<'_>, case: usize) -> Vec<DVec3> {
             sums[point as usize] += force;
         }
     }
-    sums
+    Some(sums)
 }
 
 fn prescribed_cell(

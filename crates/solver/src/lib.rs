@@ -28,6 +28,7 @@ mod shared_walls;
 mod solution;
 mod supports;
 mod system;
+mod tetrahedra;
 
 pub use conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,

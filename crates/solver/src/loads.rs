@@ -109,8 +109,11 @@ fn applied(frame: Frame<'_>, interface: &Interface, case: usize) -> Vec<DVec3> {
     applied
 }
 
-/// Forces on the unknowns that balance `forces` on the points.
-fn negative(frame: Frame<'_>, forces: Vec<DVec3>) -> Vec<DVec3> {
+/// Forces on the unknowns that balance `forces` on the points, if there are any.
+fn negative(frame: Frame<'_>, forces: Option<Vec<DVec3>>) -> Vec<DVec3> {
+    let Some(forces) = forces else {
+        return vec![DVec3::ZERO; frame.points.len()];
+    };
     let forces: Vec<DVec3> = forces.into_iter().map(|force| -force).collect();
     on_unknowns(frame, &forces)
 }

@@ -139,6 +139,12 @@ impl Supports {
         })
     }
 
+    /// Whether a load case prescribes displacements other than zero.
+    pub(crate) fn prescribe(&self, case: usize) -> bool {
+        let mut holds = self.holds.iter();
+        holds.any(|hold| hold.prescribed.iter().any(|(of, _)| *of == case))
+    }
+
     /// Prescribed displacement of a point at load factor 1 of a case (m); zero where nothing is
     /// prescribed.
     pub fn prescribed(&self, point: usize, case: usize) -> DVec3 {
