@@ -5,6 +5,7 @@
 //! once, where they stay in the cache, and then sums up row after row, cells ascending. Sums run between
 //! points; what sectors and holds make of them is linear, so it waits until the sums stand.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
@@ -72,8 +73,6 @@ pub(crate) struct Scratch {
     visits: Vec<Visit>,
     /// For the points around a node, the number of their blocks in its rows.
     place: Vec<u32>,
-    /// Blocks between the points of two nodes.
-    pair: Vec<DMat3>,
 }
 
 impl<'a> Tetrahedra<'a> {
@@ -94,7 +93,6 @@ impl<'a> Tetrahedra<'a> {
             cells: Vec::new(),
             visits: Vec::new(),
             place: vec![0; self.frame.points.len()],
-            pair: Vec::new(),
         }
     }
 
@@ -135,7 +133,7 @@ impl<'a> Tetrahedra<'a> {
             self.sum(&scratch.cells, here, &mut rows);
             for &other in pattern.neighbours.of(node) {
                 if !(self.is_plain[node] && self.is_plain[other as usize]) {
-                    self.enrich((node, other as usize), &mut rows, &mut scratch.pair);
+                    self.enrich((node, other as usize), &mut rows);
                 }
             }
         }
@@ -160,31 +158,26 @@ impl<'a> Tetrahedra<'a> {
 
     /// Turns blocks between the points of the rows' node and of another one into blocks between their
     /// unknowns: `T^T (P K P + s (I - P)) T`.
-    fn enrich(&self, (node, other): (usize, usize), rows: &mut Rows<'_>, pair: &mut Vec<DMat3>) {
+    fn enrich(&self, (node, other): (usize, usize), rows: &mut Rows<'_>) {
         let points = self.frame.points;
         let (own, others) = (points.of_node(node), points.of_node(other));
         let start = rows.place[others.start] as usize;
-        let (sectors, other_sectors) = (own.len() as u32, others.len() as u32);
-        pair.clear();
-        for (row, point) in rows.blocks.chunks(rows.length).zip(own) {
-            let blocks = others.clone().zip(&row[start..]);
-            pair.extend(blocks.map(|(other, block)| self.project(point, other, *block)));
-        }
-        let count = others.len();
-        for (k, row) in (0..sectors).zip(rows.blocks.chunks_mut(rows.length)) {
-            for (l, block) in (0..other_sectors).zip(&mut row[start..]) {
-                let term = |(i, j): (u32, u32)| {
-                    let weight = coefficient(sectors, i, k) * coefficient(other_sectors, j, l);
-                    weight * pair[i as usize * count + j as usize]
-                };
-                // In one order for a block and its transpose, so that they agree to the last bit.
-                *block = match node < other {
-                    true => pairs(sectors, other_sectors).map(term).sum(),
-                    false => pairs(other_sectors, sectors)
-                        .map(|(j, i)| term((i, j)))
-                        .sum(),
-                };
+        for (row, point) in rows.blocks.chunks_mut(rows.length).zip(own.clone()) {
+            for (block, other) in row[start..].iter_mut().zip(others.clone()) {
+                *block = self.project(point, other, *block);
             }
+        }
+        // In one order for a block and its transpose, so that they agree to the last bit.
+        match node.cmp(&other) {
+            Ordering::Less => {
+                rows.transform_columns(start..start + others.len());
+                rows.transform_rows(start..start + others.len());
+            }
+            Ordering::Greater => {
+                rows.transform_rows(start..start + others.len());
+                rows.transform_columns(start..start + others.len());
+            }
+            Ordering::Equal => rows.transform_diagonal(start),
         }
     }
 
@@ -292,9 +285,51 @@ impl Rows<'_> {
             row[self.place[point] as usize] = -0.5 * (sum + sum.transpose());
         }
     }
+
+    /// Combines the rows to those of the node's unknowns, in these columns.
+    fn transform_columns(&mut self, columns: Range<usize>) {
+        if self.blocks.len() > self.length {
+            for column in columns {
+                transform(&mut self.blocks[column..], self.length);
+            }
+        }
+    }
+
+    /// Combines these columns, those of another node, to those of its unknowns.
+    fn transform_rows(&mut self, columns: Range<usize>) {
+        if columns.len() > 1 {
+            for row in self.blocks.chunks_mut(self.length) {
+                transform(&mut row[columns.clone()], 1);
+            }
+        }
+    }
+
+    /// Combines the blocks between the points of the node itself, which share no cell: only those of
+    /// each with itself are not zero.
+    fn transform_diagonal(&mut self, start: usize) {
+        let sectors = self.blocks.len() / self.length;
+        let own: Vec<DMat3> = (0..sectors)
+            .map(|i| self.blocks[i * self.length + start + i])
+            .collect();
+        for (k, row) in self.blocks.chunks_mut(self.length).enumerate() {
+            for (l, block) in row[start..start + sectors].iter_mut().enumerate() {
+                let weight = |i, k| coefficient(sectors as u32, i, k as u32);
+                let terms = (0..).zip(&own);
+                *block = terms
+                    .map(|(i, &own)| weight(i, k) * weight(i, l) * own)
+                    .sum();
+            }
+        }
+    }
 }
 
-/// All pairs of numbers below `first` and `second`, the first ascending slowly.
-fn pairs(first: u32, second: u32) -> impl Iterator<Item = (u32, u32)> {
-    (0..first).flat_map(move |i| (0..second).map(move |j| (i, j)))
+/// The transposed table of enrichment, applied in place to blocks of all sectors of a node, `stride` apart:
+/// `r_k = sum_i coefficient(s, i, k) f_i`, which is the sum of all for `k = 0` and else `f_k` less their mean.
+fn transform(blocks: &mut [DMat3], stride: usize) {
+    let sum: DMat3 = blocks.iter().step_by(stride).copied().sum();
+    let mean = sum * (1.0 / blocks.len().div_ceil(stride) as f64);
+    for block in blocks.iter_mut().step_by(stride).skip(1) {
+        *block -= mean;
+    }
+    blocks[0] = sum;
 }
