@@ -304,7 +304,7 @@ impl<'a> Run<'a> {
         };
         let (state, took) = self
             .report
-            .stage("factorising", |_| newton.turn_to(bookmark));
+            .stage("factorising", |_| newton.turn_to(system, bookmark));
         self.summary.seconds.factorise += took.as_secs_f64();
         let text = format!("after step {} of {}", self.finished.len(), steps.len());
         self.report.entry("resumed", &text);

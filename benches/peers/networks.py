@@ -49,7 +49,7 @@ CASES = (
     Case("network-20", (0.24, 0.12, 0.1), "50e6", 420, 3),
     Case("network-20", (0.17, 0.085, 0.07), "50e6", 1019, 3),
     Case("network-100", (), "10e6", 725, 3),
-    Case("network-100", (), "10e6", 5068, 1, refined=True),
+    Case("network-100", (), "10e6", 5068, 2, refined=True),
 )
 
 

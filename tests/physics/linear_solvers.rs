@@ -286,7 +286,7 @@ fn interrupt(
         let mut newton = prepared();
         let bookmark: Bookmark<'_> = postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
         assert!(bookmark.fits(&system));
-        let mut state = newton.turn_to(bookmark).expect("prepared");
+        let mut state = newton.turn_to(&system, bookmark).expect("prepared");
         for factor in &factors[start..] {
             step(&mut newton, &mut state, *factor);
         }

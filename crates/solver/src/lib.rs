@@ -10,6 +10,7 @@ mod assembly;
 mod cell;
 mod cell_forces;
 mod conjugate_gradients;
+mod dense;
 mod estimate;
 mod folded;
 mod gmres;

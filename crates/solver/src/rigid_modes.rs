@@ -7,6 +7,7 @@ use faer::{Mat, Side};
 use glam::DVec3;
 use lie_mesh::{Defect, Mesh, facet_area_vector};
 
+use crate::dense::apart;
 use crate::points::Points;
 use crate::problem::Problem;
 use crate::supports::Supports;
@@ -76,7 +77,7 @@ pub(crate) fn find_with(
         bounds: mesh.bounds(),
     };
     let resistance = constraints.resistance(supports, body_count);
-    let Ok(eigen) = resistance.self_adjoint_eigen(Side::Lower) else {
+    let Ok(eigen) = apart(|| resistance.self_adjoint_eigen(Side::Lower)) else {
         return Vec::new();
     };
     let values = eigen.S().column_vector();

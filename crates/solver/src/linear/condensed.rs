@@ -96,11 +96,11 @@ impl TangentSolver for Condensed {
     fn history(&self) -> SolverHistory {
         SolverHistory {
             stiffness: self.jumps.factored().map(<[DMat3]>::to_vec),
-            spectrum: None,
+            margin: None,
         }
     }
 
-    fn restore(&mut self, history: SolverHistory) -> Result<(), LinearFailure> {
+    fn restore(&mut self, _: &System<'_>, history: SolverHistory) -> Result<(), LinearFailure> {
         let restored = self.jumps.factorise_again(history.stiffness);
         restored.map_err(|failure| self.named(failure))
     }

@@ -1,18 +1,15 @@
-//! The iterative solver: conjugate gradients on all unknowns.
-//!
-//! The preconditioner is a symmetric block Gauss-Seidel step over two blocks: the intact rock, by
-//! one cycle of a multigrid that is set up once a run, and the jumps, by a polynomial of their own
-//! small block. Only the jumps see the stiffness of the fractures.
+//! The iterative solver: conjugate gradients on all unknowns, preconditioned by a multigrid of rock and
+//! fractures. What it knows of the rock is set up once a run; a new stiffness of the fractures changes
+//! the diagonal blocks of the nodes on them and the levels below.
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
-use super::jump_block::JumpBlock;
 use super::{LinearFailure, LinearSolution, SolverHistory, TangentSolver};
 use crate::conjugate_gradients::{
-    ConjugateGradientOutcome, ConjugateGradientSettings, PER_TASK, conjugate_gradients,
+    ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
-use crate::multigrid::{BlockRows, Multigrid, MultigridFailure, Workspace, rigid_modes};
+use crate::interface::Interface;
+use crate::multigrid::{Multigrid, MultigridFailure, Springs, Topology, Workspace, rigid_modes};
 use crate::system::{System, norm};
 
 /// Iterations after which a linear solve has failed.
@@ -22,21 +19,29 @@ const MAX_ITERATIONS: usize = 2000;
 /// taken for one that rounding ended.
 const ROUNDED: f64 = 1e-3;
 
-/// How often the spectrum of the jumps may turn out wider than it was taken for.
+/// How often the spectrum may turn out wider than it was taken for, and by which factor.
 const MOST_WIDENINGS: usize = 4;
+const WIDENING: f64 = 1.4;
 /// Steps of the first guess, and the factor by which each must reduce the residual.
 const MOST_GUESSES: usize = 6;
 const HELPS: f64 = 0.3;
+/// Change of the stiffness of a fracture that matters: as a share of what it was, or of this share of the
+/// stiffness of the rock beside it.
+const MATTERS: f64 = 0.5;
+const BESIDE: f64 = 0.02;
+/// Share of the fractures' unknowns that may change so much before the multigrid is made anew.
+const TOLERATED: f64 = 0.02;
 
 /// Iterative solver of a system.
 pub struct Iterative {
     multigrid: Multigrid,
     workspace: Workspace,
-    /// Unknowns of the intact rock, ascending: all that no facet point moves with.
-    rock: Vec<u32>,
-    jumps: JumpBlock,
     /// Stiffness of the fractures, one block for each of the interface's columns; none before the first.
     stiffness: Option<Vec<DMat3>>,
+    /// The one that the multigrid was made with.
+    made_with: Option<Vec<DMat3>>,
+    /// By how much the spectrum turned out to reach further than it was taken for.
+    margin: f64,
 }
 
 impl Iterative {
@@ -45,53 +50,96 @@ impl Iterative {
     /// # Errors
     /// If the rock is not positive definite.
     pub fn new(system: &System<'_>) -> Result<Self, LinearFailure> {
-        let jumps = &system.discretisation.interface.unknowns;
-        let count = system.discretisation.points.len() as u32;
-        let rock: Vec<u32> = (0..count)
-            .filter(|unknown| jumps.binary_search(unknown).is_err())
-            .collect();
-        let rows = system.rock_rows();
-        let multigrid = Multigrid::of_sub_block(rows, &rock, &modes(system, &rock));
-        let multigrid = multigrid.map_err(|failure| explain(&failure, &rock))?;
+        let discretisation = &system.discretisation;
+        let topology = Topology {
+            points: &discretisation.points,
+            pattern: &discretisation.pattern,
+            cells: &system.problem.mesh.cells,
+            supports: &discretisation.supports,
+            // Walls that stick or part change their stiffness by any factor, which the lower levels, in
+            // single precision, cannot follow.
+            is_cut: system.is_smooth(),
+        };
+        let multigrid = Multigrid::of_fractured(system.rock_rows(), &modes(system), topology);
+        let multigrid = multigrid.map_err(explain)?;
         Ok(Self {
             workspace: multigrid.workspace(),
-            jumps: JumpBlock::of(system, &rock)?,
-            stiffness: None,
             multigrid,
-            rock,
+            stiffness: None,
+            made_with: None,
+            margin: 1.0,
         })
+    }
+
+    /// Makes the multigrid anew for a stiffness of the fractures.
+    fn refresh(&mut self, system: &System<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
+        self.made_with = None;
+        let springs = springs(&system.discretisation.interface, &stiffness);
+        let refreshed = self.multigrid.refresh(system.rock_rows(), springs);
+        refreshed.map_err(explain)?;
+        self.multigrid.widen(self.margin);
+        self.workspace = self.multigrid.workspace();
+        self.made_with = Some(stiffness);
+        Ok(())
+    }
+
+    /// Whether the multigrid was made with a stiffness of the fractures that is much like `stiffness`.
+    fn serves(&self, system: &System<'_>, stiffness: &[DMat3]) -> bool {
+        let Some(made_with) = &self.made_with else {
+            return false;
+        };
+        let interface = &system.discretisation.interface;
+        let rows = system.rock_rows();
+        let changed = (0..interface.unknowns.len()).filter(|&row| {
+            let unknown = interface.unknowns[row] as usize;
+            let rock = trace(rows.diagonal(unknown));
+            let range = interface.columns.offset[row]..interface.columns.offset[row + 1];
+            let own = made_with[range.clone()].iter().zip(&stiffness[range]);
+            let size = |block: &DMat3| block.to_cols_array().iter().map(|x| x.abs()).sum::<f64>();
+            let (change, before) = own.fold((0.0, 0.0), |(change, before), (old, new)| {
+                (change + size(&(*new - *old)), before + size(old))
+            });
+            change > MATTERS * (before + BESIDE * rock)
+        });
+        changed.count() as f64 <= TOLERATED * interface.unknowns.len() as f64
     }
 }
 
-/// Rigid motions of the rock at each of `rock`'s unknowns.
-fn modes(system: &System<'_>, rock: &[u32]) -> Vec<[DVec3; 6]> {
+fn trace(block: DMat3) -> f64 {
+    block.x_axis.x + block.y_axis.y + block.z_axis.z
+}
+
+fn springs<'a>(interface: &'a Interface, stiffness: &'a [DMat3]) -> Springs<'a> {
+    Springs {
+        rows: &interface.unknowns,
+        columns: &interface.columns,
+        blocks: stiffness,
+    }
+}
+
+/// Rigid motions of the rock at each node with unknowns.
+fn modes(system: &System<'_>) -> Vec<[DVec3; 6]> {
     let nodes = &system.problem.mesh.nodes;
-    let points = &system.discretisation.points;
+    let discretisation = &system.discretisation;
+    let points = &discretisation.points;
     let (low, high) = nodes.iter().fold(
         (DVec3::INFINITY, DVec3::NEG_INFINITY),
         |(low, high), node| (low.min(*node), high.max(*node)),
     );
     let centre = 0.5 * (low + high);
-    rock.par_iter()
-        .map(|&unknown| {
-            let unknown = unknown as usize;
-            // A jump that is held everywhere has no part in a motion of the rock.
-            let free = match (
-                system.discretisation.supports.hold(unknown),
-                points.sector(unknown),
-            ) {
-                (_, (1.., _)) => DMat3::ZERO,
-                (Some(hold), _) => hold.free,
-                (None, _) => DMat3::IDENTITY,
-            };
-            rigid_modes(nodes[points.node[unknown] as usize], centre, free)
+    let firsts = (0..nodes.len()).filter(|&node| !points.of_node(node).is_empty());
+    firsts
+        .map(|node| {
+            let hold = discretisation.supports.hold(points.of_node(node).start);
+            let free = hold.map_or(DMat3::IDENTITY, |hold| hold.free);
+            rigid_modes(nodes[node], centre, free)
         })
         .collect()
 }
 
-fn explain(failure: &MultigridFailure, rock: &[u32]) -> LinearFailure {
+fn explain(failure: MultigridFailure) -> LinearFailure {
     match failure {
-        MultigridFailure::NotPositive(row) => LinearFailure::Indefinite(rock[*row] as usize),
+        MultigridFailure::NotPositive(row) => LinearFailure::Indefinite(row),
         MultigridFailure::NotFinite => LinearFailure::NotFinite,
     }
 }
@@ -99,11 +147,10 @@ fn explain(failure: &MultigridFailure, rock: &[u32]) -> LinearFailure {
 impl TangentSolver for Iterative {
     fn update(&mut self, system: &System<'_>, tangents: &[DMat3]) -> Result<(), LinearFailure> {
         let stiffness = system.discretisation.interface.stiffness(tangents);
-        if self.stiffness.as_ref() != Some(&stiffness) {
-            self.stiffness = None;
-            self.jumps.update(&stiffness)?;
-            self.stiffness = Some(stiffness);
+        if !self.serves(system, &stiffness) {
+            self.refresh(system, stiffness.clone())?;
         }
+        self.stiffness = Some(stiffness);
         Ok(())
     }
 
@@ -120,23 +167,18 @@ impl TangentSolver for Iterative {
             rows.multiply(vector, product);
             interface.add_product(stiffness, vector, product);
         };
-        let (mut unknowns, residual) = first_guess(&self.jumps, multiply, right);
+        let (mut unknowns, residual) =
+            first_guess(&self.multigrid, &interface.unknowns, multiply, right);
         let size = norm(&residual);
         let wanted = tolerance * norm(right) / size;
         let mut correction = vec![DVec3::ZERO; right.len()];
-        let mut parts = Parts::new(self.rock.len());
         let mut iterations = 0;
         for attempt in 0..=MOST_WIDENINGS {
             let report = conjugate_gradients(
                 multiply,
                 |residual, correction| {
-                    let workspace = &mut self.workspace;
-                    precondition(
-                        (&self.multigrid, workspace),
-                        (&self.rock, &self.jumps, rows),
-                        &mut parts,
-                        (residual, correction),
-                    );
+                    self.multigrid
+                        .apply(residual, correction, &mut self.workspace);
                 },
                 &residual,
                 &mut correction,
@@ -152,7 +194,8 @@ impl TangentSolver for Iterative {
                 // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
                 _ if last <= wanted.max(ROUNDED) => break,
                 ConjugateGradientOutcome::Breakdown if attempt < MOST_WIDENINGS => {
-                    self.jumps.widen();
+                    self.margin *= WIDENING;
+                    self.multigrid.widen(self.margin);
                 }
                 _ => return Err(LinearFailure::Stalled(iterations)),
             }
@@ -168,35 +211,30 @@ impl TangentSolver for Iterative {
 
     fn history(&self) -> SolverHistory {
         SolverHistory {
-            stiffness: self.stiffness.clone(),
-            spectrum: Some(self.jumps.spectrum()),
+            stiffness: self.made_with.clone(),
+            margin: Some(self.margin),
         }
     }
 
-    fn restore(&mut self, history: SolverHistory) -> Result<(), LinearFailure> {
-        if let Some(stiffness) = history.stiffness {
-            self.jumps.update(&stiffness)?;
-            self.stiffness = Some(stiffness);
-        }
-        if let Some(spectrum) = history.spectrum {
-            self.jumps.take_spectrum(spectrum);
-        }
-        Ok(())
+    fn restore(
+        &mut self,
+        system: &System<'_>,
+        history: SolverHistory,
+    ) -> Result<(), LinearFailure> {
+        self.margin = history.margin.unwrap_or(1.0);
+        history
+            .stiffness
+            .map_or(Ok(()), |stiffness| self.refresh(system, stiffness))
     }
 
     fn precondition(
         &mut self,
-        system: &System<'_>,
+        _: &System<'_>,
         right: &[DVec3],
     ) -> Result<Vec<DVec3>, LinearFailure> {
-        let mut parts = Parts::new(self.rock.len());
         let mut correction = vec![DVec3::ZERO; right.len()];
-        precondition(
-            (&self.multigrid, &mut self.workspace),
-            (&self.rock, &self.jumps, system.rock_rows()),
-            &mut parts,
-            (right, &mut correction),
-        );
+        self.multigrid
+            .apply(right, &mut correction, &mut self.workspace);
         Ok(correction)
     }
 }
@@ -207,7 +245,8 @@ impl TangentSolver for Iterative {
 /// forces exceed all others by more digits than there are. The guess moves those walls and leaves
 /// forces of an ordinary size.
 fn first_guess(
-    jumps: &JumpBlock,
+    multigrid: &Multigrid,
+    jumps: &[u32],
     multiply: impl Fn(&[DVec3], &mut [DVec3]),
     right: &[DVec3],
 ) -> (Vec<DVec3>, Vec<DVec3>) {
@@ -216,9 +255,9 @@ fn first_guess(
     let mut size = norm(right);
     for _ in 0..MOST_GUESSES {
         let mut next = guess.clone();
-        let scaled = jumps.scaled(&jumps.gather(&residual));
-        for (&unknown, entry) in jumps.unknowns().iter().zip(scaled) {
-            next[unknown as usize] += entry;
+        let alone = multigrid.clusters_alone(&residual);
+        for &unknown in jumps {
+            next[unknown as usize] += alone[unknown as usize];
         }
         let mut remaining = vec![DVec3::ZERO; right.len()];
         multiply(&next, &mut remaining);
@@ -232,53 +271,4 @@ fn first_guess(
         (guess, residual, size) = (next, remaining, length);
     }
     (guess, residual)
-}
-
-/// Vectors over the unknowns of the rock.
-struct Parts {
-    rock: Vec<DVec3>,
-    correction: Vec<DVec3>,
-}
-
-impl Parts {
-    fn new(length: usize) -> Self {
-        Self {
-            rock: vec![DVec3::ZERO; length],
-            correction: vec![DVec3::ZERO; length],
-        }
-    }
-}
-
-/// Writes `entries` of the unknowns `places` (ascending) into a vector over all unknowns, and zero elsewhere.
-fn spread(places: &[u32], entries: &[DVec3], vector: &mut [DVec3]) {
-    let tasks = vector.par_chunks_mut(PER_TASK).enumerate();
-    tasks.for_each(|(task, chunk)| {
-        let start = task * PER_TASK;
-        let before = |end: usize| places.partition_point(|&place| (place as usize) < end);
-        let own = before(start)..before(start + chunk.len());
-        chunk.fill(DVec3::ZERO);
-        for (&place, entry) in places[own.clone()].iter().zip(&entries[own]) {
-            chunk[place as usize - start] = *entry;
-        }
-    });
-}
-
-/// One symmetric step: jumps, rock, jumps.
-fn precondition(
-    (multigrid, workspace): (&Multigrid, &mut Workspace),
-    (rock, jumps, rows): (&[u32], &JumpBlock, BlockRows<'_>),
-    parts: &mut Parts,
-    (residual, correction): (&[DVec3], &mut [DVec3]),
-) {
-    let forces = jumps.gather(residual);
-    let first = jumps.solve(&forces);
-    let gathered = parts.rock.par_iter_mut().zip(rock);
-    gathered.for_each(|(force, &unknown)| *force = residual[unknown as usize]);
-    jumps.subtract_from_rock(rows, &first, &mut parts.rock);
-    multigrid.apply(&parts.rock, &mut parts.correction, workspace);
-    spread(rock, &parts.correction, correction);
-    let second = jumps.solve(&jumps.remaining(rows, &forces, &first, correction));
-    for ((&unknown, first), second) in jumps.unknowns().iter().zip(first).zip(second) {
-        correction[unknown as usize] = first + second;
-    }
 }

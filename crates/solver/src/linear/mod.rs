@@ -4,7 +4,6 @@ mod analysis;
 mod cholesky;
 mod condensed;
 mod iterative;
-mod jump_block;
 mod jump_problem;
 mod ordering;
 mod plan;
@@ -60,9 +59,8 @@ pub struct LinearSolution {
 pub struct SolverHistory {
     /// Blocks of the fractures that its factor or its preconditioner was made with.
     stiffness: Option<Vec<DMat3>>,
-    /// What it takes the spectrum of the jumps for: the largest eigenvalue, and the factor on an
-    /// estimate of it.
-    spectrum: Option<(f64, f64)>,
+    /// Factor by which the spectrum of the preconditioner turned out to reach further than estimated.
+    margin: Option<f64>,
 }
 
 impl SolverHistory {
@@ -120,7 +118,7 @@ pub trait TangentSolver: Send + Sync {
     ///
     /// # Errors
     /// If the tangent of that time cannot be factorised.
-    fn restore(&mut self, _: SolverHistory) -> Result<(), LinearFailure> {
+    fn restore(&mut self, _: &System<'_>, _: SolverHistory) -> Result<(), LinearFailure> {
         Ok(())
     }
 

@@ -306,16 +306,16 @@ fn predict(
 
 /// Time and memory of the multigrid, both by the number of blocks of the matrix: measured.
 fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
-    const SETUP_BYTES: f64 = 4000.0;
+    const SETUP_BYTES: f64 = 10_000.0;
     const ITERATION_BYTES: f64 = 400.0;
-    const MEMORY_BYTES: f64 = 190.0;
+    const MEMORY_BYTES: f64 = 245.0;
     /// Iterations of a solve that is not symmetric, which cost more than those of one that is.
     const UNSYMMETRIC: f64 = 40.0;
     let blocks = unknowns.pattern.columns.len() as f64;
     let iterations = if workload.is_path_dependent {
         UNSYMMETRIC * workload.solves()
     } else {
-        let first = if workload.is_nonlinear { 50.0 } else { 35.0 };
+        let first = if workload.is_nonlinear { 40.0 } else { 20.0 };
         // Steps made of the moves of former ones, what it takes to make them included.
         let later = if workload.is_smooth { 10.0 } else { 20.0 };
         first + later * (workload.steps as f64 - 1.0).max(0.0)

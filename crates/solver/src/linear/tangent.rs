@@ -67,8 +67,12 @@ impl AnyTangent {
     ///
     /// # Errors
     /// If the tangent of that time cannot be factorised.
-    pub fn restore(&mut self, history: SolverHistory) -> Result<(), LinearFailure> {
-        self.inner.restore(history)
+    pub fn restore(
+        &mut self,
+        system: &System<'_>,
+        history: SolverHistory,
+    ) -> Result<(), LinearFailure> {
+        self.inner.restore(system, history)
     }
 
     /// Solves for the forces `right` (N), to `tolerance` times their norm if it iterates.

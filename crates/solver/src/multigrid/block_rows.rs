@@ -1,9 +1,7 @@
-//! A view of a symmetric matrix as rows of 3x3 blocks, and sub-blocks of it.
+//! A view of a symmetric matrix as rows of 3x3 blocks.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
-
-use super::sparse::{row_shares, sum_up};
 
 /// Rows that one task treats; fixed, so that no result depends on the number of threads.
 const ROWS_PER_TASK: usize = 1024;
@@ -45,6 +43,13 @@ impl<'a> BlockRows<'a> {
         columns.zip(&self.blocks[range])
     }
 
+    /// The diagonal block of a row, zero if there is none.
+    pub fn diagonal(&self, row: usize) -> DMat3 {
+        let range = self.row_offset[row]..self.row_offset[row + 1];
+        let found = self.columns[range.clone()].binary_search(&(row as u32));
+        found.map_or(DMat3::ZERO, |at| self.blocks[range.start + at])
+    }
+
     /// Entry `row` of `A vector`. Two sums run side by side, so that one need not wait for the other.
     pub fn row_product(&self, row: usize, vector: &[DVec3]) -> DVec3 {
         let range = self.row_offset[row]..self.row_offset[row + 1];
@@ -76,48 +81,6 @@ impl<'a> BlockRows<'a> {
                 *sum = self.row_product(task * ROWS_PER_TASK + place, vector);
             }
         });
-    }
-
-    /// The rows and columns `kept` (ascending) as a matrix of their own, numbered in that order.
-    pub fn sub_block(&self, kept: &[u32]) -> OwnedBlockRows {
-        let number = numbers(self.rows(), kept);
-        let mut row_offset = self.kept_counts(kept, &number);
-        sum_up(&mut row_offset);
-        let mut columns = vec![0; row_offset[kept.len()]];
-        let mut blocks = vec![DMat3::ZERO; row_offset[kept.len()]];
-        let shares = row_shares(&row_offset, ROWS_PER_TASK, &mut columns, &mut blocks);
-        shares.into_par_iter().for_each(|share| {
-            let target = share.columns.iter_mut().zip(share.blocks);
-            let source = kept[share.rows]
-                .iter()
-                .flat_map(|&row| self.kept_row(row, &number));
-            for ((column, block), (from, value)) in target.zip(source) {
-                (*column, *block) = (from, *value);
-            }
-        });
-        OwnedBlockRows {
-            row_offset,
-            columns,
-            blocks,
-        }
-    }
-
-    /// Blocks of a row whose columns are kept, under their new numbers.
-    pub(super) fn kept_row(
-        &self,
-        row: u32,
-        number: &'a [u32],
-    ) -> impl Iterator<Item = (u32, &'a DMat3)> + use<'a> {
-        self.row(row as usize)
-            .map(|(column, block)| (number[column as usize], block))
-            .filter(|(column, _)| *column != DROPPED)
-    }
-
-    /// Zero, and then the number of kept blocks in each kept row.
-    fn kept_counts(&self, kept: &[u32], number: &[u32]) -> Vec<usize> {
-        let count = |&row: &u32| self.kept_row(row, number).count();
-        let counts = kept.par_iter().map(count);
-        rayon::iter::once(0).chain(counts).collect()
     }
 }
 

@@ -4,6 +4,7 @@ use faer::linalg::solvers::SelfAdjointEigen;
 use faer::{Mat, Side};
 
 use super::sparse::Sparse;
+use crate::dense::apart;
 
 /// Eigenvalues below this share of the largest belong to motions that cost nothing; the inverse
 /// leaves them out.
@@ -30,10 +31,11 @@ impl Dense {
                 }
             }
         }
-        let eigen = dense.self_adjoint_eigen(Side::Lower).ok()?;
-        Some(Self {
-            inverse: pseudo_inverse(&eigen, size),
-        })
+        let inverse = apart(|| {
+            let eigen = dense.self_adjoint_eigen(Side::Lower).ok()?;
+            Some(pseudo_inverse(&eigen, size))
+        });
+        Some(Self { inverse: inverse? })
     }
 
     /// `z = A^+ r`.

@@ -33,6 +33,8 @@ pub(super) enum Below<const N: usize> {
 pub(super) struct Transfer<const N: usize> {
     pub(super) prolongator: Sparse<N, 6>,
     pub(super) transpose: Transpose,
+    /// Factors `L^-1` of the unknowns of the next level, if the prolongator does not have them in its columns.
+    pub(super) factors: Vec<[[f32; 6]; 6]>,
 }
 
 impl<const N: usize> Transfer<N> {
@@ -42,7 +44,12 @@ impl<const N: usize> Transfer<N> {
         let tasks = coarse.par_chunks_mut(rows).enumerate();
         tasks.for_each(|(task, chunk)| {
             for (place, sum) in chunk.iter_mut().enumerate() {
-                *sum = self.restricted(task * rows + place, residual);
+                let aggregate = task * rows + place;
+                let force = self.restricted(aggregate, residual);
+                *sum = match self.factors.get(aggregate) {
+                    Some(factor) => factor.map(|line| dot(&line, &force)),
+                    None => force,
+                };
             }
         });
     }
@@ -64,8 +71,15 @@ impl<const N: usize> Transfer<N> {
         sum
     }
 
-    /// `z += P z_c`.
-    fn prolong(&self, coarse: &[[f32; 6]], solution: &mut [[f32; N]]) {
+    /// `z += P z_c`; scales `z_c`.
+    fn prolong(&self, coarse: &mut [[f32; 6]], solution: &mut [[f32; N]]) {
+        let scaled = coarse.par_iter_mut().zip(&self.factors);
+        scaled
+            .with_min_len(rows_per_task::<6>())
+            .for_each(|(entry, factor)| {
+                *entry = std::array::from_fn(|i| dot(&factor.map(|line| line[i]), entry));
+            });
+        let coarse = &*coarse;
         let rows = rows_per_task::<N>();
         let tasks = solution.par_chunks_mut(rows).enumerate();
         tasks.for_each(|(task, chunk)| {
@@ -81,11 +95,24 @@ impl<const N: usize> Transfer<N> {
     }
 
     fn bytes(&self) -> usize {
-        self.prolongator.bytes() + self.transpose.bytes()
+        self.prolongator.bytes() + self.transpose.bytes() + size_of_val(&self.factors[..])
     }
 }
 
+fn dot(a: &[f32; 6], b: &[f32; 6]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 impl<const N: usize> Level<N> {
+    /// A level without unknowns.
+    pub(super) fn empty() -> Self {
+        Self {
+            matrix: Sparse::empty(),
+            smoother: Smoother::new(1.0),
+            below: Below::Nothing,
+        }
+    }
+
     /// Bytes of storage.
     pub(super) fn bytes(&self) -> usize {
         let below = match &self.below {
@@ -110,7 +137,7 @@ impl<const N: usize> Level<N> {
                 residual(&self.matrix, work);
                 transfer.restrict(&work.step, &mut next_work.right);
                 next.cycle(next_work, coarser, coarser_work);
-                transfer.prolong(&next_work.solution, &mut work.solution);
+                transfer.prolong(&mut next_work.solution, &mut work.solution);
                 self.smoother.resume(&self.matrix, work);
             }
             _ => {

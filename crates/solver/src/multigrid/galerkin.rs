@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::prolongation::add_product;
+use super::prolongation::{add_columns, add_product};
 use super::scaling::Modes;
 use super::small::{inverse_factor, narrow, product, transpose, widen};
 use super::sparse::{Accumulator, Sparse, Transpose, row_shares, rows_per_task};
@@ -19,6 +19,98 @@ pub(super) struct Coarse {
     pub(super) modes: Vec<Modes<6>>,
 }
 
+/// `P^T A P` before it is scaled.
+#[derive(Debug, Clone)]
+pub(super) struct Unscaled {
+    diagonal: Vec<Block6>,
+    /// The blocks right of the diagonal, as rows.
+    upper: Sparse<6, 6>,
+}
+
+impl Unscaled {
+    /// `P^T A P`, `A` having the identity as its diagonal.
+    pub(super) fn of<const N: usize>(
+        matrix: &Sparse<N, N>,
+        prolongator: &Sparse<N, 6>,
+        transpose: &Transpose,
+    ) -> Self {
+        let image = image(matrix, prolongator, transpose.columns());
+        Self::of_image(prolongator, transpose, &image)
+    }
+
+    /// `P^T A P` from `A P`.
+    pub(super) fn of_image<const N: usize>(
+        prolongator: &Sparse<N, 6>,
+        transpose: &Transpose,
+        image: &Sparse<N, 6>,
+    ) -> Self {
+        Self {
+            diagonal: diagonal(prolongator, transpose, image),
+            upper: upper(prolongator, transpose, image),
+        }
+    }
+
+    /// The sum of two such matrices.
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        let diagonal = self.diagonal.par_iter().zip(&other.diagonal);
+        let diagonal = diagonal.map(|(a, b)| std::array::from_fn(|i| sum(&a[i], &b[i])));
+        let both = [&self.upper, &other.upper];
+        let upper = Sparse::build(
+            self.upper.rows(),
+            rows_per_task::<6>(),
+            || Accumulator::<6, 6>::new(self.upper.rows()),
+            |sums, row| {
+                let columns = both.map(|part| &part.columns[part.range(row)]);
+                columns
+                    .concat()
+                    .iter()
+                    .for_each(|&column| sums.touch(column));
+                sums.take_count()
+            },
+            |sums, row, columns, blocks| {
+                for (column, block) in both.iter().flat_map(|part| part.row(row)) {
+                    let total = sums.at(column as u32);
+                    for (total, line) in total.iter_mut().zip(widen(block)) {
+                        *total = sum(total, &line);
+                    }
+                }
+                sums.take(columns, blocks);
+            },
+        );
+        Self {
+            diagonal: diagonal.collect(),
+            upper,
+        }
+    }
+
+    /// The next level, whose diagonal is the identity, and the factors `L^-1` that scale it.
+    pub(super) fn scaled(&self, modes: &[Modes<6>]) -> (Coarse, Vec<Block6>) {
+        let diagonal = self.diagonal.par_iter();
+        let factors: Vec<Block6> = diagonal
+            .map(|block| inverse_factor(block, COSTS_NOTHING).0)
+            .collect();
+        let mut upper = self.upper.clone();
+        scale_upper(&mut upper, &factors);
+        // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
+        let scaled = factors.par_iter().zip(&self.diagonal).zip(modes);
+        let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
+        let coarse = Coarse {
+            modes: modes.collect(),
+            matrix: both_triangles(&upper),
+        };
+        (coarse, factors)
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.diagonal[..]) + self.upper.bytes()
+    }
+}
+
+fn sum(a: &[f64; 6], b: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
 /// Computes the next level and scales the columns of the prolongator to its unknowns.
 pub(super) fn coarse<const N: usize>(
     matrix: &Sparse<N, N>,
@@ -26,23 +118,9 @@ pub(super) fn coarse<const N: usize>(
     transpose: &Transpose,
     modes: &[Modes<6>],
 ) -> Coarse {
-    let image = image(matrix, prolongator, transpose.columns());
-    let diagonal = diagonal(prolongator, transpose, &image);
-    let mut upper = upper(prolongator, transpose, &image);
-    drop(image);
-    let factors: Vec<Block6> = diagonal
-        .par_iter()
-        .map(|block| inverse_factor(block, COSTS_NOTHING).0)
-        .collect();
+    let (coarse, factors) = Unscaled::of(matrix, prolongator, transpose).scaled(modes);
     scale_prolongator(prolongator, &factors);
-    scale_upper(&mut upper, &factors);
-    // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
-    let scaled = factors.par_iter().zip(&diagonal).zip(modes);
-    let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
-    Coarse {
-        modes: modes.collect(),
-        matrix: both_triangles(&upper),
-    }
+    coarse
 }
 
 /// `A P`.
@@ -84,15 +162,7 @@ fn image<const N: usize>(
 /// `S += A^T B` of blocks as rows.
 #[inline]
 fn add_transposed<const N: usize>(sum: &mut Block6, a: &[[f32; 6]; N], b: &[[f32; 6]; N]) {
-    for (a, b) in a.iter().zip(b) {
-        let b = b.map(f64::from);
-        for (sum, &a) in sum.iter_mut().zip(a) {
-            let a = f64::from(a);
-            for (sum, b) in sum.iter_mut().zip(&b) {
-                *sum += a * b;
-            }
-        }
-    }
+    add_columns(sum, &widen(a), &widen(b));
 }
 
 /// The diagonal blocks of `P^T A P`.

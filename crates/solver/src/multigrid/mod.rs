@@ -3,21 +3,28 @@
 //!
 //! Each level groups its nodes into aggregates. The motions that cost next to nothing, which are
 //! the rigid ones, are kept exactly on every aggregate and smoothed at its edges; they are the six
-//! unknowns of one node of the next level. All levels are stored in single precision, in unknowns
+//! unknowns of one node of the next level. Where fractures cut an aggregate each of its pieces
+//! has motions of its own ([`copies`]). All levels are stored in single precision, in unknowns
 //! that scale their diagonal to the identity; sums of the set-up are in double precision.
 //! No result depends on the number of threads.
 
 mod aggregation;
 mod block_rows;
+mod clusters;
 mod coarsest;
+mod copies;
 mod cycle;
+#[cfg(test)]
+mod fractured_tests;
 mod galerkin;
 mod prolongation;
 mod scaling;
+mod setup;
 pub(crate) mod small;
 mod smoother;
 mod sparse;
 mod spectrum;
+mod tangent;
 mod tentative;
 #[cfg(test)]
 mod tests;
@@ -25,26 +32,20 @@ mod tests;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use block_rows::numbers;
 pub use block_rows::{BlockRows, OwnedBlockRows};
-pub(crate) use block_rows::{DROPPED, numbers};
-use coarsest::Dense;
-use cycle::{Below, Level, Transfer};
-use galerkin::Coarse;
-use scaling::{Factors, Modes, Selection};
-use smoother::{Smoother, Work};
-use sparse::{Sparse, Transpose};
-
-/// A level with at most this many scalar unknowns is inverted.
-const LARGEST_INVERSE: usize = 600;
-/// Blocks whose norm is below this share of the diagonal do not tie nodes together.
-const STRENGTH: f32 = 0.02;
-/// A next level with more than this share of the nodes is not worth its cost.
-const STAGNATION: f64 = 0.8;
+pub(crate) use copies::Topology;
+use cycle::Level;
+use setup::Base;
+use smoother::Work;
+use sparse::Sparse;
+pub(crate) use tangent::Springs;
+use tangent::TangentRows;
 
 /// Why a hierarchy could not be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MultigridFailure {
-    /// The diagonal block of this row (of those kept) is not positive definite, or not finite.
+    /// The diagonal block of this row is not positive definite, or not finite.
     NotPositive(usize),
     /// The matrix or the modes of some level have entries that are not finite.
     NotFinite,
@@ -53,7 +54,8 @@ pub enum MultigridFailure {
 /// A hierarchy of levels, and the V-cycle over them.
 #[derive(Debug, Clone)]
 pub struct Multigrid {
-    factors: Factors,
+    base: Base,
+    factors: scaling::InverseFactors,
     finest: Level<3>,
     coarser: Vec<Level<6>>,
 }
@@ -87,46 +89,83 @@ impl Multigrid {
     /// # Panics
     /// If `modes` has not one entry a row.
     pub fn new(matrix: BlockRows<'_>, modes: &[[DVec3; 6]]) -> Result<Self, MultigridFailure> {
-        let all: Vec<u32> = (0..matrix.rows() as u32).collect();
-        Self::of_sub_block(matrix, &all, modes)
+        assert_eq!(modes.len(), matrix.rows(), "one set of modes a row");
+        let (base, parts) = Base::of(matrix, modes, None)?;
+        Self::complete(base, parts, None)
     }
 
-    /// Builds the hierarchy of the rows and columns `kept` (ascending) of a larger matrix, without
-    /// a copy of them in double precision; `modes` has one entry for each of them.
+    /// Prepares the hierarchy of rock that fractures cut; it stands after [`Self::refresh`]. `modes` has
+    /// one entry for each node with unknowns.
     ///
     /// # Errors
     /// If a diagonal block is not positive definite, or an entry not finite.
-    ///
-    /// # Panics
-    /// If `modes` has not one entry a kept row.
-    pub fn of_sub_block(
-        matrix: BlockRows<'_>,
-        kept: &[u32],
+    pub(crate) fn of_fractured(
+        rock: BlockRows<'_>,
         modes: &[[DVec3; 6]],
+        topology: Topology<'_>,
     ) -> Result<Self, MultigridFailure> {
-        assert_eq!(kept.len(), modes.len(), "one set of modes a row");
-        let number = block_rows::numbers(matrix.rows(), kept);
-        let selection = Selection {
-            matrix,
-            kept,
-            number: &number,
+        let (base, _) = Base::of(rock, modes, Some(topology))?;
+        Ok(Self {
+            base,
+            factors: Default::default(),
+            finest: Level::empty(),
+            coarser: Vec::new(),
+        })
+    }
+
+    /// Takes over a stiffness of the fractures. What depends on the rock alone stays.
+    ///
+    /// # Errors
+    /// If a diagonal block is not positive definite, or an entry not finite.
+    pub(crate) fn refresh(
+        &mut self,
+        rock: BlockRows<'_>,
+        springs: Springs<'_>,
+    ) -> Result<(), MultigridFailure> {
+        let base = std::mem::take(&mut self.base);
+        // The old levels make room for the new ones.
+        self.finest = Level::empty();
+        self.coarser.clear();
+        let rows = TangentRows {
+            rock,
+            springs: Some(springs),
+            kept: None,
         };
-        let factors = scaling::factors(selection)?;
-        let scaled = scaling::matrix(selection, &factors);
-        let scaled_modes = scaling::modes(selection, &factors, modes);
-        let factors = scaling::compact(&factors);
-        let (finest, mut next) = level(scaled, &scaled_modes)?;
+        let parts = base.parts(&rows)?;
+        *self = Self::complete(base, parts, Some(springs))?;
+        Ok(())
+    }
+
+    fn complete(
+        base: Base,
+        parts: setup::Parts,
+        springs: Option<Springs<'_>>,
+    ) -> Result<Self, MultigridFailure> {
+        let (factors, finest, mut next) = base.finest(parts, springs)?;
         let mut coarser = Vec::new();
-        while let Some(Coarse { matrix, modes }) = next {
-            let (level, below) = level(matrix, &modes)?;
+        while let Some(galerkin::Coarse { matrix, modes }) = next {
+            let (level, below) = setup::level(matrix, &modes)?;
             coarser.push(level);
             next = below;
         }
         Ok(Self {
+            base: if springs.is_some() {
+                base
+            } else {
+                base.without_rock()
+            },
             factors,
             finest,
             coarser,
         })
+    }
+
+    /// Smooths for spectra that reach further by `margin` than their bounds say.
+    pub(crate) fn widen(&mut self, margin: f64) {
+        self.finest.smoother = self.finest.smoother.with_margin(margin);
+        for level in &mut self.coarser {
+            level.smoother = level.smoother.with_margin(margin);
+        }
     }
 
     /// Vectors for [`Self::apply`].
@@ -147,19 +186,32 @@ impl Multigrid {
     /// # Panics
     /// If the lengths of the vectors differ from the number of rows.
     pub fn apply(&self, residual: &[DVec3], correction: &mut [DVec3], workspace: &mut Workspace) {
-        assert_eq!(residual.len(), self.factors.len(), "one entry a row");
-        assert_eq!(correction.len(), self.factors.len(), "one entry a row");
+        let rows = self.finest.matrix.rows();
+        assert_eq!(residual.len(), rows, "one entry a row");
+        assert_eq!(correction.len(), rows, "one entry a row");
         let Workspace { finest, coarser } = workspace;
         let unit = unit(residual);
-        scaling::to_scaled(&self.factors, residual, unit, &mut finest.right);
+        let (factors, clusters) = (&self.factors, &self.base.clusters);
+        factors.to_scaled(clusters, residual, unit, &mut finest.right);
         self.finest.cycle(finest, &self.coarser, coarser);
-        scaling::from_scaled(&self.factors, &finest.solution, unit, correction);
+        factors.unscaled(clusters, &finest.solution, unit, correction);
+    }
+
+    /// The block Jacobi method: what the clusters alone, each by itself, do about a residual.
+    pub(crate) fn clusters_alone(&self, residual: &[DVec3]) -> Vec<DVec3> {
+        let unit = unit(residual);
+        let (factors, clusters) = (&self.factors, &self.base.clusters);
+        let mut scaled = vec![[0.0; 3]; residual.len()];
+        factors.to_scaled(clusters, residual, unit, &mut scaled);
+        let mut correction = vec![DVec3::ZERO; residual.len()];
+        factors.unscaled(clusters, &scaled, unit, &mut correction);
+        correction
     }
 
     /// Bytes of the hierarchy, workspace not included.
     pub fn memory_bytes(&self) -> usize {
         let coarser: usize = self.coarser.iter().map(Level::bytes).sum();
-        size_of_val(&self.factors[..]) + self.finest.bytes() + coarser
+        self.base.bytes() + self.factors.bytes() + self.finest.bytes() + coarser
     }
 
     /// Sizes of the levels, the finest first.
@@ -208,51 +260,4 @@ fn unit(vector: &[DVec3]) -> f64 {
         true => largest.log2().floor().exp2(),
         false => 1.0,
     }
-}
-
-/// A level, and the next one if it is worth having.
-fn level<const N: usize>(
-    matrix: Sparse<N, N>,
-    modes: &[Modes<N>],
-) -> Result<(Level<N>, Option<Coarse>), MultigridFailure> {
-    let bound = spectrum::largest_eigenvalue(&matrix);
-    if !bound.is_finite() {
-        return Err(MultigridFailure::NotFinite);
-    }
-    let (below, next) = below(&matrix, modes, bound)?;
-    let smoother = Smoother::new(bound);
-    let level = Level {
-        matrix,
-        smoother,
-        below,
-    };
-    Ok((level, next))
-}
-
-fn below<const N: usize>(
-    matrix: &Sparse<N, N>,
-    modes: &[Modes<N>],
-    largest_eigenvalue: f64,
-) -> Result<(Below<N>, Option<Coarse>), MultigridFailure> {
-    if matrix.rows() == 0 {
-        return Ok((Below::Nothing, None));
-    }
-    if N * matrix.rows() <= LARGEST_INVERSE {
-        let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
-        return Ok((Below::Inverse(dense), None));
-    }
-    let aggregates = aggregation::aggregate(matrix, STRENGTH);
-    if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
-        return Ok((Below::Nothing, None));
-    }
-    let tentative = tentative::tentative(&aggregates, modes);
-    let mut prolongator =
-        prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
-    let transpose = Transpose::of(&prolongator, aggregates.count);
-    let coarse = galerkin::coarse(matrix, &mut prolongator, &transpose, &tentative.modes);
-    let transfer = Transfer {
-        prolongator,
-        transpose,
-    };
-    Ok((Below::Level(transfer), Some(coarse)))
 }

@@ -50,6 +50,24 @@ fn add<const N: usize>(sum: &mut [[f64; 6]; N], factor: f64, block: &[[f32; 6]; 
     }
 }
 
+/// `S += A B`, with `A` as columns and `B` as rows: line by line, so that a line stays in registers.
+#[inline]
+pub(super) fn add_columns<const M: usize, const N: usize>(
+    sum: &mut [[f64; 6]; M],
+    a: &[[f64; M]; N],
+    b: &[[f64; 6]; N],
+) {
+    for (i, sum) in sum.iter_mut().enumerate() {
+        let mut line = *sum;
+        for (a, b) in a.iter().zip(b) {
+            for (entry, b) in line.iter_mut().zip(b) {
+                *entry += a[i] * b;
+            }
+        }
+        *sum = line;
+    }
+}
+
 /// `S += factor A B`, with `A` as columns and `B` as rows.
 #[inline]
 pub(super) fn add_product<const N: usize>(
@@ -58,13 +76,6 @@ pub(super) fn add_product<const N: usize>(
     a: &[[f32; N]; N],
     b: &[[f32; 6]; N],
 ) {
-    for (column, line) in a.iter().zip(b) {
-        let line = line.map(f64::from);
-        for (sum, &entry) in sum.iter_mut().zip(column) {
-            let entry = factor * f64::from(entry);
-            for (sum, b) in sum.iter_mut().zip(&line) {
-                *sum += entry * b;
-            }
-        }
-    }
+    let a = a.map(|column| column.map(|entry| factor * f64::from(entry)));
+    add_columns(sum, &a, &b.map(|line| line.map(f64::from)));
 }

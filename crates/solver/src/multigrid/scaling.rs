@@ -1,147 +1,378 @@
 //! The finest matrix in scaled unknowns.
 //!
-//! With `A_ii = L_i L_i^T`, the matrix `L_i^-1 A_ij L_j^-T` has the identity on its diagonal. In
-//! these unknowns the block Jacobi method is Richardson's, the diagonal needs no storage, and
-//! single precision suffices whatever the units and however strongly stiffness and mesh are graded.
+//! With `A_CC = L_C L_C^T` for each cluster `C` of unknowns, the matrix `L_C^-1 A_CD L_D^-T` has the
+//! identity in its diagonal blocks. In these unknowns the block Jacobi method is Richardson's, the
+//! diagonal needs no storage, and single precision suffices whatever the units, however strongly
+//! stiffness and mesh are graded, and however stiff the fractures are.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::MultigridFailure;
-use super::block_rows::BlockRows;
-use super::small::{inverse_factor, narrow, product, transpose};
-use super::sparse::{Sparse, rows_per_task};
+use super::clusters::Clusters;
+use super::prolongation::add_product;
+use super::small::{Packed, narrow, product, transpose, widen};
+use super::sparse::{Accumulator, Sparse, rows_per_task, sum_up};
+use super::tangent::TangentRows;
+use crate::pattern::split;
 
-/// A pivot below this share of the largest diagonal entry shows a singular block.
-const SINGULAR: f64 = 1e-14;
-
-/// Inverse factors `L^-1` of the diagonal blocks, as rows `[a], [b, c], [d, e, f]` one behind the
-/// other.
-pub(super) type Factors = Vec<[f32; 6]>;
+/// Clusters that one task factorises.
+const PER_TASK: usize = 1024;
 
 /// Modes of a node of a level, one row for each of its unknowns.
 pub(super) type Modes<const N: usize> = [[f64; 6]; N];
 
-/// The rows and columns of a larger matrix that a level is made of.
-#[derive(Clone, Copy)]
-pub(super) struct Selection<'a> {
-    pub(super) matrix: BlockRows<'a>,
-    /// Rows that belong to it, ascending.
-    pub(super) kept: &'a [u32],
-    /// New number of each row of the larger matrix.
-    pub(super) number: &'a [u32],
+/// Cholesky factors of the diagonal blocks of the clusters, and their inverses: lower triangles, row
+/// by row, one cluster behind the other.
+pub(super) struct Factors {
+    offset: Vec<usize>,
+    /// `L`.
+    factor: Vec<f64>,
+    /// `L^-1`.
+    inverse: Vec<f64>,
 }
 
-impl Selection<'_> {
-    fn diagonal(&self, new: usize) -> Option<[[f64; 3]; 3]> {
-        let row = self.kept[new] as usize;
-        let found = self
-            .matrix
-            .row(row)
-            .find(|(column, _)| *column as usize == row);
-        found.map(|(_, block)| rows_of(block))
+/// Entries of a lower triangle of a cluster with this number of 3x3 blocks.
+fn entries(blocks: usize) -> usize {
+    3 * blocks * (3 * blocks + 1) / 2
+}
+
+/// Block of a lower triangle; zero above the diagonal.
+fn block(triangle: &[f64], row: usize, column: usize) -> [[f64; 3]; 3] {
+    std::array::from_fn(|r| {
+        let line = 3 * row + r;
+        std::array::from_fn(|c| match 3 * column + c <= line {
+            true => triangle[line * (line + 1) / 2 + 3 * column + c],
+            false => 0.0,
+        })
+    })
+}
+
+impl Factors {
+    /// Factorises the clusters.
+    ///
+    /// # Errors
+    /// If one is not positive definite; the row that shows it.
+    pub(super) fn of(
+        rows: &TangentRows<'_>,
+        clusters: &Clusters,
+    ) -> Result<Self, MultigridFailure> {
+        let mut offset = vec![0; clusters.count() + 1];
+        for cluster in 0..clusters.count() {
+            offset[cluster + 1] = entries(clusters.members.of(cluster).len());
+        }
+        sum_up(&mut offset);
+        let mut factor = vec![0.0; offset[clusters.count()]];
+        let mut inverse = factor.clone();
+        let shares = split(&mut factor, &offset, PER_TASK);
+        let shares = shares
+            .into_par_iter()
+            .zip(split(&mut inverse, &offset, PER_TASK));
+        let done: Result<Vec<()>, MultigridFailure> = shares
+            .map(|((own, mut factors), (_, mut inverses))| {
+                for cluster in own {
+                    let length = offset[cluster + 1] - offset[cluster];
+                    let (factor, inverse);
+                    (factor, factors) = factors.split_at_mut(length);
+                    (inverse, inverses) = inverses.split_at_mut(length);
+                    gather(rows, clusters, cluster, factor);
+                    Packed(factor).factorise_and_invert(inverse).map_err(|at| {
+                        let member = clusters.members.of(cluster)[at / 3];
+                        MultigridFailure::NotPositive(member as usize)
+                    })?;
+                }
+                Ok(())
+            })
+            .collect();
+        done?;
+        Ok(Self {
+            offset,
+            factor,
+            inverse,
+        })
+    }
+
+    fn inverse_of(&self, cluster: u32) -> &[f64] {
+        let cluster = cluster as usize;
+        &self.inverse[self.offset[cluster]..self.offset[cluster + 1]]
+    }
+
+    fn factor_of(&self, cluster: u32) -> &[f64] {
+        let cluster = cluster as usize;
+        &self.factor[self.offset[cluster]..self.offset[cluster + 1]]
+    }
+
+    /// The inverses as they are kept for the cycle.
+    pub(super) fn compact(self) -> InverseFactors {
+        InverseFactors {
+            offset: self.offset,
+            inverse: self.inverse.into_par_iter().map(|x| x as f32).collect(),
+        }
     }
 }
 
-fn rows_of(block: &DMat3) -> [[f64; 3]; 3] {
-    block.transpose().to_cols_array_2d()
-}
-
-/// `L^-1` of every diagonal block.
-pub(super) fn factors(selection: Selection<'_>) -> Result<Vec<[[f64; 3]; 3]>, MultigridFailure> {
-    let factor = |row: usize| {
-        let block = selection.diagonal(row).unwrap_or_default();
-        let (inverse, kept) = inverse_factor(&block, SINGULAR);
-        let finite = inverse.as_flattened().iter().all(|entry| entry.is_finite());
-        match finite && kept == [true; 3] {
-            true => Ok(inverse),
-            false => Err(MultigridFailure::NotPositive(row)),
-        }
-    };
-    (0..selection.kept.len())
-        .into_par_iter()
-        .map(factor)
-        .collect()
-}
-
-/// The scaled matrix without its diagonal; blocks that are zero, as beside held nodes, are dropped.
-pub(super) fn matrix(selection: Selection<'_>, factors: &[[[f64; 3]; 3]]) -> Sparse<3, 3> {
-    let coupled = |row: usize| {
-        let blocks = selection.matrix.row(selection.kept[row] as usize);
-        blocks.filter_map(move |(column, block)| {
-            let column = *selection.number.get(column as usize)?;
-            let coupled = column as usize != row && *block != DMat3::ZERO;
-            (coupled && (column as usize) < factors.len()).then_some((column, block))
-        })
-    };
-    Sparse::build(
-        selection.kept.len(),
-        rows_per_task::<3>(),
-        || (),
-        |(), row| coupled(row).count(),
-        |(), row, columns, blocks| {
-            for (place, (column, block)) in coupled(row).enumerate() {
-                let right = transpose(&factors[column as usize]);
-                let scaled = product(&product(&factors[row], &rows_of(block)), &right);
-                columns[place] = column;
-                blocks[place] = narrow(&transpose(&scaled));
+/// The lower triangle of a cluster's block.
+fn gather(rows: &TangentRows<'_>, clusters: &Clusters, cluster: usize, triangle: &mut [f64]) {
+    for (at, &row) in clusters.members.of(cluster).iter().enumerate() {
+        rows.for_each(row as usize, |column, value| {
+            let (other, place) = clusters.place[column as usize];
+            if other as usize != cluster || place as usize > at {
+                return;
             }
+            let place = place as usize;
+            for (r, c) in (0..3).flat_map(|r| (0..3).map(move |c| (r, c))) {
+                let line = 3 * at + r;
+                if 3 * place + c <= line {
+                    triangle[line * (line + 1) / 2 + 3 * place + c] = value.col(c)[r];
+                }
+            }
+        });
+    }
+}
+
+/// The scaled matrix without its diagonal blocks; blocks as columns.
+pub(super) fn matrix(
+    rows: &TangentRows<'_>,
+    clusters: &Clusters,
+    factors: &Factors,
+) -> Sparse<3, 3> {
+    Sparse::build(
+        rows.count(),
+        rows_per_task::<3>(),
+        || Accumulator::<3, 3>::new(rows.count()),
+        |sums, row| {
+            if let Some(count) = single_neighbours(rows, clusters, row) {
+                return count;
+            }
+            coupled(rows, clusters, row, |_, _, other, place| {
+                let members = clusters.members.of(other as usize);
+                members[place..].iter().for_each(|&at| sums.touch(at));
+            });
+            sums.take_count()
+        },
+        |sums, row, columns, blocks| {
+            let (own, at) = clusters.place[row];
+            let left = factors.inverse_of(own);
+            if single_neighbours(rows, clusters, row).is_some() {
+                let left = block(left, 0, 0);
+                let mut targets = columns.iter_mut().zip(blocks);
+                rows.for_each(row, |column, value| {
+                    let (other, _) = clusters.place[column as usize];
+                    if other != own
+                        && let Some((target, sum)) = targets.next()
+                    {
+                        *target = column;
+                        let right = block(factors.inverse_of(other), 0, 0);
+                        *sum = narrow(&product_transposed(&times(&left, value), &right));
+                    }
+                });
+                return;
+            }
+            coupled(rows, clusters, row, |member, value, other, place| {
+                let scaled = times(&block(left, at as usize, member), value);
+                let right = factors.inverse_of(other);
+                let members = &clusters.members.of(other as usize)[place..];
+                for (next, &column) in members.iter().enumerate() {
+                    let right = block(right, place + next, place);
+                    let part = product_transposed(&scaled, &right);
+                    let sum = sums.at(column).as_flattened_mut();
+                    let pairs = sum.iter_mut().zip(part.as_flattened());
+                    pairs.for_each(|(sum, part)| *sum += part);
+                }
+            });
+            sums.take(columns, blocks);
         },
     )
 }
 
-/// Modes in scaled unknowns: `L^T B`, with `L^T = L^-1 A_ii`.
-pub(super) fn modes(
-    selection: Selection<'_>,
-    factors: &[[[f64; 3]; 3]],
-    modes: &[[DVec3; 6]],
-) -> Vec<Modes<3>> {
-    let scaled = |row: usize| {
-        let block = selection.diagonal(row).unwrap_or_default();
-        let modes = modes[row].map(|mode| mode.to_array());
-        product(&product(&factors[row], &block), &transpose(&modes))
-    };
-    (0..selection.kept.len())
-        .into_par_iter()
-        .map(scaled)
-        .collect()
+/// Blocks that the scaled row depends on and that lie outside the diagonal block: the place of the
+/// row they stand in, the block, and cluster and place of its column.
+#[inline]
+fn coupled(
+    rows: &TangentRows<'_>,
+    clusters: &Clusters,
+    row: usize,
+    mut treat: impl FnMut(usize, &DMat3, u32, usize),
+) {
+    let (own, at) = clusters.place[row];
+    let members = &clusters.members.of(own as usize)[..=at as usize];
+    for (member, &at) in members.iter().enumerate() {
+        rows.for_each(at as usize, |column, value| {
+            let (other, place) = clusters.place[column as usize];
+            if other != own {
+                treat(member, value, other, place as usize);
+            }
+        });
+    }
 }
 
-/// Factors as they are kept for the cycle.
-pub(super) fn compact(factors: &[[[f64; 3]; 3]]) -> Factors {
-    let compact = |[[a, ..], [b, c, _], [d, e, f]]: &[[f64; 3]; 3]| {
-        [*a, *b, *c, *d, *e, *f].map(|entry| entry as f32)
-    };
-    factors.par_iter().map(compact).collect()
+/// `L A`, with `A` as columns.
+#[inline]
+fn times(left: &[[f64; 3]; 3], value: &DMat3) -> [[f64; 3]; 3] {
+    let columns = value.to_cols_array_2d();
+    left.map(|line| columns.map(|c| line[0] * c[0] + line[1] * c[1] + line[2] * c[2]))
 }
 
-/// `L^-1 r`, divided by `unit`.
-pub(super) fn to_scaled(factors: &Factors, residual: &[DVec3], unit: f64, scaled: &mut [[f32; 3]]) {
-    let tasks = scaled.par_chunks_mut(rows_per_task::<3>()).enumerate();
-    tasks.for_each(|(task, chunk)| {
-        let start = task * rows_per_task::<3>();
-        let source = factors[start..].iter().zip(&residual[start..]);
-        for (scaled, (&[a, b, c, d, e, f], &force)) in chunk.iter_mut().zip(source) {
-            let [x, y, z] = (force / unit).as_vec3().to_array();
-            *scaled = [a * x, b * x + c * y, d * x + e * y + f * z];
+/// `B L^T`, as columns.
+#[inline]
+fn product_transposed(b: &[[f64; 3]; 3], l: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    l.map(|l| b.map(|b| b[0] * l[0] + b[1] * l[1] + b[2] * l[2]))
+}
+
+/// Number of other clusters beside a row, if they and its own are single rows.
+fn single_neighbours(rows: &TangentRows<'_>, clusters: &Clusters, row: usize) -> Option<usize> {
+    let (mut count, mut others) = (0, 0);
+    rows.for_each(row, |column, _| {
+        let (cluster, _) = clusters.place[column as usize];
+        others += clusters.members.of(cluster as usize).len() - 1;
+        count += usize::from(column as usize != row);
+    });
+    (others == 0).then_some(count)
+}
+
+/// A prolongator in scaled unknowns, `L^T P`.
+pub(super) fn prolongator(
+    basis: &Sparse<3, 6>,
+    columns: usize,
+    clusters: &Clusters,
+    factors: &Factors,
+) -> Sparse<3, 6> {
+    let after = |row: usize| {
+        let (own, at) = clusters.place[row];
+        let members = &clusters.members.of(own as usize)[at as usize..];
+        (own, at as usize, members)
+    };
+    Sparse::build(
+        basis.rows(),
+        rows_per_task::<3>(),
+        || Accumulator::<3, 6>::new(columns),
+        |sums, row| {
+            for &member in after(row).2 {
+                let columns = &basis.columns[basis.range(member as usize)];
+                columns.iter().for_each(|&column| sums.touch(column));
+            }
+            sums.take_count()
+        },
+        |sums, row, columns, blocks| {
+            let (own, at, members) = after(row);
+            let factor = factors.factor_of(own);
+            for (next, &member) in members.iter().enumerate() {
+                // Columns of `L^T`, which `add_product` wants, are rows of `L`.
+                let left = block(factor, at + next, at).map(|line| line.map(|x| x as f32));
+                for (column, value) in basis.row(member as usize) {
+                    add_product(sums.at(column as u32), 1.0, &left, value);
+                }
+            }
+            sums.take(columns, blocks);
+        },
+    )
+}
+
+/// Modes in scaled unknowns, `L^T B`, where every cluster is a single row.
+pub(super) fn modes(factors: &Factors, modes: &[[DVec3; 6]]) -> Vec<Modes<3>> {
+    let scaled = |(cluster, modes): (usize, &[DVec3; 6])| {
+        let factor = transpose(&block(factors.factor_of(cluster as u32), 0, 0));
+        let modes = transpose(&modes.map(|mode| mode.to_array()));
+        product(&factor, &modes)
+    };
+    modes.par_iter().enumerate().map(scaled).collect()
+}
+
+/// A prolongator of single rows in unknowns that are not scaled, `L^-T P`.
+pub(super) fn unscale(factors: &Factors, prolongator: &mut Sparse<3, 6>) {
+    let rows = rows_per_task::<3>();
+    let offset = &prolongator.offset;
+    let shares = split(&mut prolongator.blocks, offset, rows);
+    shares.into_par_iter().for_each(|(own, blocks)| {
+        let start = offset[own.start];
+        for row in own {
+            let left = transpose(&block(factors.inverse_of(row as u32), 0, 0));
+            for value in &mut blocks[offset[row] - start..offset[row + 1] - start] {
+                let wide = widen(value);
+                *value = narrow(&product(&left, &wide));
+            }
         }
     });
 }
 
-/// `unit L^-T z`.
-pub(super) fn from_scaled(
-    factors: &Factors,
-    scaled: &[[f32; 3]],
-    unit: f64,
-    correction: &mut [DVec3],
-) {
-    let tasks = correction.par_chunks_mut(rows_per_task::<3>()).enumerate();
+/// `L^-1` of the clusters in single precision, as [`Factors`] has them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct InverseFactors {
+    offset: Vec<usize>,
+    inverse: Vec<f32>,
+}
+
+impl InverseFactors {
+    fn of(&self, cluster: u32) -> &[f32] {
+        let cluster = cluster as usize;
+        &self.inverse[self.offset[cluster]..self.offset[cluster + 1]]
+    }
+
+    /// `L^-1 r`, divided by `unit`.
+    pub(super) fn to_scaled(
+        &self,
+        clusters: &Clusters,
+        residual: &[DVec3],
+        unit: f64,
+        scaled: &mut [[f32; 3]],
+    ) {
+        each_row(scaled, |row| {
+            let (own, at) = clusters.place[row];
+            let members = &clusters.members.of(own as usize)[..=at as usize];
+            let inverse = self.of(own);
+            let mut sum = [0.0; 3];
+            for (member, &other) in members.iter().enumerate() {
+                let force = (residual[other as usize] / unit).as_vec3().to_array();
+                for (r, sum) in sum.iter_mut().enumerate() {
+                    let line = 3 * at as usize + r;
+                    let weights = &inverse[line * (line + 1) / 2..][..=line];
+                    let own = weights[3 * member..].iter().zip(&force);
+                    *sum += own.map(|(weight, force)| weight * force).sum::<f32>();
+                }
+            }
+            sum
+        });
+    }
+
+    /// `unit L^-T z`.
+    pub(super) fn unscaled(
+        &self,
+        clusters: &Clusters,
+        scaled: &[[f32; 3]],
+        unit: f64,
+        correction: &mut [DVec3],
+    ) {
+        each_row(correction, |row| {
+            let (own, at) = clusters.place[row];
+            let at = at as usize;
+            let members = &clusters.members.of(own as usize)[at..];
+            let inverse = self.of(own);
+            let mut sum = [0.0; 3];
+            for (next, &other) in members.iter().enumerate() {
+                for (r, &entry) in scaled[other as usize].iter().enumerate() {
+                    let line = 3 * (at + next) + r;
+                    let weights = &inverse[line * (line + 1) / 2..][..=line];
+                    for (sum, weight) in sum.iter_mut().zip(&weights[3 * at..]) {
+                        *sum += weight * entry;
+                    }
+                }
+            }
+            unit * DVec3::from_array(sum.map(f64::from))
+        });
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.offset[..]) + size_of_val(&self.inverse[..])
+    }
+}
+
+fn each_row<T: Send>(targets: &mut [T], entry: impl Fn(usize) -> T + Sync) {
+    let rows = rows_per_task::<3>();
+    let tasks = targets.par_chunks_mut(rows).enumerate();
     tasks.for_each(|(task, chunk)| {
-        let start = task * rows_per_task::<3>();
-        let source = factors[start..].iter().zip(&scaled[start..]);
-        for (correction, (&[a, b, c, d, e, f], &[x, y, z])) in chunk.iter_mut().zip(source) {
-            let back = [a * x + b * y + d * z, c * y + e * z, f * z];
-            *correction = unit * DVec3::from_array(back.map(f64::from));
+        for (place, target) in chunk.iter_mut().enumerate() {
+            *target = entry(task * rows + place);
         }
     });
 }

@@ -76,3 +76,43 @@ pub(super) fn widen<const M: usize, const L: usize>(block: &[[f32; L]; M]) -> [[
 pub(super) fn narrow<const M: usize, const L: usize>(block: &[[f64; L]; M]) -> [[f32; L]; M] {
     block.map(|line| line.map(|entry| entry as f32))
 }
+
+/// A pivot below this share of its diagonal entry shows a singular block.
+const SINGULAR: f64 = 1e-14;
+
+/// The lower triangle of a symmetric matrix, row by row.
+pub(super) struct Packed<'a>(pub(super) &'a mut [f64]);
+
+impl Packed<'_> {
+    /// Replaces `A` by its Cholesky factor `L` and writes `L^-1`.
+    ///
+    /// # Errors
+    /// The row of the first pivot that is not positive, or not finite.
+    pub(super) fn factorise_and_invert(self, inverse: &mut [f64]) -> Result<(), usize> {
+        let row = |i: usize| i * (i + 1) / 2;
+        let a = self.0;
+        let mut size = 0;
+        while row(size) < a.len() {
+            let i = size;
+            let diagonal = a[row(i) + i];
+            for j in 0..=i {
+                let known: f64 = (0..j).map(|k| a[row(i) + k] * a[row(j) + k]).sum();
+                let rest = a[row(i) + j] - known;
+                a[row(i) + j] = match j == i {
+                    false => rest / a[row(j) + j],
+                    true if rest > SINGULAR * diagonal && rest.is_finite() => rest.sqrt(),
+                    true => return Err(i),
+                };
+            }
+            size += 1;
+        }
+        for j in 0..size {
+            inverse[row(j) + j] = 1.0 / a[row(j) + j];
+            for i in j + 1..size {
+                let known: f64 = (j..i).map(|k| a[row(i) + k] * inverse[row(k) + j]).sum();
+                inverse[row(i) + j] = -known / a[row(i) + i];
+            }
+        }
+        Ok(())
+    }
+}

@@ -13,6 +13,7 @@ const DEGREE: usize = 2;
 /// `d_k = a_k d_(k-1) + b_k (r - A z_(k-1))`, `z_k = z_(k-1) + d_k`.
 #[derive(Debug, Clone)]
 pub(super) struct Smoother {
+    largest_eigenvalue: f64,
     /// `a_k` and `b_k`.
     steps: [(f32, f32); DEGREE],
 }
@@ -51,7 +52,16 @@ impl Smoother {
             (a as f32, b as f32)
         };
         Self {
+            largest_eigenvalue,
             steps: std::array::from_fn(step),
+        }
+    }
+
+    /// For a spectrum that reaches further by `margin` than the bound says.
+    pub(super) fn with_margin(&self, margin: f64) -> Self {
+        Self {
+            largest_eigenvalue: self.largest_eigenvalue,
+            ..Self::new(margin * self.largest_eigenvalue)
         }
     }
 

@@ -69,6 +69,15 @@ pub(super) fn sum_up(counts: &mut [usize]) {
 }
 
 impl<const M: usize, const L: usize> Sparse<M, L> {
+    /// A matrix without rows.
+    pub(super) fn empty() -> Self {
+        Self {
+            offset: vec![0],
+            columns: Vec::new(),
+            blocks: Vec::new(),
+        }
+    }
+
     /// Number of rows.
     pub(super) fn rows(&self) -> usize {
         self.offset.len() - 1
@@ -86,6 +95,21 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
         columns
             .map(|&column| column as usize)
             .zip(&self.blocks[range])
+    }
+
+    /// The matrix of some of its rows.
+    pub(super) fn of_rows(&self, rows: &[u32]) -> Self {
+        Self::build(
+            rows.len(),
+            rows_per_task::<M>(),
+            || (),
+            |(), row| self.range(rows[row] as usize).len(),
+            |(), row, columns, blocks| {
+                let range = self.range(rows[row] as usize);
+                columns.copy_from_slice(&self.columns[range.clone()]);
+                blocks.copy_from_slice(&self.blocks[range]);
+            },
+        )
     }
 
     /// Bytes of storage.

@@ -4,6 +4,7 @@ use faer::{Mat, Side};
 use rayon::prelude::*;
 
 use super::sparse::{Sparse, rows_per_task};
+use crate::dense::apart;
 
 /// Lanczos steps; the bound is a few per cent too large after them.
 const STEPS: usize = 10;
@@ -50,7 +51,7 @@ fn bound(diagonal: &[f64], beside: &[f64]) -> f64 {
         1 => beside[i.min(j)],
         _ => 0.0,
     });
-    let Ok(eigen) = tridiagonal.self_adjoint_eigen(Side::Lower) else {
+    let Ok(eigen) = apart(|| tridiagonal.self_adjoint_eigen(Side::Lower)) else {
         return f64::NAN;
     };
     let last = size - 1;

@@ -186,16 +186,16 @@ fn iterations_hardly_grow_with_the_mesh() {
 #[test]
 fn rigid_motions_are_prolonged_exactly() {
     let matrix = CLAMPED.case();
-    let number: Vec<u32> = (0..matrix.modes.len() as u32).collect();
-    let selection = Selection {
-        matrix: matrix.matrix.view(),
-        kept: &number,
-        number: &number,
+    let rows = TangentRows {
+        rock: matrix.matrix.view(),
+        springs: None,
+        kept: None,
     };
-    let factors = scaling::factors(selection).unwrap();
-    let scaled = scaling::matrix(selection, &factors);
-    let modes = scaling::modes(selection, &factors, &matrix.modes);
-    let aggregates = aggregation::aggregate(&scaled, STRENGTH);
+    let single = clusters::Clusters::single(rows.count());
+    let factors = scaling::Factors::of(&rows, &single).unwrap();
+    let scaled = scaling::matrix(&rows, &single, &factors);
+    let modes = scaling::modes(&factors, &matrix.modes);
+    let aggregates = aggregation::aggregate(&scaled, setup::STRENGTH);
     let tentative = tentative::tentative(&aggregates, &modes);
     for (node, &aggregate) in aggregates.of_node.iter().enumerate() {
         if aggregate == aggregation::ALONE {
@@ -416,34 +416,4 @@ fn a_block_that_is_not_positive_is_named() {
     case.matrix.blocks[3].z_axis.z = f64::NAN;
     let failure = Multigrid::new(case.matrix.view(), &case.modes).map(|_| ());
     assert_eq!(failure, Err(MultigridFailure::NotPositive(3)));
-}
-
-#[test]
-fn a_sub_block_is_the_matrix_of_the_kept_rows() {
-    let counts = [9; 3];
-    let case = Box { counts, ..CLAMPED }.case();
-    let kept: Vec<u32> = (0..case.modes.len() as u32)
-        .filter(|row| row % 7 != 0)
-        .collect();
-    let sub = case.matrix.view().sub_block(&kept);
-    let mut whole = vec![DVec3::ZERO; case.modes.len()];
-    let part = random(kept.len(), 5);
-    for (&row, value) in kept.iter().zip(&part) {
-        whole[row as usize] = *value;
-    }
-    let mut whole_product = whole.clone();
-    case.matrix.view().multiply(&whole, &mut whole_product);
-    let mut product = part.clone();
-    sub.view().multiply(&part, &mut product);
-    for (&row, value) in kept.iter().zip(&product) {
-        // The sums of a row are grouped by its length, so they agree to rounding.
-        assert!((whole_product[row as usize] - *value).length() < 1e-15);
-    }
-    let modes: Vec<[DVec3; 6]> = kept.iter().map(|&row| case.modes[row as usize]).collect();
-    let direct = Multigrid::of_sub_block(case.matrix.view(), &kept, &modes).unwrap();
-    let copied = Multigrid::new(sub.view(), &modes).unwrap();
-    let (mut one, mut other) = (part.clone(), part.clone());
-    direct.apply(&part, &mut one, &mut direct.workspace());
-    copied.apply(&part, &mut other, &mut copied.workspace());
-    assert_eq!(one, other);
 }

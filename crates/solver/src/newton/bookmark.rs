@@ -49,8 +49,12 @@ impl Newton {
     ///
     /// # Errors
     /// If the linear solver cannot be brought to where it was.
-    pub fn turn_to(&mut self, bookmark: Bookmark<'_>) -> Result<State, LinearFailure> {
-        self.linear.restore(bookmark.linear)?;
+    pub fn turn_to(
+        &mut self,
+        system: &System<'_>,
+        bookmark: Bookmark<'_>,
+    ) -> Result<State, LinearFailure> {
+        self.linear.restore(system, bookmark.linear)?;
         self.path = bookmark.path.into_owned();
         self.subspace = bookmark.subspace.into_owned();
         Ok(bookmark.state.into_owned())

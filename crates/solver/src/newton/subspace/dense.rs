@@ -2,6 +2,8 @@
 
 use faer::{Mat, Side};
 
+use crate::dense::apart;
+
 /// Eigenvalue, against the largest, below which directions are not told from each other.
 const DEPENDENT: f64 = 1e-12;
 
@@ -15,7 +17,7 @@ pub(super) fn solve(mut matrix: Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
     for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (i, j))) {
         matrix[(i, j)] *= scale[i] * scale[j];
     }
-    let eigen = matrix.self_adjoint_eigen(Side::Lower).ok()?;
+    let eigen = apart(|| matrix.self_adjoint_eigen(Side::Lower)).ok()?;
     let (vectors, values) = (eigen.U(), eigen.S());
     let most = (0..count).map(|k| values[k]).fold(0.0, f64::max);
     let mut solution = vec![0.0; count];
@@ -36,7 +38,7 @@ pub(super) fn principal_axes(vectors: &[Vec<f64>], fading: f64, count: usize) ->
     let length = vectors.first().map_or(0, Vec::len);
     let weight = |j: usize| fading.powi(j as i32);
     let matrix = Mat::from_fn(length, vectors.len(), |i, j| weight(j) * vectors[j][i]);
-    let Ok(parts) = matrix.thin_svd() else {
+    let Ok(parts) = apart(|| matrix.thin_svd()) else {
         return Vec::new();
     };
     let (axes, values) = (parts.U(), parts.S());

@@ -1,0 +1,355 @@
+//! Copies: the motions of aggregates that fractures cut, one for each piece.
+//!
+//! An aggregate of the intact rock moves nodes on both sides of a fracture. Cut along the facets,
+//! its motion falls into pieces; each becomes a motion of its own, as a node falls into points. So the
+//! next level knows smooth jumps as the finest one knows jumps, which nothing else can take care of
+//! at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one whose sides
+//! follow it to the distance `L`. Small pieces make no copies of their own but follow those beside them, so that
+//! whatever moves rigidly on the finest level still does so exactly on the next one.
+
+use lie_mesh::Elements;
+use rayon::prelude::*;
+
+use super::scaling::Modes;
+use super::setup::Means;
+use super::small::{narrow, product, widen};
+use super::sparse::{Sparse, rows_per_task};
+use super::tangent::rows_of;
+use crate::pattern::Pattern;
+use crate::points::Points;
+use crate::supports::Supports;
+
+/// A piece with less than this share of the motion of its aggregate follows that of another one.
+const SMALL: f64 = 0.02;
+/// Marks a piece that does so.
+const FOLLOWS: u32 = u32::MAX;
+/// Aggregates that one task cuts.
+const PER_TASK: usize = 64;
+const NOWHERE: u32 = u32::MAX;
+
+/// How nodes, points and cells hang together.
+#[derive(Clone, Copy)]
+pub(crate) struct Topology<'a> {
+    pub(crate) points: &'a Points,
+    pub(crate) pattern: &'a Pattern,
+    pub(crate) cells: &'a Elements,
+    pub(crate) supports: &'a Supports,
+    /// Whether aggregates that fractures cut fall into pieces.
+    pub(crate) is_cut: bool,
+}
+
+/// The pieces of all aggregates.
+pub(super) struct Copies<'a> {
+    topology: Topology<'a>,
+    means: &'a Means,
+    /// Row of `means` of each node.
+    row_of_node: &'a [u32],
+    /// First copy of each aggregate; one entry more than there are aggregates.
+    offset: Vec<u32>,
+    /// Piece of each point that an aggregate moves, or [`FOLLOWS`], points ascending; empty if it is whole.
+    pieces: Vec<Vec<(u32, u32)>>,
+    /// `R^-1` of the modes of each aggregate, if they do not depend on each other.
+    inverse: Vec<Option<Modes<6>>>,
+}
+
+impl<'a> Copies<'a> {
+    /// Cuts the aggregates of `means`, which has a row for each of `nodes`.
+    pub(super) fn of(
+        topology: Topology<'a>,
+        means: &'a Means,
+        nodes: &[u32],
+        row_of_node: &'a [u32],
+    ) -> Self {
+        let aggregates = means.transpose.columns();
+        let cuts: Vec<Cut> = (0..aggregates)
+            .into_par_iter()
+            .with_min_len(PER_TASK)
+            .map_init(
+                || vec![NOWHERE; topology.points.len()],
+                |number, aggregate| {
+                    let moved = moved(topology, nodes, means, aggregate);
+                    cut(topology, &moved, number)
+                },
+            )
+            .collect();
+        let mut copies = Self {
+            topology,
+            means,
+            row_of_node,
+            offset: vec![0],
+            inverse: means.modes.iter().map(inverse).collect(),
+            pieces: Vec::new(),
+        };
+        let numbered = (0..aggregates).into_par_iter();
+        let numbered = numbered.map(|aggregate| copies.numbered(&cuts, aggregate));
+        let numbered: Vec<(u32, Vec<(u32, u32)>)> = numbered.collect();
+        for (count, pieces) in numbered {
+            let last = copies.offset[copies.pieces.len()];
+            copies.offset.push(last + count);
+            copies.pieces.push(pieces);
+        }
+        copies
+    }
+
+    /// Numbers the pieces of an aggregate that become copies, and tells how many they are: those that are not
+    /// small, or have a point that no other aggregate could move in their stead.
+    fn numbered(&self, cuts: &[Cut], aggregate: usize) -> (u32, Vec<(u32, u32)>) {
+        let Cut { pieces, is_small } = &cuts[aggregate];
+        let mut is_copy: Vec<bool> = is_small.iter().map(|small| !small).collect();
+        for &(point, piece) in pieces {
+            let has_host = self.entries(point as usize).any(|(other, _)| {
+                other != aggregate && self.inverse[other].is_some() && cuts[other].is_host(point)
+            });
+            is_copy[piece as usize] |= !has_host;
+        }
+        let mut number = vec![FOLLOWS; is_copy.len()];
+        let mut count = 0;
+        for (number, _) in number
+            .iter_mut()
+            .zip(is_copy)
+            .filter(|(_, is_copy)| *is_copy)
+        {
+            *number = count;
+            count += 1;
+        }
+        let pieces = pieces.iter();
+        let pieces = pieces.map(|&(point, piece)| (point, number[piece as usize]));
+        (count.max(1), pieces.collect())
+    }
+
+    /// Aggregates that move the node of a point, and how.
+    fn entries(&self, point: usize) -> impl Iterator<Item = (usize, &[[f32; 6]; 3])> {
+        let node = self.topology.points.node[point] as usize;
+        self.means.prolongator.row(self.row_of_node[node] as usize)
+    }
+
+    /// Modes of each copy: those of its aggregate.
+    pub(super) fn modes(&self) -> Vec<Modes<6>> {
+        let copies = self.offset.windows(2).map(|pair| pair[1] - pair[0]);
+        let repeated = self.means.modes.iter().zip(copies);
+        repeated
+            .flat_map(|(modes, copies)| std::iter::repeat_n(*modes, copies as usize))
+            .collect()
+    }
+
+    /// The copy as which an aggregate moves a point; none if it follows another one.
+    fn at(&self, aggregate: usize, point: usize) -> Option<u32> {
+        let list = &self.pieces[aggregate];
+        let found = list.binary_search_by_key(&(point as u32), |(point, _)| *point);
+        let piece = found.map_or(0, |at| list[at].1);
+        (piece != FOLLOWS).then(|| self.offset[aggregate] + piece)
+    }
+
+    /// The aggregate that moves a point most, of those that others can follow.
+    fn host(&self, point: usize) -> Option<usize> {
+        let weight =
+            |block: &[[f32; 6]; 3]| block.as_flattened().iter().map(|x| x * x).sum::<f32>();
+        let hosts = self.entries(point);
+        let hosts = hosts.filter(|(aggregate, _)| {
+            self.inverse[*aggregate].is_some() && self.at(*aggregate, point).is_some()
+        });
+        // `max_by` keeps the last of equals: the order of the columns decides.
+        let most = hosts.max_by(|a, b| weight(a.1).total_cmp(&weight(b.1)));
+        most.map(|(aggregate, _)| aggregate)
+    }
+
+    /// Copies that move a point, and how, as far as it is not held. A motion that follows that of a host is
+    /// the same rigid one: `R_i R_j^-1`.
+    fn motions(&self, point: usize) -> Vec<(u32, [[f64; 6]; 3])> {
+        let hold = self.topology.supports.hold(point);
+        let free = hold.map(|hold| rows_of(&hold.free));
+        let motion = |(aggregate, block): (usize, &[[f32; 6]; 3])| {
+            let block = match &free {
+                Some(free) => product(free, &widen(block)),
+                None => widen(block),
+            };
+            if let Some(copy) = self.at(aggregate, point) {
+                return Some((copy, block));
+            }
+            let host = self.host(point)?;
+            let rigid = product(&self.means.modes[aggregate], self.inverse[host].as_ref()?);
+            Some((self.at(host, point)?, product(&block, &rigid)))
+        };
+        self.entries(point).filter_map(motion).collect()
+    }
+
+    /// Rows of all unknowns: the mean displacement is the mean of the motions of the points of its node,
+    /// jump `k` the motion of sector `k` less that of sector 0.
+    pub(super) fn prolongator(&self) -> Sparse<3, 6> {
+        let points = self.topology.points;
+        let terms = |unknown: usize| {
+            let own = points.of_node(points.node[unknown] as usize);
+            let weight = match unknown - own.start {
+                0 => 1.0 / own.len() as f64,
+                _ => 1.0,
+            };
+            let plus = if unknown == own.start {
+                own.clone()
+            } else {
+                unknown..unknown + 1
+            };
+            let minus = own.start..own.start + usize::from(unknown > own.start);
+            let signed = plus.map(move |point| (weight, point));
+            let signed = signed.chain(minus.map(|point| (-1.0, point)));
+            let motions = signed.flat_map(|(weight, point)| {
+                let motions = self.motions(point).into_iter();
+                motions.map(move |(copy, block)| (copy, weight, block))
+            });
+            self.cancelled(motions.collect())
+        };
+        Sparse::build(
+            points.len(),
+            rows_per_task::<3>(),
+            || (),
+            |(), unknown| terms(unknown).len(),
+            |(), unknown, columns, blocks| {
+                for (place, (copy, block)) in terms(unknown).into_iter().enumerate() {
+                    (columns[place], blocks[place]) = (copy, narrow(&block));
+                }
+            },
+        )
+    }
+
+    /// Sums by copy, ascending, without those that are zero, as where both sides move alike.
+    fn cancelled(&self, mut terms: Vec<(u32, f64, [[f64; 6]; 3])>) -> Vec<(u32, [[f64; 6]; 3])> {
+        terms.sort_by_key(|(copy, ..)| *copy);
+        let mut sums: Vec<(u32, [[f64; 6]; 3])> = Vec::with_capacity(terms.len());
+        for (copy, weight, block) in terms {
+            if sums.last().is_none_or(|(last, _)| *last != copy) {
+                sums.push((copy, [[0.0; 6]; 3]));
+            }
+            if let Some((_, sum)) = sums.last_mut() {
+                let pairs = sum.as_flattened_mut().iter_mut().zip(block.as_flattened());
+                pairs.for_each(|(sum, entry)| *sum += weight * entry);
+            }
+        }
+        sums.retain(|(_, sum)| sum.as_flattened().iter().any(|entry| *entry != 0.0));
+        sums
+    }
+}
+
+/// The pieces of an aggregate.
+struct Cut {
+    /// Piece of each point, points ascending; empty if it is whole.
+    pieces: Vec<(u32, u32)>,
+    /// Whether a piece has but a small share of the motion.
+    is_small: Vec<bool>,
+}
+
+impl Cut {
+    /// Whether others can follow its motion of a point.
+    fn is_host(&self, point: u32) -> bool {
+        let found = self
+            .pieces
+            .binary_search_by_key(&point, |(point, _)| *point);
+        found.is_ok_and(|at| !self.is_small[self.pieces[at].1 as usize]) || self.pieces.is_empty()
+    }
+}
+
+/// Inverse of an upper triangle, if it has one.
+fn inverse(triangle: &Modes<6>) -> Option<Modes<6>> {
+    let mut inverse = [[0.0; 6]; 6];
+    for j in 0..6 {
+        if triangle[j][j] <= 0.0 {
+            return None;
+        }
+        inverse[j][j] = 1.0 / triangle[j][j];
+        for i in (0..j).rev() {
+            let known: f64 = (i + 1..=j).map(|k| triangle[i][k] * inverse[k][j]).sum();
+            inverse[i][j] = -known / triangle[i][i];
+        }
+    }
+    Some(inverse)
+}
+
+/// The points of the nodes that an aggregate moves, ascending, and how much; none if it has no node
+/// with several points.
+fn moved(
+    topology: Topology<'_>,
+    nodes: &[u32],
+    means: &Means,
+    aggregate: usize,
+) -> Vec<(u32, f64)> {
+    let column = means.transpose.column(aggregate);
+    let own = |row: u32| topology.points.of_node(nodes[row as usize] as usize);
+    if !topology.is_cut || column.iter().all(|&(row, _)| own(row).len() == 1) {
+        return Vec::new();
+    }
+    let points = column.iter().flat_map(|&(row, position)| {
+        let block = &means.prolongator.blocks[position as usize];
+        let squares = block.as_flattened().iter().map(|x| f64::from(x * x));
+        let weight: f64 = squares.sum();
+        own(row).map(move |point| (point as u32, weight))
+    });
+    points.collect()
+}
+
+/// Numbers the pieces into which the facets cut the points of an aggregate. `number` is room,
+/// [`NOWHERE`] for all points before and after.
+fn cut(topology: Topology<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut {
+    let Topology {
+        points,
+        pattern,
+        cells,
+        ..
+    } = topology;
+    for (place, (point, _)) in moved.iter().enumerate() {
+        number[*point as usize] = place as u32;
+    }
+    let mut lowest: Vec<u32> = (0..moved.len() as u32).collect();
+    for (place, &(point, _)) in moved.iter().enumerate() {
+        for &slot in pattern.slots.of(points.node[point as usize] as usize) {
+            if points.of_cell_node[slot as usize] != point {
+                continue;
+            }
+            let (_, slots) = pattern.cell_of_slot.locate(slot, cells);
+            for other in &points.of_cell_node[slots] {
+                let other = number[*other as usize];
+                if other != NOWHERE {
+                    let (a, b) = (root(&mut lowest, place as u32), root(&mut lowest, other));
+                    lowest[a.max(b) as usize] = a.min(b);
+                }
+            }
+        }
+    }
+    for (point, _) in moved {
+        number[*point as usize] = NOWHERE;
+    }
+    let roots: Vec<u32> = (0..moved.len() as u32)
+        .map(|place| root(&mut lowest, place))
+        .collect();
+    let mut pieces = roots.clone();
+    pieces.sort_unstable();
+    pieces.dedup();
+    if pieces.len() < 2 {
+        return Cut {
+            pieces: Vec::new(),
+            is_small: Vec::new(),
+        };
+    }
+    let piece = |root: &u32| pieces.partition_point(|other| other < root);
+    let mut weights = vec![0.0; pieces.len()];
+    for (root, (_, weight)) in roots.iter().zip(moved) {
+        weights[piece(root)] += weight;
+    }
+    let total: f64 = weights.iter().sum();
+    let numbered = moved.iter().zip(&roots);
+    Cut {
+        pieces: numbered
+            .map(|((point, _), root)| (*point, piece(root) as u32))
+            .collect(),
+        is_small: weights
+            .iter()
+            .map(|weight| *weight < SMALL * total)
+            .collect(),
+    }
+}
+
+fn root(lowest: &mut [u32], mut place: u32) -> u32 {
+    while lowest[place as usize] != place {
+        let above = lowest[lowest[place as usize] as usize];
+        lowest[place as usize] = above;
+        place = above;
+    }
+    place
+}

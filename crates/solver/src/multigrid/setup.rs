@@ -1,0 +1,298 @@
+//! How levels come about.
+
+use glam::DVec3;
+
+use super::clusters::Clusters;
+use super::coarsest::Dense;
+use super::copies::{Copies, Topology};
+use super::cycle::{Below, Level, Transfer};
+use super::galerkin::{self, Coarse, Unscaled};
+use super::prolongation;
+use super::scaling::{self, Factors, InverseFactors, Modes};
+use super::small::narrow;
+use super::smoother::Smoother;
+use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
+use super::tangent::{Kept, Springs, TangentRows, rows_of};
+use super::{BlockRows, MultigridFailure, aggregation, numbers, spectrum, tentative};
+
+/// A level with at most this many scalar unknowns is inverted.
+const LARGEST_INVERSE: usize = 400;
+/// Blocks whose norm is below this share of the diagonal do not tie nodes together.
+pub(super) const STRENGTH: f32 = 0.02;
+/// A next level with more than this share of the nodes is not worth its cost.
+const STAGNATION: f64 = 0.8;
+
+/// What stays when the stiffness of the fractures changes.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Base {
+    pub(super) clusters: Clusters,
+    /// Motions of the next level's nodes, one row an unknown, in unknowns that are not scaled.
+    pub(super) basis: Sparse<3, 6>,
+    /// Modes of the next level's nodes; none, if there is no next level.
+    pub(super) modes: Vec<Modes<6>>,
+    /// The rock's part of the next level.
+    rock: Option<Unscaled>,
+}
+
+/// The finest level before the next one is made.
+pub(super) struct Parts {
+    factors: Factors,
+    matrix: Sparse<3, 3>,
+    prolongator: Sparse<3, 6>,
+}
+
+/// The mean displacements, and the motions of their aggregates.
+pub(super) struct Means {
+    pub(super) prolongator: Sparse<3, 6>,
+    pub(super) transpose: Transpose,
+    pub(super) modes: Vec<Modes<6>>,
+}
+
+impl Means {
+    /// Aggregates rows that are all clusters of their own; and their scaled matrix.
+    fn of(
+        rows: &TangentRows<'_>,
+        modes: &[[DVec3; 6]],
+    ) -> Result<(Self, Factors, Sparse<3, 3>), MultigridFailure> {
+        let single = Clusters::single(rows.count());
+        let factors = Factors::of(rows, &single)?;
+        let matrix = scaling::matrix(rows, &single, &factors);
+        let modes = scaling::modes(&factors, modes);
+        let bound = spectrum::largest_eigenvalue(&matrix);
+        if !bound.is_finite() {
+            return Err(MultigridFailure::NotFinite);
+        }
+        let aggregates = aggregation::aggregate(&matrix, STRENGTH);
+        let tentative = tentative::tentative(&aggregates, &modes);
+        let mut prolongator = prolongation::smoothed(&matrix, bound, &aggregates, &tentative);
+        scaling::unscale(&factors, &mut prolongator);
+        let means = Self {
+            transpose: Transpose::of(&prolongator, aggregates.count),
+            modes: tentative.modes,
+            prolongator,
+        };
+        Ok((means, factors, matrix))
+    }
+}
+
+impl Base {
+    /// Prepares the hierarchy of a matrix; with a `topology`, that of rock which fractures cut.
+    pub(super) fn of(
+        matrix: BlockRows<'_>,
+        modes: &[[DVec3; 6]],
+        topology: Option<Topology<'_>>,
+    ) -> Result<(Self, Parts), MultigridFailure> {
+        let rows = TangentRows {
+            rock: matrix,
+            springs: None,
+            kept: None,
+        };
+        let whole: Vec<u32> = (0..=matrix.rows() as u32).collect();
+        let node_offset = topology.map_or(&whole[..], |topology| &topology.points.offset);
+        let clusters = Clusters::of(&rows, node_offset)?;
+        let owns = |node: &u32| node_offset[*node as usize] < node_offset[*node as usize + 1];
+        let nodes: Vec<u32> = (0..node_offset.len() as u32 - 1).filter(owns).collect();
+        let firsts: Vec<u32> = nodes
+            .iter()
+            .map(|&node| node_offset[node as usize])
+            .collect();
+        let number = numbers(matrix.rows(), &firsts);
+        let kept = Kept {
+            rows: &firsts,
+            number: &number,
+        };
+        let is_whole = firsts.len() == matrix.rows();
+        let of_means = TangentRows {
+            kept: (!is_whole).then_some(kept),
+            ..rows
+        };
+        let (means, factors, scaled) = Means::of(&of_means, modes)?;
+        let (basis, modes) = match topology {
+            None => (means.prolongator, means.modes),
+            Some(topology) => {
+                let row_of_node = numbers(node_offset.len() - 1, &nodes);
+                let copies = Copies::of(topology, &means, &nodes, &row_of_node);
+                (copies.prolongator(), copies.modes())
+            }
+        };
+        let mut base = Self {
+            clusters,
+            basis,
+            modes,
+            rock: None,
+        };
+        let parts = match base.clusters.count() == scaled.rows() {
+            true if is_whole => base.parts_with(scaled, factors),
+            _ => {
+                drop((factors, scaled));
+                base.parts(&rows)?
+            }
+        };
+        if base.has_next(matrix.rows()) {
+            let transpose = Transpose::of(&parts.prolongator, base.modes.len());
+            base.rock = Some(Unscaled::of(&parts.matrix, &parts.prolongator, &transpose));
+        }
+        Ok((base, parts))
+    }
+
+    fn has_next(&self, rows: usize) -> bool {
+        let next = self.modes.len();
+        3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
+    }
+
+    /// The finest level of a tangent.
+    pub(super) fn parts(&self, rows: &TangentRows<'_>) -> Result<Parts, MultigridFailure> {
+        let factors = Factors::of(rows, &self.clusters)?;
+        let matrix = scaling::matrix(rows, &self.clusters, &factors);
+        Ok(self.parts_with(matrix, factors))
+    }
+
+    fn parts_with(&self, matrix: Sparse<3, 3>, factors: Factors) -> Parts {
+        let columns = self.modes.len();
+        Parts {
+            prolongator: scaling::prolongator(&self.basis, columns, &self.clusters, &factors),
+            matrix,
+            factors,
+        }
+    }
+
+    /// The finest level, and the next one if it is worth having.
+    pub(super) fn finest(
+        &self,
+        parts: Parts,
+        springs: Option<Springs<'_>>,
+    ) -> Result<(InverseFactors, Level<3>, Option<Coarse>), MultigridFailure> {
+        let Parts {
+            factors,
+            matrix,
+            prolongator,
+        } = parts;
+        let bound = spectrum::largest_eigenvalue(&matrix);
+        if !bound.is_finite() {
+            return Err(MultigridFailure::NotFinite);
+        }
+        let (below, next) = match &self.rock {
+            None if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE => {
+                (Below::Nothing, None)
+            }
+            None => (
+                Below::Inverse(Dense::new(&matrix).ok_or(MultigridFailure::NotFinite)?),
+                None,
+            ),
+            Some(rock) => {
+                let (next, factors) = match springs.map(|springs| self.of_springs(springs)) {
+                    Some(springs) => rock.plus(&springs).scaled(&self.modes),
+                    None => rock.scaled(&self.modes),
+                };
+                let transfer = Transfer {
+                    transpose: Transpose::of(&prolongator, self.modes.len()),
+                    prolongator,
+                    factors: factors.iter().map(narrow).collect(),
+                };
+                (Below::Level(transfer), Some(next))
+            }
+        };
+        let level = Level {
+            matrix,
+            smoother: Smoother::new(bound),
+            below,
+        };
+        Ok((factors.compact(), level, next))
+    }
+
+    /// `P^T S P` of the springs.
+    fn of_springs(&self, springs: Springs<'_>) -> Unscaled {
+        let rows = springs.rows;
+        let copies = self.modes.len();
+        let prolongator = self.basis.of_rows(rows);
+        let transpose = Transpose::of(&prolongator, copies);
+        let image = Sparse::build(
+            rows.len(),
+            rows_per_task::<3>(),
+            || Accumulator::<3, 6>::new(copies),
+            |sums, row| {
+                for (column, _) in springs.row(row) {
+                    let columns = &self.basis.columns[self.basis.range(column as usize)];
+                    columns.iter().for_each(|&column| sums.touch(column));
+                }
+                sums.take_count()
+            },
+            |sums, row, columns, blocks| {
+                for (at, block) in springs.row(row) {
+                    // In double precision: a spring and the motions of its walls differ by many digits.
+                    let left = rows_of(block);
+                    for (column, value) in self.basis.row(at as usize) {
+                        let part = super::small::product(&left, &super::small::widen(value));
+                        let sum = sums.at(column as u32).as_flattened_mut();
+                        let pairs = sum.iter_mut().zip(part.as_flattened());
+                        pairs.for_each(|(sum, part)| *sum += part);
+                    }
+                }
+                sums.take(columns, blocks);
+            },
+        );
+        Unscaled::of_image(&prolongator, &transpose, &image)
+    }
+
+    /// Without what only another stiffness of fractures would ask for.
+    pub(super) fn without_rock(self) -> Self {
+        Self {
+            basis: Sparse::default(),
+            rock: None,
+            ..self
+        }
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        self.clusters.bytes()
+            + self.basis.bytes()
+            + size_of_val(&self.modes[..])
+            + self.rock.as_ref().map_or(0, Unscaled::bytes)
+    }
+}
+
+/// A level, and the next one if it is worth having.
+pub(super) fn level(
+    matrix: Sparse<6, 6>,
+    modes: &[Modes<6>],
+) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
+    let bound = spectrum::largest_eigenvalue(&matrix);
+    if !bound.is_finite() {
+        return Err(MultigridFailure::NotFinite);
+    }
+    let (below, next) = below(&matrix, modes, bound)?;
+    let smoother = Smoother::new(bound);
+    let level = Level {
+        matrix,
+        smoother,
+        below,
+    };
+    Ok((level, next))
+}
+
+fn below(
+    matrix: &Sparse<6, 6>,
+    modes: &[Modes<6>],
+    largest_eigenvalue: f64,
+) -> Result<(Below<6>, Option<Coarse>), MultigridFailure> {
+    if 6 * matrix.rows() <= LARGEST_INVERSE {
+        let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
+        return Ok((Below::Inverse(dense), None));
+    }
+    let aggregates = aggregation::aggregate(matrix, STRENGTH);
+    if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
+        return Ok((Below::Nothing, None));
+    }
+    let tentative = tentative::tentative(&aggregates, modes);
+    let mut prolongator =
+        prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
+    let transpose = Transpose::of(&prolongator, aggregates.count);
+    let coarse = galerkin::coarse(matrix, &mut prolongator, &transpose, &tentative.modes);
+    let transfer = Transfer {
+        prolongator,
+        transpose,
+        factors: Vec::new(),
+    };
+    Ok((Below::Level(transfer), Some(coarse)))
+}
