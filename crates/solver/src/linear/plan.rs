@@ -40,7 +40,7 @@ pub enum LinearMethod {
     Direct,
     /// Cholesky factorisation of the rock, once; what changes is solved for the jumps alone.
     Condensed,
-    /// Conjugate gradients, preconditioned by a multigrid of the rock, set up once.
+    /// Conjugate gradients, preconditioned by a multigrid of rock and fractures; the part of the rock is set up once.
     Iterative,
 }
 

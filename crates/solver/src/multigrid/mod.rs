@@ -4,7 +4,7 @@
 //! Each level groups its nodes into aggregates. The motions that cost next to nothing, which are
 //! the rigid ones, are kept exactly on every aggregate and smoothed at its edges; they are the six
 //! unknowns of one node of the next level. Where fractures cut an aggregate each of its pieces
-//! has motions of its own ([`copies`]). All levels are stored in single precision, in unknowns
+//! has motions of its own (`copies`). All levels are stored in single precision, in unknowns
 //! that scale their diagonal to the identity; sums of the set-up are in double precision.
 //! No result depends on the number of threads.
 
