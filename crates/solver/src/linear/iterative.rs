@@ -211,7 +211,8 @@ impl TangentSolver for Iterative {
 
     fn history(&self) -> SolverHistory {
         SolverHistory {
-            stiffness: self.made_with.clone(),
+            stiffness: self.stiffness.clone(),
+            preconditioned: self.made_with.clone(),
             margin: Some(self.margin),
         }
     }
@@ -222,9 +223,9 @@ impl TangentSolver for Iterative {
         history: SolverHistory,
     ) -> Result<(), LinearFailure> {
         self.margin = history.margin.unwrap_or(1.0);
-        history
-            .stiffness
-            .map_or(Ok(()), |stiffness| self.refresh(system, stiffness))
+        self.stiffness = history.stiffness;
+        let made_with = history.preconditioned;
+        made_with.map_or(Ok(()), |stiffness| self.refresh(system, stiffness))
     }
 
     fn precondition(

@@ -57,8 +57,10 @@ pub struct LinearSolution {
 /// What the solves of a solver depend on that earlier steps left behind.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SolverHistory {
-    /// Blocks of the fractures that its factor or its preconditioner was made with.
+    /// Blocks of the fractures that it solves with, or that its factor was made with.
     stiffness: Option<Vec<DMat3>>,
+    /// Blocks of the fractures that its preconditioner was made with.
+    preconditioned: Option<Vec<DMat3>>,
     /// Factor by which the spectrum of the preconditioner turned out to reach further than estimated.
     margin: Option<f64>,
 }
@@ -66,8 +68,9 @@ pub struct SolverHistory {
 impl SolverHistory {
     /// Whether it speaks of this number of blocks of the fractures.
     pub(crate) fn fits(&self, blocks: usize) -> bool {
-        let stiffness = self.stiffness.as_ref();
-        stiffness.is_none_or(|stiffness| stiffness.len() == blocks)
+        let both = [&self.stiffness, &self.preconditioned];
+        let mut known = both.into_iter().flatten();
+        known.all(|stiffness| stiffness.len() == blocks)
     }
 }
 
