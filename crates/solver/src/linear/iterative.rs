@@ -5,6 +5,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{LinearFailure, LinearSolution, SolverHistory, TangentSolver};
+use crate::assembly::trace;
 use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
@@ -103,10 +104,6 @@ impl Iterative {
         });
         changed.count() as f64 <= TOLERATED * interface.unknowns.len() as f64
     }
-}
-
-fn trace(block: DMat3) -> f64 {
-    block.x_axis.x + block.y_axis.y + block.z_axis.z
 }
 
 fn springs<'a>(interface: &'a Interface, stiffness: &'a [DMat3]) -> Springs<'a> {

@@ -7,18 +7,13 @@
 
 use rayon::prelude::*;
 
-use super::MultigridFailure;
-use super::small::{inverse_factor, product, transpose};
-use super::tangent::{TangentRows, rows_of};
+use super::sparse::Sparse;
 use crate::pattern::Lists;
 
 /// Nodes tied by a block of this norm belong together; the blocks of both are scaled to the identity.
-const TIED: f64 = 0.8;
+const TIED: f32 = 0.8;
 /// Most nodes of a cluster.
 const MOST_NODES: u32 = 6;
-/// A pivot below this share of the largest diagonal entry shows a singular block.
-const SINGULAR: f64 = 1e-14;
-
 /// The clusters of a matrix.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clusters {
@@ -41,20 +36,15 @@ impl Clusters {
     }
 
     /// Clusters of a matrix whose nodes own the rows `node_offset[node]..node_offset[node + 1]`; the
-    /// first of them is the mean displacement.
-    ///
-    /// # Errors
-    /// If the diagonal block of a mean displacement is not positive definite.
-    pub(super) fn of(
-        rows: &TangentRows<'_>,
-        node_offset: &[u32],
-    ) -> Result<Self, MultigridFailure> {
-        let mut ties = ties(rows, node_offset)?;
+    /// first of them is the mean displacement. `means` is the scaled matrix of those, with one row for
+    /// each of `nodes`.
+    pub(super) fn of(means: &Sparse<3, 3>, nodes: &[u32], node_offset: &[u32]) -> Self {
+        let mut ties = ties(means, nodes);
         ties.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        let nodes = node_offset.len() - 1;
+        let count = node_offset.len() - 1;
         // The lowest node of each cluster, by paths, and how many nodes it has.
-        let mut lowest: Vec<u32> = (0..nodes as u32).collect();
-        let mut count = vec![1; nodes];
+        let mut lowest: Vec<u32> = (0..count as u32).collect();
+        let mut count = vec![1; count];
         for (_, a, b) in ties {
             let (a, b) = (root(&lowest, a), root(&lowest, b));
             let (low, high) = (a.min(b), a.max(b));
@@ -64,7 +54,7 @@ impl Clusters {
                 count[low as usize] = both;
             }
         }
-        Ok(Self::collect(&lowest, node_offset))
+        Self::collect(&lowest, node_offset)
     }
 
     fn collect(lowest: &[u32], node_offset: &[u32]) -> Self {
@@ -111,51 +101,16 @@ fn root(lowest: &[u32], mut node: u32) -> u32 {
     node
 }
 
-/// Norms of the scaled blocks between mean displacements, and the two nodes, where they are large.
-fn ties(
-    rows: &TangentRows<'_>,
-    node_offset: &[u32],
-) -> Result<Vec<(f64, u32, u32)>, MultigridFailure> {
-    let nodes = node_offset.len() - 1;
-    let mut node_of_mean = vec![u32::MAX; rows.count()];
-    for node in 0..nodes {
-        if node_offset[node + 1] > node_offset[node] {
-            node_of_mean[node_offset[node] as usize] = node as u32;
-        }
-    }
-    let means: Vec<usize> = (0..rows.count())
-        .filter(|&row| node_of_mean[row] != u32::MAX)
-        .collect();
-    let inverse = |row: usize| {
-        let block = rows_of(&rows.diagonal(row));
-        let (inverse, kept) = inverse_factor(&block, SINGULAR);
-        let finite = inverse.as_flattened().iter().all(|entry| entry.is_finite());
-        (finite && kept == [true; 3])
-            .then_some(inverse)
-            .ok_or(MultigridFailure::NotPositive(row))
-    };
-    let mut inverses = vec![[[0.0; 3]; 3]; rows.count()];
-    let found: Result<Vec<()>, MultigridFailure> = inverses
-        .par_iter_mut()
-        .enumerate()
-        .filter(|(row, _)| node_of_mean[*row] != u32::MAX)
-        .map(|(row, target)| inverse(row).map(|found| *target = found))
-        .collect();
-    found?;
+/// Norms of the blocks between mean displacements, and their nodes, where they are large. `means` is their
+/// scaled matrix, with one row for each of `nodes`.
+fn ties(means: &Sparse<3, 3>, nodes: &[u32]) -> Vec<(f32, u32, u32)> {
     let tied = |row: usize| {
-        let mut found = Vec::new();
-        rows.for_each(row, |column, block| {
-            let column = column as usize;
-            if column > row && node_of_mean[column] != u32::MAX {
-                let left = product(&inverses[row], &rows_of(block));
-                let scaled = product(&left, &transpose(&inverses[column]));
-                let square: f64 = scaled.as_flattened().iter().map(|x| x * x).sum();
-                if square > TIED * TIED {
-                    found.push((square, node_of_mean[row], node_of_mean[column]));
-                }
-            }
-        });
-        found
+        let blocks = means.row(row).filter(move |(column, _)| *column > row);
+        blocks.filter_map(move |(column, block)| {
+            let square: f32 = block.as_flattened().iter().map(|x| x * x).sum();
+            (square > TIED * TIED).then_some((square, nodes[row], nodes[column]))
+        })
     };
-    Ok(means.into_par_iter().flat_map_iter(tied).collect())
+    let rows = (0..means.rows()).into_par_iter();
+    rows.flat_map_iter(tied).collect()
 }

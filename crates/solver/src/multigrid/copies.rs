@@ -195,7 +195,7 @@ impl<'a> Copies<'a> {
                 let motions = self.motions(point).into_iter();
                 motions.map(move |(copy, block)| (copy, weight, block))
             });
-            self.cancelled(motions.collect())
+            cancelled(motions.collect())
         };
         Sparse::build(
             points.len(),
@@ -209,23 +209,23 @@ impl<'a> Copies<'a> {
             },
         )
     }
+}
 
-    /// Sums by copy, ascending, without those that are zero, as where both sides move alike.
-    fn cancelled(&self, mut terms: Vec<(u32, f64, [[f64; 6]; 3])>) -> Vec<(u32, [[f64; 6]; 3])> {
-        terms.sort_by_key(|(copy, ..)| *copy);
-        let mut sums: Vec<(u32, [[f64; 6]; 3])> = Vec::with_capacity(terms.len());
-        for (copy, weight, block) in terms {
-            if sums.last().is_none_or(|(last, _)| *last != copy) {
-                sums.push((copy, [[0.0; 6]; 3]));
-            }
-            if let Some((_, sum)) = sums.last_mut() {
-                let pairs = sum.as_flattened_mut().iter_mut().zip(block.as_flattened());
-                pairs.for_each(|(sum, entry)| *sum += weight * entry);
-            }
+/// Sums by copy, ascending, without those that are zero, as where both sides move alike.
+fn cancelled(mut terms: Vec<(u32, f64, [[f64; 6]; 3])>) -> Vec<(u32, [[f64; 6]; 3])> {
+    terms.sort_by_key(|(copy, ..)| *copy);
+    let mut sums: Vec<(u32, [[f64; 6]; 3])> = Vec::with_capacity(terms.len());
+    for (copy, weight, block) in terms {
+        if sums.last().is_none_or(|(last, _)| *last != copy) {
+            sums.push((copy, [[0.0; 6]; 3]));
         }
-        sums.retain(|(_, sum)| sum.as_flattened().iter().any(|entry| *entry != 0.0));
-        sums
+        if let Some((_, sum)) = sums.last_mut() {
+            let pairs = sum.as_flattened_mut().iter_mut().zip(block.as_flattened());
+            pairs.for_each(|(sum, entry)| *sum += weight * entry);
+        }
     }
+    sums.retain(|(_, sum)| sum.as_flattened().iter().any(|entry| *entry != 0.0));
+    sums
 }
 
 /// The pieces of an aggregate.

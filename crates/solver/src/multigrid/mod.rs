@@ -51,6 +51,16 @@ pub enum MultigridFailure {
     NotFinite,
 }
 
+impl MultigridFailure {
+    /// The failure of a matrix made of these rows, in terms of the one they are taken from.
+    fn of_rows(self, rows: &[u32]) -> Self {
+        match self {
+            Self::NotPositive(row) => Self::NotPositive(rows[row] as usize),
+            Self::NotFinite => Self::NotFinite,
+        }
+    }
+}
+
 /// A hierarchy of levels, and the V-cycle over them.
 #[derive(Debug, Clone)]
 pub struct Multigrid {

@@ -89,7 +89,6 @@ impl Base {
         };
         let whole: Vec<u32> = (0..=matrix.rows() as u32).collect();
         let node_offset = topology.map_or(&whole[..], |topology| &topology.points.offset);
-        let clusters = Clusters::of(&rows, node_offset)?;
         let owns = |node: &u32| node_offset[*node as usize] < node_offset[*node as usize + 1];
         let nodes: Vec<u32> = (0..node_offset.len() as u32 - 1).filter(owns).collect();
         let firsts: Vec<u32> = nodes
@@ -106,7 +105,9 @@ impl Base {
             kept: (!is_whole).then_some(kept),
             ..rows
         };
-        let (means, factors, scaled) = Means::of(&of_means, modes)?;
+        let (means, factors, scaled) =
+            Means::of(&of_means, modes).map_err(|failure| failure.of_rows(&firsts))?;
+        let clusters = Clusters::of(&scaled, &nodes, node_offset);
         let (basis, modes) = match topology {
             None => (means.prolongator, means.modes),
             Some(topology) => {

@@ -81,17 +81,6 @@ impl<'a> TangentRows<'a> {
             .into_iter()
             .flat_map(|(springs, index)| springs.row(index))
     }
-
-    /// The diagonal block of a row, zero if there is none.
-    pub(super) fn diagonal(&self, row: usize) -> DMat3 {
-        let mut diagonal = DMat3::ZERO;
-        self.for_each(row, |column, block| {
-            if column as usize == row {
-                diagonal = *block;
-            }
-        });
-        diagonal
-    }
 }
 
 /// A block as its rows.
