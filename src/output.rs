@@ -115,10 +115,14 @@ impl Output {
         time: f64,
     ) -> Result<(), Defect> {
         let [rock, fractures] = names(self.rock.len() + 1);
-        let rock_grid = rock_grid(system, solution, accuracy);
-        write_vtu(&self.path(&rock), &rock_grid)?;
-        let fracture_grid = fracture_grid(system, solution, accuracy);
-        write_vtu(&self.path(&fractures), &fracture_grid)?;
+        let of_rock = || write_vtu(&self.path(&rock), rock_grid(system, solution, accuracy));
+        let of_fractures = || {
+            let grid = fracture_grid(system, solution, accuracy);
+            write_vtu(&self.path(&fractures), grid)
+        };
+        let (rock_written, fractures_written) = rayon::join(of_rock, of_fractures);
+        rock_written?;
+        fractures_written?;
         self.rock.push((time, rock));
         self.fractures.push((time, fractures));
         write_pvd(&self.path("rock.pvd"), &self.rock)?;
@@ -168,7 +172,7 @@ fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> G
     let mesh = &system.problem.mesh;
     let points = &system.discretisation.points;
     let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
-    let displacements = solution.displacements.iter().flat_map(|u| u.to_array());
+    let displacements = solution.displacements.iter().map(|u| u.to_array());
     Grid {
         points: points
             .node
@@ -178,11 +182,14 @@ fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> G
         shapes: mesh.cells.shapes.clone(),
         offsets: mesh.cells.offsets.clone(),
         nodes: points.of_cell_node.clone(),
-        point_fields: vec![real("displacement", 3, displacements)],
+        point_fields: vec![real("displacement", displacements)],
         cell_fields: vec![
-            real("stress", 6, solution.stresses.iter().flatten().copied()),
+            real("stress", solution.stresses.iter().copied()),
             integer("rock", rocks),
-            real("stress_error", 1, accuracy.stress_errors.iter().copied()),
+            real(
+                "stress_error",
+                accuracy.stress_errors.iter().map(|&error| [error]),
+            ),
         ],
     }
 }
@@ -193,12 +200,12 @@ fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
     let elements = &mesh.facets.elements;
     let results = &solution.facet_nodes(system.problem, &system.discretisation.interface);
     let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
-        results.iter().flat_map(move |result| of(result).to_array())
+        results.iter().map(move |result| of(result).to_array())
     };
     let normals = mesh
         .facet_areas()
         .into_iter()
-        .flat_map(|area| area.normalize().to_array());
+        .map(|area| area.normalize().to_array());
     let mut grid = Grid {
         points: elements
             .nodes
@@ -209,20 +216,19 @@ fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
         offsets: elements.offsets.clone(),
         nodes: (0..elements.nodes.len() as u32).collect(),
         point_fields: vec![
-            real("aperture", 1, results.iter().map(|result| result.aperture)),
-            real("opening", 1, results.iter().map(|result| result.opening)),
-            real("slip", 3, vectors(|result| result.slip)),
-            real("jump", 3, vectors(|result| result.jump)),
-            real("traction", 3, vectors(|result| result.traction)),
+            real("aperture", results.iter().map(|result| [result.aperture])),
+            real("opening", results.iter().map(|result| [result.opening])),
+            real("slip", vectors(|result| result.slip)),
+            real("jump", vectors(|result| result.jump)),
+            real("traction", vectors(|result| result.traction)),
             real(
                 "normal_traction",
-                1,
-                results.iter().map(|result| result.normal_traction),
+                results.iter().map(|result| [result.normal_traction]),
             ),
             integer("state", results.iter().map(|result| result.state as i32)),
         ],
         cell_fields: vec![
-            real("normal", 3, normals),
+            real("normal", normals),
             integer(
                 "fracture",
                 mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
@@ -231,22 +237,23 @@ fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
     };
     if let Some(jumps) = &accuracy.jumps {
         let of_facets = mesh.facets.fracture.iter();
-        let of_facets = of_facets.map(|&fracture| jumps.aperture[fracture as usize]);
-        let field = real("aperture_uncertainty", 1, of_facets);
+        let of_facets = of_facets.map(|&fracture| [jumps.aperture[fracture as usize]]);
+        let field = real("aperture_uncertainty", of_facets);
         grid.cell_fields.push(field);
     }
     grid
 }
 
-pub(crate) fn real(
+/// A field of `N` numbers a point or cell.
+pub(crate) fn real<const N: usize>(
     name: &'static str,
-    components: u32,
-    values: impl Iterator<Item = f64>,
+    values: impl Iterator<Item = [f64; N]>,
 ) -> Field {
+    let values: Vec<[f64; N]> = values.collect();
     Field {
         name,
-        components,
-        values: Values::Real(values.collect()),
+        components: N as u32,
+        values: Values::Real(values.into_flattened()),
     }
 }
 

@@ -57,7 +57,7 @@ fn fields(mesh: &Mesh, survey: &Survey, cells: &[u32]) -> Vec<Field> {
             "fracture",
             numbers(&facets.fracture).into_iter().chain(none()),
         ),
-        real("normal", 3, normals.chain(flat).flat_map(|n| n.to_array())),
+        real("normal", normals.chain(flat).map(|n| n.to_array())),
         integer(
             "mute_patch",
             patches
@@ -69,8 +69,9 @@ fn fields(mesh: &Mesh, survey: &Survey, cells: &[u32]) -> Vec<Field> {
         integer("block_plus", blocks(&facets.plus)),
         real(
             "quality",
-            1,
-            beside.chain(cells.iter().map(|&cell| quality(cell))),
+            beside
+                .chain(cells.iter().map(|&cell| quality(cell)))
+                .map(|quality| [quality]),
         ),
     ]
 }

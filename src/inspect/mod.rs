@@ -99,7 +99,7 @@ fn look(
     gather::topology(&mesh, &survey, inspection);
     let mut defects = Vec::new();
     let grid = grid::of(&mesh, &survey);
-    defects.extend(write_vtu(&output.path("inspect.vtu"), &grid).err());
+    defects.extend(write_vtu(&output.path("inspect.vtu"), grid).err());
     let Some(scene) = scene else {
         cost::predict(&mesh, None, Workload::one_step(&mesh, &[]), inspection);
         return defects;

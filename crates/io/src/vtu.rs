@@ -1,19 +1,15 @@
 //! Unstructured grids as binary XML files of VTK, compressed with LZ4.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use lie_mesh::{Defect, Shape};
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
-    Piece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
-};
-use vtkio::xml::{Compressor, VTKFile};
+use rayon::prelude::*;
+use vtkio::model::{ByteOrder, CellType, IOBuffer};
+use vtkio::xml::{Compressor, Data, DataArray, EncodingInfo, Error, ScalarType};
 
 use crate::atomic::write_atomically;
 
-/// vtkio leaves out a count of zero, and VTK refuses a piece without its counts.
 const EMPTY_GRID: &str = r#"<?xml version="1.0"?>
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <UnstructuredGrid>
@@ -30,6 +26,14 @@ const EMPTY_GRID: &str = r#"<?xml version="1.0"?>
   </UnstructuredGrid>
 </VTKFile>
 "#;
+
+/// How arrays are encoded. LZ4 has no levels; 0 would switch compression off.
+const ENCODING: EncodingInfo = EncodingInfo {
+    byte_order: ByteOrder::LittleEndian,
+    header_type: ScalarType::UInt64,
+    compressor: Compressor::LZ4,
+    compression_level: 1,
+};
 
 /// Cells or facets with values on their points and on themselves.
 #[derive(Debug, Clone, Default)]
@@ -81,21 +85,24 @@ impl Values {
 ///
 /// Without cells the file holds no points and no fields either.
 ///
+/// # Errors
+/// If the file cannot be written.
+///
 /// # Panics
 /// When the lengths of the parts of `grid` do not fit together: an error of the caller.
-pub fn write_vtu(path: &Path, grid: &Grid) -> Result<(), Defect> {
-    check_lengths(grid);
+pub fn write_vtu(path: &Path, grid: Grid) -> Result<(), Defect> {
+    check_lengths(&grid);
     if grid.shapes.is_empty() {
         return write_atomically(path, |out| out.write_all(EMPTY_GRID.as_bytes()));
     }
-    let file = vtk_file(grid).map_err(|error| {
+    let piece = Piece::of(grid).map_err(|error| {
         Defect::new(
             path.display().to_string(),
             format!("cannot be encoded: {error}"),
             "report this as an error of the program, with the scene",
         )
     })?;
-    write_atomically(path, |out| write_xml(out, &file))
+    write_atomically(path, |out| piece.write(out))
 }
 
 fn check_lengths(grid: &Grid) {
@@ -141,48 +148,130 @@ fn check_fields(fields: &[Field], count: usize) {
     }
 }
 
-fn vtk_file(grid: &Grid) -> Result<VTKFile, vtkio::xml::Error> {
-    let vtk = Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::UnstructuredGrid {
-            meta: None,
-            pieces: vec![Piece::Inline(Box::new(piece(grid)))],
-        },
-        file_path: None,
-    };
-    // LZ4 has no levels; 0 would switch compression off.
-    vtk.try_into_xml_format(Compressor::LZ4, 1)
+/// A grid with its arrays encoded.
+struct Piece {
+    points: usize,
+    cells: usize,
+    point_data: Vec<DataArray>,
+    cell_data: Vec<DataArray>,
+    coordinates: DataArray,
+    topology: [DataArray; 3],
 }
 
-fn piece(grid: &Grid) -> UnstructuredGridPiece {
-    let mut connectivity = Vec::with_capacity(grid.nodes.len());
-    let mut offsets = Vec::with_capacity(grid.shapes.len());
-    for (cell, &shape) in grid.shapes.iter().enumerate() {
-        let nodes = &grid.nodes[grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize];
+impl Piece {
+    /// Encodes the arrays in parallel: vtkio does a whole file on one thread.
+    fn of(grid: Grid) -> Result<Self, Error> {
+        let (points, cells) = (grid.points.len(), grid.shapes.len());
+        let coordinates = || encoded("Points", 3, IOBuffer::F64(grid.points.into_flattened()));
+        let topology = || topology(&grid.shapes, &grid.offsets, &grid.nodes);
+        let (point_data, (cell_data, (coordinates, topology))) = rayon::join(
+            || fields(grid.point_fields),
+            || {
+                rayon::join(
+                    || fields(grid.cell_fields),
+                    || rayon::join(coordinates, topology),
+                )
+            },
+        );
+        Ok(Self {
+            points,
+            cells,
+            point_data: point_data?,
+            cell_data: cell_data?,
+            coordinates: coordinates?,
+            topology: topology?,
+        })
+    }
+
+    fn write(self, out: &mut impl Write) -> io::Result<()> {
+        write!(
+            out,
+            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkLZ4DataCompressor"><UnstructuredGrid><Piece NumberOfPoints="{}" NumberOfCells="{}">"#,
+            self.points, self.cells
+        )?;
+        write_arrays(out, "PointData", self.point_data)?;
+        write_arrays(out, "CellData", self.cell_data)?;
+        write_arrays(out, "Points", [self.coordinates])?;
+        write_arrays(out, "Cells", self.topology)?;
+        write!(out, "</Piece></UnstructuredGrid></VTKFile>")
+    }
+}
+
+fn fields(fields: Vec<Field>) -> Result<Vec<DataArray>, Error> {
+    let encoded = |field: Field| encoded(field.name, field.components, buffer(field.values));
+    fields.into_par_iter().map(encoded).collect()
+}
+
+fn buffer(values: Values) -> IOBuffer {
+    match values {
+        Values::Real(values) => IOBuffer::F64(values),
+        Values::Integer(values) => IOBuffer::I32(values),
+    }
+}
+
+fn encoded(name: &str, components: u32, buffer: IOBuffer) -> Result<DataArray, Error> {
+    let array = DataArray::from_io_buffer(buffer, ENCODING)?;
+    Ok(array.with_name(name).with_num_comp(components))
+}
+
+/// Points of all cells, ends of the cells and their types.
+fn topology(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> Result<[DataArray; 3], Error> {
+    let (connectivity, ends) = connectivity(shapes, offsets, nodes);
+    let types = shapes.iter().map(|&shape| cell_of(shape).0 as u8);
+    Ok([
+        encoded("connectivity", 1, connectivity.into())?,
+        encoded("offsets", 1, ends.into())?,
+        encoded("types", 1, types.collect())?,
+    ])
+}
+
+/// Points of all cells in the order of VTK, and where each cell ends.
+fn connectivity(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> (Vec<u64>, Vec<u64>) {
+    let mut connectivity = Vec::with_capacity(nodes.len());
+    let mut ends = Vec::with_capacity(shapes.len());
+    for (cell, &shape) in shapes.iter().enumerate() {
+        let nodes = &nodes[offsets[cell] as usize..offsets[cell + 1] as usize];
         match cell_of(shape).1 {
             [] => connectivity.extend(nodes.iter().map(|&node| u64::from(node))),
             order => {
                 connectivity.extend(order.iter().map(|&local| u64::from(nodes[local as usize])));
             }
         }
-        offsets.push(connectivity.len() as u64);
+        ends.push(connectivity.len() as u64);
     }
-    UnstructuredGridPiece {
-        points: IOBuffer::F64(grid.points.as_flattened().to_vec()),
-        cells: Cells {
-            cell_verts: VertexNumbers::XML {
-                connectivity,
-                offsets,
-            },
-            types: grid.shapes.iter().map(|&shape| cell_of(shape).0).collect(),
-        },
-        data: Attributes {
-            point: attributes(&grid.point_fields),
-            cell: attributes(&grid.cell_fields),
-        },
+    (connectivity, ends)
+}
+
+fn write_arrays(
+    out: &mut impl Write,
+    element: &str,
+    arrays: impl IntoIterator<Item = DataArray>,
+) -> io::Result<()> {
+    let mut arrays = arrays.into_iter().peekable();
+    if arrays.peek().is_none() {
+        return Ok(());
     }
+    write!(out, "<{element}>")?;
+    arrays.try_for_each(|array| write_array(out, array))?;
+    write!(out, "</{element}>")
+}
+
+fn write_array(out: &mut impl Write, array: DataArray) -> io::Result<()> {
+    let (kind, name, components) = (array.scalar_type, &array.name, array.num_comp);
+    write!(
+        out,
+        r#"<DataArray type="{kind:?}" Name="{name}" NumberOfComponents="{components}" format="binary""#
+    )?;
+    if let (Some(min), Some(max)) = (array.range_min, array.range_max) {
+        write!(out, r#" RangeMin="{min:?}" RangeMax="{max:?}""#)?;
+    }
+    write!(out, ">")?;
+    for data in &array.data {
+        if let Data::Data(text) = data {
+            out.write_all(text.as_bytes())?;
+        }
+    }
+    write!(out, "</DataArray>")
 }
 
 /// The VTK cell of a shape and which of our nodes stands at each of its places; none where the
@@ -215,59 +304,12 @@ const HEX27: [u8; 27] = [
 const PRISM18: [u8; 18] = [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16];
 const PYRAMID13: [u8; 13] = [0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12];
 
-fn attributes(fields: &[Field]) -> Vec<Attribute> {
-    fields.iter().map(attribute).collect()
-}
-
-fn attribute(field: &Field) -> Attribute {
-    Attribute::DataArray(DataArray {
-        name: field.name.to_owned(),
-        elem: ElementType::Generic(field.components),
-        data: match &field.values {
-            Values::Real(values) => IOBuffer::F64(values.clone()),
-            Values::Integer(values) => IOBuffer::I32(values.clone()),
-        },
-    })
-}
-
-fn write_xml(out: &mut BufWriter<File>, file: &VTKFile) -> io::Result<()> {
-    let mut checked = CheckedWriter { out, failure: None };
-    let written = file.write(&mut checked);
-    match checked.failure {
-        Some(failure) => Err(failure),
-        None => written.map_err(io::Error::other),
-    }
-}
-
-/// Writes every buffer whole and remembers the first failure.
-///
-/// vtkio takes a partial write for a whole one (one call moves at most 2 GiB on Linux), and drops
-/// the buffer it writes through without looking at the outcome of the last flush.
-struct CheckedWriter<'a> {
-    out: &'a mut BufWriter<File>,
-    failure: Option<io::Error>,
-}
-
-impl Write for CheckedWriter<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if let Err(failure) = self.out.write_all(bytes) {
-            let kind = failure.kind();
-            self.failure.get_or_insert(failure);
-            return Err(kind.into());
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::atomic::scratch_folder;
     use std::fs;
+    use vtkio::model::{Attribute, DataSet, UnstructuredGridPiece, VertexNumbers, Vtk};
 
     /// Bit patterns that a detour through text or `f32` would lose.
     const AWKWARD: [f64; 4] = [0.1, f64::MIN_POSITIVE / 8.0, -0.0, 1.0 + f64::EPSILON];
@@ -307,7 +349,7 @@ mod tests {
     fn written_and_read(grid: &Grid, test: &str) -> UnstructuredGridPiece {
         let folder = scratch_folder(test);
         let path = folder.join("grid.vtu");
-        write_vtu(&path, grid).expect("written");
+        write_vtu(&path, grid.clone()).expect("written");
         let read = Vtk::import(&path).expect("readable");
         fs::remove_dir_all(folder).expect("removed");
         let DataSet::UnstructuredGrid { pieces, .. } = read.data else {
@@ -315,6 +357,20 @@ mod tests {
         };
         let piece = pieces.into_iter().next().expect("a piece");
         piece.into_loaded_piece_data(None).expect("loaded")
+    }
+
+    fn assert_cells(read: &UnstructuredGridPiece, grid: &Grid) {
+        let VertexNumbers::XML {
+            connectivity,
+            offsets,
+        } = &read.cells.cell_verts
+        else {
+            panic!("not as XML files have them");
+        };
+        let nodes = connectivity.iter().map(|&node| node as u32);
+        assert!(nodes.eq(grid.nodes.iter().copied()));
+        let ends = offsets.iter().map(|&end| end as u32);
+        assert!(ends.eq(grid.offsets[1..].iter().copied()));
     }
 
     fn bits(buffer: &IOBuffer) -> Vec<u64> {
@@ -329,7 +385,7 @@ mod tests {
         let read = written_and_read(&grid, "bits");
         let points = IOBuffer::F64(grid.points.as_flattened().to_vec());
         assert_eq!(bits(&read.points), bits(&points));
-        assert_eq!(read.cells, piece(&grid).cells);
+        assert_cells(&read, &grid);
         let [Attribute::DataArray(aperture)] = &read.data.point[..] else {
             panic!("one array on the points");
         };
@@ -343,16 +399,9 @@ mod tests {
             (aperture, &grid.point_fields[0]),
             (normal, &grid.cell_fields[0]),
         ] {
-            assert_eq!(bits(&array.data), bits(&attribute_buffer(field)));
+            assert_eq!(bits(&array.data), bits(&buffer(field.values.clone())));
         }
-        assert_eq!(fracture.data, attribute_buffer(&grid.cell_fields[1]));
-    }
-
-    fn attribute_buffer(field: &Field) -> IOBuffer {
-        match attribute(field) {
-            Attribute::DataArray(array) => array.data,
-            Attribute::Field { .. } => panic!("not an array"),
-        }
+        assert_eq!(fracture.data, buffer(grid.cell_fields[1].values.clone()));
     }
 
     #[test]
@@ -366,14 +415,14 @@ mod tests {
         };
         let read = written_and_read(&grid, "tetrahedra");
         assert_eq!(read.cells.types, [CellType::Tetra]);
-        assert_eq!(read.cells, piece(&grid).cells);
+        assert_cells(&read, &grid);
     }
 
     #[test]
     fn a_grid_without_cells_names_its_counts() {
         let folder = scratch_folder("empty");
         let path = folder.join("grid.vtu");
-        write_vtu(&path, &triangles(0)).expect("written");
+        write_vtu(&path, triangles(0)).expect("written");
         let text = fs::read_to_string(&path).expect("a text");
         assert!(text.contains(r#"NumberOfPoints="0" NumberOfCells="0""#));
         fs::remove_dir_all(folder).expect("removed");
@@ -384,6 +433,6 @@ mod tests {
     fn a_field_of_another_length_is_an_error_of_the_caller() {
         let mut grid = triangles(2);
         grid.point_fields[0].components = 2;
-        let _ = write_vtu(Path::new("never-written.vtu"), &grid);
+        let _ = write_vtu(Path::new("never-written.vtu"), grid);
     }
 }
