@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::coarsest::Dense;
 use super::smoother::{Smoother, Work, residual};
-use super::sparse::{Sparse, Transpose, rows_per_task};
+use super::sparse::{Sparse, rows_per_task};
 
 /// Smoothings of a coarsest level that is too large to invert, as after disconnected bodies.
 const LAST_SMOOTHINGS: usize = 2;
@@ -28,11 +28,12 @@ pub(super) enum Below<const N: usize> {
     Nothing,
 }
 
-/// The prolongator, and its transpose.
+/// The way down to the next level and up again.
 #[derive(Debug, Clone)]
 pub(super) struct Transfer<const N: usize> {
     pub(super) prolongator: Sparse<N, 6>,
-    pub(super) transpose: Transpose,
+    /// Its blocks once more, aggregate by aggregate.
+    pub(super) restrictor: Sparse<N, 6>,
     /// Factors `L^-1` of the unknowns of the next level, if the prolongator does not have them in its columns.
     pub(super) factors: Vec<[[f32; 6]; 6]>,
 }
@@ -56,10 +57,9 @@ impl<const N: usize> Transfer<N> {
 
     fn restricted(&self, aggregate: usize, residual: &[[f32; N]]) -> [f32; 6] {
         let mut sum = [0.0; 6];
-        for &(row, position) in self.transpose.column(aggregate) {
-            let block = &self.prolongator.blocks[position as usize];
+        for (row, block) in self.restrictor.row(aggregate) {
             let mut part = [0.0; 6];
-            for (line, &entry) in block.iter().zip(&residual[row as usize]) {
+            for (line, &entry) in block.iter().zip(&residual[row]) {
                 for (part, &weight) in part.iter_mut().zip(line) {
                     *part += weight * entry;
                 }
@@ -95,7 +95,7 @@ impl<const N: usize> Transfer<N> {
     }
 
     fn bytes(&self) -> usize {
-        self.prolongator.bytes() + self.transpose.bytes() + size_of_val(&self.factors[..])
+        self.prolongator.bytes() + self.restrictor.bytes() + size_of_val(&self.factors[..])
     }
 }
 

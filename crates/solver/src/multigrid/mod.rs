@@ -28,6 +28,7 @@ mod tangent;
 mod tentative;
 #[cfg(test)]
 mod tests;
+mod triple_product;
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -36,7 +37,7 @@ use block_rows::numbers;
 pub use block_rows::{BlockRows, OwnedBlockRows};
 pub(crate) use copies::Topology;
 use cycle::Level;
-use setup::Base;
+use setup::{Base, Storage};
 use smoother::Work;
 use sparse::Sparse;
 pub(crate) use tangent::Springs;
@@ -65,6 +66,8 @@ impl MultigridFailure {
 #[derive(Debug, Clone)]
 pub struct Multigrid {
     base: Base,
+    /// Storage for the first finest level.
+    spare: Storage,
     factors: scaling::InverseFactors,
     finest: Level<3>,
     coarser: Vec<Level<6>>,
@@ -114,9 +117,10 @@ impl Multigrid {
         modes: &[[DVec3; 6]],
         topology: Topology<'_>,
     ) -> Result<Self, MultigridFailure> {
-        let (base, _) = Base::of(rock, modes, Some(topology))?;
+        let (base, parts) = Base::of(rock, modes, Some(topology))?;
         Ok(Self {
             base,
+            spare: parts.storage,
             factors: Default::default(),
             finest: Level::empty(),
             coarser: Vec::new(),
@@ -134,14 +138,18 @@ impl Multigrid {
     ) -> Result<(), MultigridFailure> {
         let base = std::mem::take(&mut self.base);
         // The old levels make room for the new ones.
-        self.finest = Level::empty();
+        let former = std::mem::replace(&mut self.finest, Level::empty());
         self.coarser.clear();
+        let storage = match former.matrix.rows() {
+            0 => std::mem::take(&mut self.spare),
+            _ => Storage::of(former),
+        };
         let rows = TangentRows {
             rock,
             springs: Some(springs),
             kept: None,
         };
-        let parts = base.parts(&rows)?;
+        let parts = base.parts(&rows, storage)?;
         *self = Self::complete(base, parts, Some(springs))?;
         Ok(())
     }
@@ -164,6 +172,7 @@ impl Multigrid {
             } else {
                 base.without_rock()
             },
+            spare: Storage::default(),
             factors,
             finest,
             coarser,

@@ -2,6 +2,7 @@
 //! identity as its diagonal.
 
 use super::aggregation::{ALONE, Aggregates};
+use super::small::widen;
 use super::sparse::{Accumulator, Sparse, rows_per_task};
 use super::tentative::Tentative;
 
@@ -29,6 +30,7 @@ pub(super) fn smoothed<const N: usize>(
             neighbours(row).for_each(|(at, _)| sums.touch(of_node[at]));
             sums.take_count()
         },
+        #[inline(always)]
         |sums, row, columns, blocks| {
             if of_node[row] != ALONE {
                 add(sums.at(of_node[row]), 1.0 - omega, &tentative.blocks[row]);
@@ -51,7 +53,7 @@ fn add<const N: usize>(sum: &mut [[f64; 6]; N], factor: f64, block: &[[f32; 6]; 
 }
 
 /// `S += A B`, with `A` as columns and `B` as rows: line by line, so that a line stays in registers.
-#[inline]
+#[inline(always)]
 pub(super) fn add_columns<const M: usize, const N: usize>(
     sum: &mut [[f64; 6]; M],
     a: &[[f64; M]; N],
@@ -69,13 +71,16 @@ pub(super) fn add_columns<const M: usize, const N: usize>(
 }
 
 /// `S += factor A B`, with `A` as columns and `B` as rows.
-#[inline]
+#[inline(always)]
 pub(super) fn add_product<const N: usize>(
     sum: &mut [[f64; 6]; N],
     factor: f64,
     a: &[[f32; N]; N],
     b: &[[f32; 6]; N],
 ) {
-    let a = a.map(|column| column.map(|entry| factor * f64::from(entry)));
-    add_columns(sum, &a, &b.map(|line| line.map(f64::from)));
+    let mut a = widen(a);
+    a.as_flattened_mut()
+        .iter_mut()
+        .for_each(|entry| *entry *= factor);
+    add_columns(sum, &a, &widen(b));
 }

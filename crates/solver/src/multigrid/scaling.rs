@@ -13,7 +13,7 @@ use super::clusters::Clusters;
 use super::prolongation::add_product;
 use super::small::{Packed, narrow, product, transpose, widen};
 use super::sparse::{Accumulator, Sparse, rows_per_task, sum_up};
-use super::tangent::TangentRows;
+use super::tangent::{TangentRows, rows_of};
 use crate::pattern::split;
 
 /// Clusters that one task factorises.
@@ -130,13 +130,14 @@ fn gather(rows: &TangentRows<'_>, clusters: &Clusters, cluster: usize, triangle:
     }
 }
 
-/// The scaled matrix without its diagonal blocks; blocks as columns.
-pub(super) fn matrix(
+/// Sets `matrix` to the scaled matrix without its diagonal blocks; blocks as columns.
+pub(super) fn set_matrix(
+    matrix: &mut Sparse<3, 3>,
     rows: &TangentRows<'_>,
     clusters: &Clusters,
     factors: &Factors,
-) -> Sparse<3, 3> {
-    Sparse::build(
+) {
+    matrix.rebuild(
         rows.count(),
         rows_per_task::<3>(),
         || Accumulator::<3, 3>::new(rows.count()),
@@ -150,6 +151,7 @@ pub(super) fn matrix(
             });
             sums.take_count()
         },
+        #[inline(always)]
         |sums, row, columns, blocks| {
             let (own, at) = clusters.place[row];
             let left = factors.inverse_of(own);
@@ -182,12 +184,12 @@ pub(super) fn matrix(
             });
             sums.take(columns, blocks);
         },
-    )
+    );
 }
 
 /// Blocks that the scaled row depends on and that lie outside the diagonal block: the place of the
 /// row they stand in, the block, and cluster and place of its column.
-#[inline]
+#[inline(always)]
 fn coupled(
     rows: &TangentRows<'_>,
     clusters: &Clusters,
@@ -207,16 +209,15 @@ fn coupled(
 }
 
 /// `L A`, with `A` as columns.
-#[inline]
+#[inline(always)]
 fn times(left: &[[f64; 3]; 3], value: &DMat3) -> [[f64; 3]; 3] {
-    let columns = value.to_cols_array_2d();
-    left.map(|line| columns.map(|c| line[0] * c[0] + line[1] * c[1] + line[2] * c[2]))
+    product(left, &rows_of(value))
 }
 
 /// `B L^T`, as columns.
-#[inline]
+#[inline(always)]
 fn product_transposed(b: &[[f64; 3]; 3], l: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    l.map(|l| b.map(|b| b[0] * l[0] + b[1] * l[1] + b[2] * l[2]))
+    product(l, &transpose(b))
 }
 
 /// Number of other clusters beside a row, if they and its own are single rows.
@@ -230,19 +231,20 @@ fn single_neighbours(rows: &TangentRows<'_>, clusters: &Clusters, row: usize) ->
     (others == 0).then_some(count)
 }
 
-/// A prolongator in scaled unknowns, `L^T P`.
-pub(super) fn prolongator(
+/// Sets `prolongator` to that of scaled unknowns, `L^T P`.
+pub(super) fn set_prolongator(
+    prolongator: &mut Sparse<3, 6>,
     basis: &Sparse<3, 6>,
     columns: usize,
     clusters: &Clusters,
     factors: &Factors,
-) -> Sparse<3, 6> {
+) {
     let after = |row: usize| {
         let (own, at) = clusters.place[row];
         let members = &clusters.members.of(own as usize)[at as usize..];
         (own, at as usize, members)
     };
-    Sparse::build(
+    prolongator.rebuild(
         basis.rows(),
         rows_per_task::<3>(),
         || Accumulator::<3, 6>::new(columns),
@@ -253,6 +255,7 @@ pub(super) fn prolongator(
             }
             sums.take_count()
         },
+        #[inline(always)]
         |sums, row, columns, blocks| {
             let (own, at, members) = after(row);
             let factor = factors.factor_of(own);
@@ -265,7 +268,7 @@ pub(super) fn prolongator(
             }
             sums.take(columns, blocks);
         },
-    )
+    );
 }
 
 /// Modes in scaled unknowns, `L^T B`, where every cluster is a single row.

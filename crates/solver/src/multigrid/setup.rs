@@ -6,13 +6,14 @@ use super::clusters::Clusters;
 use super::coarsest::Dense;
 use super::copies::{Copies, Topology};
 use super::cycle::{Below, Level, Transfer};
-use super::galerkin::{self, Coarse, Unscaled};
+use super::galerkin::{self, Coarse};
 use super::prolongation;
 use super::scaling::{self, Factors, InverseFactors, Modes};
 use super::small::narrow;
 use super::smoother::Smoother;
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
 use super::tangent::{Kept, Springs, TangentRows, rows_of};
+use super::triple_product::Part;
 use super::{BlockRows, MultigridFailure, aggregation, numbers, spectrum, tentative};
 
 /// A level with at most this many scalar unknowns is inverted.
@@ -31,14 +32,36 @@ pub(super) struct Base {
     /// Modes of the next level's nodes; none, if there is no next level.
     pub(super) modes: Vec<Modes<6>>,
     /// The rock's part of the next level.
-    rock: Option<Unscaled>,
+    rock: Option<Part>,
 }
 
 /// The finest level before the next one is made.
 pub(super) struct Parts {
     factors: Factors,
+    pub(super) storage: Storage,
+}
+
+/// What is large of a finest level.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Storage {
     matrix: Sparse<3, 3>,
     prolongator: Sparse<3, 6>,
+    restrictor: Sparse<3, 6>,
+}
+
+impl Storage {
+    /// That of a level which is needed no more.
+    pub(super) fn of(level: Level<3>) -> Self {
+        let (prolongator, restrictor) = match level.below {
+            Below::Level(transfer) => (transfer.prolongator, transfer.restrictor),
+            _ => Default::default(),
+        };
+        Self {
+            matrix: level.matrix,
+            prolongator,
+            restrictor,
+        }
+    }
 }
 
 /// The mean displacements, and the motions of their aggregates.
@@ -56,7 +79,8 @@ impl Means {
     ) -> Result<(Self, Factors, Sparse<3, 3>), MultigridFailure> {
         let single = Clusters::single(rows.count());
         let factors = Factors::of(rows, &single)?;
-        let matrix = scaling::matrix(rows, &single, &factors);
+        let mut matrix = Sparse::default();
+        scaling::set_matrix(&mut matrix, rows, &single, &factors);
         let modes = scaling::modes(&factors, modes);
         let bound = spectrum::largest_eigenvalue(&matrix);
         if !bound.is_finite() {
@@ -122,16 +146,22 @@ impl Base {
             modes,
             rock: None,
         };
-        let parts = match base.clusters.count() == scaled.rows() {
-            true if is_whole => base.parts_with(scaled, factors),
+        let is_single = base.clusters.count() == scaled.rows();
+        let storage = Storage {
+            matrix: scaled,
+            ..Storage::default()
+        };
+        let parts = match is_single {
+            true if is_whole => base.parts_with(storage, factors),
             _ => {
-                drop((factors, scaled));
-                base.parts(&rows)?
+                drop(factors);
+                base.parts(&rows, storage)?
             }
         };
         if base.has_next(matrix.rows()) {
-            let transpose = Transpose::of(&parts.prolongator, base.modes.len());
-            base.rock = Some(Unscaled::of(&parts.matrix, &parts.prolongator, &transpose));
+            let (matrix, prolongator) = (&parts.storage.matrix, &parts.storage.prolongator);
+            let transpose = Transpose::of(prolongator, base.modes.len());
+            base.rock = Some(Part::whole(matrix, prolongator, &transpose));
         }
         Ok((base, parts))
     }
@@ -141,20 +171,22 @@ impl Base {
         3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
     }
 
-    /// The finest level of a tangent.
-    pub(super) fn parts(&self, rows: &TangentRows<'_>) -> Result<Parts, MultigridFailure> {
+    /// The finest level of a tangent, in the storage of a former one.
+    pub(super) fn parts(
+        &self,
+        rows: &TangentRows<'_>,
+        mut storage: Storage,
+    ) -> Result<Parts, MultigridFailure> {
         let factors = Factors::of(rows, &self.clusters)?;
-        let matrix = scaling::matrix(rows, &self.clusters, &factors);
-        Ok(self.parts_with(matrix, factors))
+        scaling::set_matrix(&mut storage.matrix, rows, &self.clusters, &factors);
+        Ok(self.parts_with(storage, factors))
     }
 
-    fn parts_with(&self, matrix: Sparse<3, 3>, factors: Factors) -> Parts {
-        let columns = self.modes.len();
-        Parts {
-            prolongator: scaling::prolongator(&self.basis, columns, &self.clusters, &factors),
-            matrix,
-            factors,
-        }
+    /// The finest level whose matrix stands.
+    fn parts_with(&self, mut storage: Storage, factors: Factors) -> Parts {
+        let (target, columns) = (&mut storage.prolongator, self.modes.len());
+        scaling::set_prolongator(target, &self.basis, columns, &self.clusters, &factors);
+        Parts { factors, storage }
     }
 
     /// The finest level, and the next one if it is worth having.
@@ -163,11 +195,12 @@ impl Base {
         parts: Parts,
         springs: Option<Springs<'_>>,
     ) -> Result<(InverseFactors, Level<3>, Option<Coarse>), MultigridFailure> {
-        let Parts {
-            factors,
+        let Parts { factors, storage } = parts;
+        let Storage {
             matrix,
             prolongator,
-        } = parts;
+            mut restrictor,
+        } = storage;
         let bound = spectrum::largest_eigenvalue(&matrix);
         if !bound.is_finite() {
             return Err(MultigridFailure::NotFinite);
@@ -182,11 +215,16 @@ impl Base {
             ),
             Some(rock) => {
                 let (next, factors) = match springs.map(|springs| self.of_springs(springs)) {
-                    Some(springs) => rock.plus(&springs).scaled(&self.modes),
-                    None => rock.scaled(&self.modes),
+                    Some(springs) => {
+                        let sum = Part::sum_of(self.modes.len(), &[rock, &springs]);
+                        Coarse::of(&sum, &self.modes)
+                    }
+                    None => Coarse::of(rock, &self.modes),
                 };
+                let transpose = Transpose::of(&prolongator, self.modes.len());
+                transpose.arrange(&prolongator, &mut restrictor);
                 let transfer = Transfer {
-                    transpose: Transpose::of(&prolongator, self.modes.len()),
+                    restrictor,
                     prolongator,
                     factors: factors.iter().map(narrow).collect(),
                 };
@@ -202,7 +240,7 @@ impl Base {
     }
 
     /// `P^T S P` of the springs.
-    fn of_springs(&self, springs: Springs<'_>) -> Unscaled {
+    fn of_springs(&self, springs: Springs<'_>) -> Part {
         let rows = springs.rows;
         let copies = self.modes.len();
         let prolongator = self.basis.of_rows(rows);
@@ -218,6 +256,7 @@ impl Base {
                 }
                 sums.take_count()
             },
+            #[inline(always)]
             |sums, row, columns, blocks| {
                 for (at, block) in springs.row(row) {
                     // In double precision: a spring and the motions of its walls differ by many digits.
@@ -232,7 +271,7 @@ impl Base {
                 sums.take(columns, blocks);
             },
         );
-        Unscaled::of_image(&prolongator, &transpose, &image)
+        Part::of_image(&prolongator, &transpose, &(0..rows.len()), &image)
     }
 
     /// Without what only another stiffness of fractures would ask for.
@@ -249,7 +288,7 @@ impl Base {
         self.clusters.bytes()
             + self.basis.bytes()
             + size_of_val(&self.modes[..])
-            + self.rock.as_ref().map_or(0, Unscaled::bytes)
+            + self.rock.as_ref().map_or(0, Part::bytes)
     }
 }
 
@@ -290,9 +329,11 @@ fn below(
         prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
     let transpose = Transpose::of(&prolongator, aggregates.count);
     let coarse = galerkin::coarse(matrix, &mut prolongator, &transpose, &tentative.modes);
+    let mut restrictor = Sparse::default();
+    transpose.arrange(&prolongator, &mut restrictor);
     let transfer = Transfer {
+        restrictor,
         prolongator,
-        transpose,
         factors: Vec::new(),
     };
     Ok((Below::Level(transfer), Some(coarse)))

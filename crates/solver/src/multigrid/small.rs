@@ -39,6 +39,7 @@ fn inverse<const N: usize>(factor: &[[f64; N]; N], kept: &[bool; N]) -> [[f64; N
 }
 
 /// `C = A B` of small blocks as rows.
+#[inline(always)]
 pub(super) fn product<const M: usize, const K: usize, const L: usize>(
     a: &[[f64; K]; M],
     b: &[[f64; L]; K],
@@ -55,6 +56,7 @@ pub(super) fn product<const M: usize, const K: usize, const L: usize>(
 }
 
 /// Transpose of a small block.
+#[inline(always)]
 pub(super) fn transpose<T: Copy + Default, const M: usize, const L: usize>(
     block: &[[T; L]; M],
 ) -> [[T; M]; L] {
@@ -68,13 +70,30 @@ pub(super) fn transpose<T: Copy + Default, const M: usize, const L: usize>(
 }
 
 /// A block in double precision.
+#[inline(always)]
 pub(super) fn widen<const M: usize, const L: usize>(block: &[[f32; L]; M]) -> [[f64; L]; M] {
-    block.map(|line| line.map(f64::from))
+    converted(block, f64::from)
 }
 
 /// A block in single precision.
+#[inline(always)]
 pub(super) fn narrow<const M: usize, const L: usize>(block: &[[f64; L]; M]) -> [[f32; L]; M] {
-    block.map(|line| line.map(|entry| entry as f32))
+    converted(block, |entry| entry as f32)
+}
+
+/// In loops, because `map` of arrays may stay a call of its own, which is not vectorised.
+#[inline(always)]
+fn converted<A: Copy, B: Copy + Default, const M: usize, const L: usize>(
+    block: &[[A; L]; M],
+    convert: impl Fn(A) -> B,
+) -> [[B; L]; M] {
+    let mut result = [[B::default(); L]; M];
+    for (line, entries) in result.iter_mut().zip(block) {
+        for (target, &entry) in line.iter_mut().zip(entries) {
+            *target = convert(entry);
+        }
+    }
+    result
 }
 
 /// A pivot below this share of its diagonal entry shows a singular block.

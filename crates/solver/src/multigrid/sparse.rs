@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::small::narrow;
+
 /// A sparse matrix whose blocks are `M` lines of `L` numbers.
 ///
 /// Matrices of a level keep a block as its columns, because the product with a vector then adds
@@ -120,7 +122,8 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
     }
 
     /// A matrix whose rows `fill` writes, once for their number of blocks and once for the blocks.
-    /// `scratch` is what a task keeps from row to row; it must not influence the result.
+    /// `scratch` is what a task keeps from row to row; it must not influence the result. `fill` runs with
+    /// the widest vectors of the machine as far as it is inlined.
     pub(super) fn build<S>(
         rows: usize,
         rows_per_task: usize,
@@ -128,32 +131,65 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
         count: impl Fn(&mut S, usize) -> usize + Sync + Send,
         fill: impl Fn(&mut S, usize, &mut [u32], &mut [[[f32; L]; M]]) + Sync + Send,
     ) -> Self {
-        let mut offset = vec![0; rows + 1];
+        let mut matrix = Self::default();
+        matrix.rebuild(rows, rows_per_task, scratch, count, fill);
+        matrix
+    }
+
+    /// The same in the storage of a matrix that is needed no more: mapping fresh memory costs more than
+    /// filling it.
+    pub(super) fn rebuild<S>(
+        &mut self,
+        rows: usize,
+        rows_per_task: usize,
+        scratch: impl Fn() -> S + Sync + Send,
+        count: impl Fn(&mut S, usize) -> usize + Sync + Send,
+        fill: impl Fn(&mut S, usize, &mut [u32], &mut [[[f32; L]; M]]) + Sync + Send,
+    ) {
+        let Self {
+            offset,
+            columns,
+            blocks,
+        } = self;
+        offset.clear();
+        offset.resize(rows + 1, 0);
         let tasks = offset[1..].par_chunks_mut(rows_per_task).enumerate();
         tasks.for_each_init(&scratch, |scratch, (task, counts)| {
             for (place, number) in counts.iter_mut().enumerate() {
                 *number = count(scratch, task * rows_per_task + place);
             }
         });
-        sum_up(&mut offset);
-        let mut columns = vec![0; offset[rows]];
-        let mut blocks = vec![[[0.0; L]; M]; offset[rows]];
-        let shares = row_shares(&offset, rows_per_task, &mut columns, &mut blocks);
+        sum_up(offset);
+        set_length(columns, offset[rows], 0);
+        set_length(blocks, offset[rows], [[0.0; L]; M]);
+        let shares = row_shares(offset, rows_per_task, columns, blocks);
+        let vectorised = pulp::Arch::new();
         shares
             .into_par_iter()
             .for_each_init(scratch, |scratch, share| {
-                let start = offset[share.rows.start];
-                for row in share.rows {
-                    let range = offset[row] - start..offset[row + 1] - start;
-                    let blocks = &mut share.blocks[range.clone()];
-                    fill(scratch, row, &mut share.columns[range], blocks);
-                }
+                vectorised.dispatch(
+                    #[inline(always)]
+                    || {
+                        let start = offset[share.rows.start];
+                        for row in share.rows {
+                            let range = offset[row] - start..offset[row + 1] - start;
+                            let blocks = &mut share.blocks[range.clone()];
+                            fill(scratch, row, &mut share.columns[range], blocks);
+                        }
+                    },
+                );
             });
-        Self {
-            offset,
-            columns,
-            blocks,
-        }
+    }
+}
+
+/// Gives a vector a length; what it holds does not matter.
+fn set_length<T: Clone>(vector: &mut Vec<T>, length: usize, any: T) {
+    if vector.capacity() < length {
+        // Freed first, and zeroed by the system where it is used.
+        *vector = Vec::new();
+        *vector = vec![any; length];
+    } else {
+        vector.resize(length, any);
     }
 }
 
@@ -216,14 +252,29 @@ impl Transpose {
         &self.entries[self.offset[column]..self.offset[column + 1]]
     }
 
+    /// Sets `columns` to the blocks of a matrix column by column, with the rows they stand in.
+    pub(super) fn arrange<const M: usize, const L: usize>(
+        &self,
+        matrix: &Sparse<M, L>,
+        columns: &mut Sparse<M, L>,
+    ) {
+        columns.rebuild(
+            self.columns(),
+            rows_per_task::<6>(),
+            || (),
+            |(), column| self.column(column).len(),
+            |(), column, rows, blocks| {
+                let targets = rows.iter_mut().zip(blocks);
+                for (&(at, position), (row, block)) in self.column(column).iter().zip(targets) {
+                    (*row, *block) = (at, matrix.blocks[position as usize]);
+                }
+            },
+        );
+    }
+
     /// Number of columns.
     pub(super) fn columns(&self) -> usize {
         self.offset.len() - 1
-    }
-
-    /// Bytes of storage.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.offset[..]) + size_of_val(&self.entries[..])
     }
 }
 
@@ -263,7 +314,7 @@ impl<const M: usize, const L: usize> Accumulator<M, L> {
     }
 
     /// The sum of a column.
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&mut self, column: u32) -> &mut [[f64; L]; M] {
         let place = self.place[column as usize];
         if place != Self::NOWHERE {
@@ -277,12 +328,13 @@ impl<const M: usize, const L: usize> Accumulator<M, L> {
     }
 
     /// Moves the sums to a row of a matrix, columns ascending.
+    #[inline(always)]
     pub(super) fn take(&mut self, columns: &mut [u32], blocks: &mut [[[f32; L]; M]]) {
         columns.copy_from_slice(&self.columns);
         columns.sort_unstable();
         for (column, block) in columns.iter().zip(blocks) {
             let place = self.place[*column as usize] as usize;
-            *block = self.sums[place].map(|line| line.map(|entry| entry as f32));
+            *block = narrow(&self.sums[place]);
         }
         self.clear();
     }

@@ -193,7 +193,8 @@ fn rigid_motions_are_prolonged_exactly() {
     };
     let single = clusters::Clusters::single(rows.count());
     let factors = scaling::Factors::of(&rows, &single).unwrap();
-    let scaled = scaling::matrix(&rows, &single, &factors);
+    let mut scaled = Sparse::default();
+    scaling::set_matrix(&mut scaled, &rows, &single, &factors);
     let modes = scaling::modes(&factors, &matrix.modes);
     let aggregates = aggregation::aggregate(&scaled, setup::STRENGTH);
     let tentative = tentative::tentative(&aggregates, &modes);
