@@ -48,6 +48,7 @@ class Case:
 CASES = (
     Case("network-20", (0.24, 0.12, 0.1), "50e6", 420, 3),
     Case("network-20", (0.17, 0.085, 0.07), "50e6", 1019, 3),
+    Case("network-100", (1.0, 0.5, 0.45), "10e6", 127, 3),
     Case("network-100", (), "10e6", 725, 3),
     Case("network-100", (), "10e6", 5068, 2, refined=True),
 )
@@ -145,18 +146,21 @@ STAGES = ("read", "assemble", "factorise", "solve", "estimate", "write")
 
 
 def growth(results):
-    """Exponents of time and memory between the two meshes of network-100, or nothing if the finer was not run."""
-    both = [runs for case, runs in results if case.network == "network-100"]
-    if len(both) < 2:
+    """Exponents of time and memory from each mesh of network-100 to its finest, or nothing if that was not run."""
+    meshes = [runs for case, runs in results if case.network == "network-100"]
+    if len(meshes) < 3:
         return ""
     size = lambda runs: runs[-1]["summary"]["unknowns"]["total"]
     middle = lambda runs, key: statistics.median(run[key] for run in runs)
-    ratio = math.log(size(both[1]) / size(both[0]))
-    of = lambda key: math.log(middle(both[1], key) / middle(both[0], key)) / ratio
-    return (
-        f"Between the two meshes of `network-100` the time grows as N^{of('seconds'):.2f} and the memory as "
-        f"N^{of('peak_memory_bytes'):.2f}.\n"
+    def exponent(runs, key):
+        ratio = math.log(size(meshes[-1]) / size(runs))
+        return math.log(middle(meshes[-1], key) / middle(runs, key)) / ratio
+    lines = (
+        f"From {size(runs):,} to {size(meshes[-1]):,} unknowns of `network-100` the time grows as "
+        f"N^{exponent(runs, 'seconds'):.2f} and the memory as N^{exponent(runs, 'peak_memory_bytes'):.2f}."
+        for runs in meshes[:-1]
     )
+    return "\n".join(lines).replace(",", " ") + "\n"
 
 
 HEADER = """# Whole runs on networks of fractures

@@ -30,8 +30,8 @@ const SOLID: f64 = 18.0;
 const QUICK: f64 = 0.3;
 /// Weight of so short a time.
 const NEGLIGIBLE: f64 = 1e-3;
-/// A direct solver is not even analysed if it is bound to lose by this factor.
-const HOPELESS: f64 = 10.0;
+/// A direct solver is not even analysed if in a solid body it would lose by this factor; in thin ones it takes less.
+const HOPELESS: f64 = 20.0;
 
 /// The linear solvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,6 +148,11 @@ impl Workload {
             self.steps as f64
         }
     }
+
+    /// Factorisations of the whole tangent in the run.
+    fn factorisations(self) -> f64 {
+        if self.is_nonlinear { self.solves() } else { 1.0 }
+    }
 }
 
 /// Predicted cost of a solver.
@@ -201,22 +206,23 @@ impl Plan {
     ) -> Result<Self, LinearFailure> {
         let iterative = iterative(unknowns, workload);
         let is_wanted = |method| forced.is_none_or(|forced| forced == method);
-        let least = SOLID * (3.0 * unknowns.points.len() as f64).powi(2) / OPERATIONS;
-        let direct = match forced {
-            Some(method) => method != LinearMethod::Iterative,
-            None => least < HOPELESS * iterative.seconds,
-        };
+        let limit = HOPELESS * iterative.seconds;
+        let analysed = [LinearMethod::Direct, LinearMethod::Condensed];
+        let analysed = analysed.into_iter().filter(|&method| match forced {
+            Some(forced) => forced == method,
+            None => in_solid(unknowns, workload, method) < limit,
+        });
         let mut predictions = vec![iterative];
         let mut analyses = Vec::new();
-        if direct {
-            let order = NodeOrder::of(unknowns.pattern, unknowns.points)?;
-            for method in [LinearMethod::Direct, LinearMethod::Condensed] {
-                if is_wanted(method) {
-                    let analysis = analysis(unknowns, &order, method)?;
-                    predictions.push(predict(unknowns, workload, method, &analysis));
-                    analyses.push((method, analysis));
-                }
-            }
+        let mut order = None;
+        for method in analysed {
+            let order = match &mut order {
+                Some(order) => order,
+                none => none.insert(NodeOrder::of(unknowns.pattern, unknowns.points)?),
+            };
+            let analysis = analysis(unknowns, order, method)?;
+            predictions.push(predict(unknowns, workload, method, &analysis));
+            analyses.push((method, analysis));
         }
         let candidates = || predictions.iter().filter(|p| is_wanted(p.method));
         let fitting = candidates().filter(|p| p.memory_bytes <= memory_bytes);
@@ -270,6 +276,20 @@ fn analysis(
     )
 }
 
+/// Time of the factorisations of a direct solver in a solid body, without an analysis (s).
+fn in_solid(unknowns: Unknowns<'_>, workload: Workload, method: LinearMethod) -> f64 {
+    let factorise = SOLID * (3.0 * unknowns.points.len() as f64).powi(2) / OPERATIONS;
+    match method {
+        LinearMethod::Condensed => factorise + 3.0 * dense(unknowns),
+        _ => workload.factorisations() * factorise,
+    }
+}
+
+/// Time to factorise the condensed problem (s).
+fn dense(unknowns: Unknowns<'_>) -> f64 {
+    (3.0 * unknowns.jumps.len() as f64).powi(3) / 3.0 / OPERATIONS
+}
+
 fn predict(
     unknowns: Unknowns<'_>,
     workload: Workload,
@@ -280,7 +300,7 @@ fn predict(
     let factorise = analysis.factor_operations() / OPERATIONS;
     let substitute = 16.0 * analysis.factor_entries() as f64 / BYTES;
     let jumps = 3.0 * unknowns.jumps.len() as f64;
-    let dense = jumps.powi(3) / 3.0 / OPERATIONS;
+    let dense = dense(unknowns);
     let (seconds, extra) = match method {
         LinearMethod::Condensed => {
             let iterations = 8.0 * 16.0 * jumps.powi(2) / BYTES;
@@ -291,8 +311,8 @@ fn predict(
             )
         }
         _ => {
-            let factorisations = if workload.is_nonlinear { solves } else { 1.0 };
-            (factorisations * factorise + solves * substitute, 0.0)
+            let factorise = workload.factorisations() * factorise;
+            (factorise + solves * substitute, 0.0)
         }
     };
     Prediction {
