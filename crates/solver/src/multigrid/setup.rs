@@ -216,7 +216,7 @@ impl Base {
             Some(rock) => {
                 let (next, factors) = match springs.map(|springs| self.of_springs(springs)) {
                     Some(springs) => {
-                        let sum = Part::sum_of(self.modes.len(), &[rock, &springs]);
+                        let sum = Part::sum(self.modes.len(), &[rock, &springs]);
                         Coarse::of(&sum, &self.modes)
                     }
                     None => Coarse::of(rock, &self.modes),

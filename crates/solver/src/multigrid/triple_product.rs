@@ -42,7 +42,8 @@ impl Part {
             set_image(&mut image, matrix, prolongator, transpose.columns(), &rows);
             Self::of_image(prolongator, transpose, &rows, &image)
         });
-        Self::sum(transpose.columns(), parts.collect())
+        let parts: Vec<Self> = parts.collect();
+        Self::sum(transpose.columns(), &parts.iter().collect::<Vec<_>>())
     }
 
     /// What some rows give, from their rows of `A P`.
@@ -74,16 +75,7 @@ impl Part {
     }
 
     /// The sum of parts, with all aggregates.
-    pub(super) fn sum(aggregates: usize, mut parts: Vec<Self>) -> Self {
-        if parts.len() == 1 && parts[0].aggregates.len() == aggregates {
-            return parts.remove(0);
-        }
-        let references: Vec<&Self> = parts.iter().collect();
-        Self::sum_of(aggregates, &references)
-    }
-
-    /// The sum of parts, with all aggregates.
-    pub(super) fn sum_of(aggregates: usize, parts: &[&Self]) -> Self {
+    pub(super) fn sum(aggregates: usize, parts: &[&Self]) -> Self {
         let (offset, places) = places(aggregates, parts);
         let of = |aggregate: usize| {
             let places = &places[offset[aggregate]..offset[aggregate + 1]];
