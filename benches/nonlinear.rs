@@ -1,14 +1,17 @@
 //! What a nonlinear run costs against one linear solve of the same system; see README.md.
 //!
-//!     cargo bench --bench nonlinear -- [CUBES [METHOD [once]]]
+//!     cargo bench --bench nonlinear -- [CUBES [METHOD [once] [uneven]]]
 #![allow(clippy::print_stdout, reason = "the table is what it is run for")]
 
 mod block;
 
 use std::time::Instant;
 
+use glam::DVec3;
 use lie_core::FractureLaw;
-use lie_solver::{Discretisation, LinearMethod, Load, Newton, NewtonSettings, System};
+use lie_solver::{
+    Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, SurfaceLoad, System,
+};
 
 /// Seconds that `work` takes, and what it gives.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
@@ -61,6 +64,17 @@ fn sweep(system: &mut System<'_>, method: Option<LinearMethod>, count: usize) ->
     counts
 }
 
+/// Sheared patches of stiffnesses tenfold apart: their points close one after the other.
+fn uneven(cubes: usize) -> Problem {
+    let mut problem = block::problem(cubes, &block::PATCHES);
+    problem.fractures[1].law.closure.normal_stiffness *= 10.0;
+    let pressed = SurfaceLoad::Traction(DVec3::new(10e6, 0.0, -85e6));
+    for condition in &mut problem.conditions {
+        condition.load = condition.load.map(|_| pressed);
+    }
+    problem
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args()
         .skip(1)
@@ -73,7 +87,11 @@ fn main() {
         None | Some("chosen") => None,
         Some(name) => Some(name.parse().expect("a method")),
     };
-    let problem = block::problem(cubes, &block::TWO_PLANES);
+    let flag = |name: &str| arguments.iter().skip(2).any(|word| word == name);
+    let problem = match flag("uneven") {
+        true => uneven(cubes),
+        false => block::problem(cubes, &block::TWO_PLANES),
+    };
     let discretisation = Discretisation::of(&problem).expect("supported");
     let fractured = discretisation.points.jump_count() as f64;
     println!(
@@ -109,7 +127,7 @@ fn main() {
         timed(|| run(&system, method, 1)),
         once,
     );
-    if arguments.get(2).is_some_and(|word| word == "once") {
+    if flag("once") {
         return;
     }
     tell("100 steps", timed(|| run(&system, method, 100)), one);

@@ -17,6 +17,13 @@ pub const THREE_PLANES: [Plane; 3] = [|x| x[0] == 0.5, |x| x[1] == 0.5, |x| x[2]
 #[allow(dead_code, reason = "not every benchmark uses every scene")]
 pub const TWO_PLANES: [Plane; 2] = [|x| x[2] == 0.5, |x| x[0] == 0.5 && x[2] <= 0.5];
 
+/// A level patch and an upright one that end in the rock.
+#[allow(dead_code, reason = "not every benchmark uses every scene")]
+pub const PATCHES: [Plane; 2] = [
+    |x| x[2] == 0.5 && x[..2].iter().all(|x| (0.25..=0.75).contains(x)),
+    |x| x[0] == 0.25 && (0.25..=0.75).contains(&x[1]) && (0.125..=0.375).contains(&x[2]),
+];
+
 pub fn draft(cubes: usize, planes: &[Plane]) -> Draft {
     let sides: [Plane; 4] = [
         |x| x[0] == 0.0,
