@@ -1,10 +1,10 @@
 //! The benchmark scene: a block of cubes, six tetrahedra each, cut by closing planes.
 
 use glam::DVec3;
-use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Draft, Mesh, SurfaceRole};
-use lie_solver::{Condition, Fracture, Problem, Schedule, Support, SurfaceLoad};
+use lie_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 
 /// A fracture on faces of the cubes: whether a point is on it.
 pub type Plane = fn([f64; 3]) -> bool;
@@ -67,13 +67,12 @@ pub fn problem(cubes: usize, planes: &[Plane]) -> Problem {
         load: (boundary == 3).then_some(SurfaceLoad::Traction(DVec3::new(0.0, 0.0, -28.4e6))),
         support: (boundary < 3).then_some(Support::Symmetry),
     };
+    let rock = Rock {
+        young_modulus: 25e9,
+        poisson_ratio: 0.25,
+        density: 0.0,
+    };
     Problem {
-        rocks: vec![Rock {
-            young_modulus: 25e9,
-            poisson_ratio: 0.25,
-            density: 0.0,
-        }],
-        rock_of_cell: vec![0; mesh.cells.len()],
         fractures: vec![
             Fracture {
                 law,
@@ -82,11 +81,6 @@ pub fn problem(cubes: usize, planes: &[Plane]) -> Problem {
             planes.len()
         ],
         conditions: (0..4).map(condition).collect(),
-        fixed_points: Vec::new(),
-        gravity: DVec3::ZERO,
-        initial_stress: None,
-        schedule: Schedule::proportional(vec![1.0]),
-        facet_quadrature: FacetQuadrature::Nodal,
-        mesh,
+        ..Problem::of_rock(mesh, rock)
     }
 }

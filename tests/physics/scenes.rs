@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
-use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 use lie_io::{Meshing, load_msh, mesh_geometry};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Draft, Faces, Mesh, SurfaceRole, TaggedElements};
 use lie_solver::{
     Condition, Discretisation, FixedPoint, Fracture, Load, Newton, NewtonSettings, Problem,
-    Schedule, Solution, State, StepRecord, Support, SurfaceLoad, System, solution,
+    Solution, State, StepRecord, Support, SurfaceLoad, System, solution,
 };
 
 /// Rock of the benchmarks: E = 25 GPa, nu = 0.25.
@@ -69,16 +69,8 @@ pub fn roles(draft: &Draft) -> Vec<SurfaceRole> {
 /// A problem with one rock and one law for all fractures, no conditions yet.
 pub fn problem(mesh: Mesh, fracture: Fracture) -> Problem {
     Problem {
-        rocks: vec![ROCK],
-        rock_of_cell: vec![0; mesh.cells.len()],
         fractures: vec![fracture; mesh.fractures.len()],
-        mesh,
-        conditions: Vec::new(),
-        fixed_points: Vec::new(),
-        gravity: DVec3::ZERO,
-        initial_stress: None,
-        schedule: Schedule::proportional(vec![1.0]),
-        facet_quadrature: FacetQuadrature::Nodal,
+        ..Problem::of_rock(mesh, ROCK)
     }
 }
 

@@ -10,23 +10,6 @@ use vtkio::xml::{Compressor, Data, DataArray, EncodingInfo, Error, ScalarType};
 
 use crate::atomic::write_atomically;
 
-const EMPTY_GRID: &str = r#"<?xml version="1.0"?>
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-  <UnstructuredGrid>
-    <Piece NumberOfPoints="0" NumberOfCells="0">
-      <Points>
-        <DataArray type="Float64" Name="Points" NumberOfComponents="3" format="ascii"/>
-      </Points>
-      <Cells>
-        <DataArray type="Int64" Name="connectivity" format="ascii"/>
-        <DataArray type="Int64" Name="offsets" format="ascii"/>
-        <DataArray type="UInt8" Name="types" format="ascii"/>
-      </Cells>
-    </Piece>
-  </UnstructuredGrid>
-</VTKFile>
-"#;
-
 /// How arrays are encoded. LZ4 has no levels; 0 would switch compression off.
 const ENCODING: EncodingInfo = EncodingInfo {
     byte_order: ByteOrder::LittleEndian,
@@ -92,9 +75,13 @@ impl Values {
 /// When the lengths of the parts of `grid` do not fit together: an error of the caller.
 pub fn write_vtu(path: &Path, grid: Grid) -> Result<(), Defect> {
     check_lengths(&grid);
-    if grid.shapes.is_empty() {
-        return write_atomically(path, |out| out.write_all(EMPTY_GRID.as_bytes()));
-    }
+    let grid = match grid.shapes.is_empty() {
+        true => Grid {
+            offsets: vec![0],
+            ..Grid::default()
+        },
+        false => grid,
+    };
     let piece = Piece::of(grid).map_err(|error| {
         Defect::new(
             path.display().to_string(),

@@ -1,22 +1,25 @@
 //! Disjoint sets (union-find).
 
 /// Disjoint sets whose root is always the lowest member, so numbering by roots is reproducible.
-pub(crate) struct DisjointSets {
+pub struct DisjointSets {
     parent: Vec<u32>,
 }
 
 impl DisjointSets {
-    pub(crate) fn new(count: usize) -> Self {
+    /// Sets of one member each.
+    pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),
         }
     }
 
-    pub(crate) fn root(&mut self, member: u32) -> u32 {
+    /// The lowest member of a set.
+    pub fn root(&mut self, member: u32) -> u32 {
         self.stretch().root(member)
     }
 
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
+    /// Makes one set of those of two members.
+    pub fn join(&mut self, a: u32, b: u32) {
         self.stretch().join(a, b);
     }
 

@@ -33,6 +33,7 @@ pub mod structured;
 mod survey;
 
 pub use defect::{Defect, nearest, sample};
+pub use disjoint_sets::DisjointSets;
 pub use draft::{Draft, Elements, Group, TaggedElements};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
 pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};

@@ -8,13 +8,13 @@
 use std::time::Instant;
 
 use glam::{DMat3, DVec3};
-use lie_core::{FacetQuadrature, Rock};
+use lie_core::Rock;
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Mesh, SurfaceRole};
 use lie_solver::multigrid::{Multigrid, rigid_modes};
 use lie_solver::{
     Analysis, Cholesky, Condition, ConjugateGradientSettings, Discretisation, NodeOrder, Problem,
-    Schedule, Support, System, conjugate_gradients,
+    Support, System, conjugate_gradients,
 };
 
 /// Unknowns from which on the factor takes more than 16 GB; it is made only if asked for.
@@ -49,25 +49,18 @@ fn problem(cubes: usize) -> Problem {
     let draft = tetrahedra([cubes; 3], [1.0; 3], &[bottom]);
     let roles = vec![SurfaceRole::Boundary; draft.groups.len()];
     let mesh = Mesh::build(draft, &roles).expect("a good mesh");
+    let rock = Rock {
+        young_modulus: 1.0,
+        poisson_ratio: 0.3,
+        density: 0.0,
+    };
     Problem {
-        rocks: vec![Rock {
-            young_modulus: 1.0,
-            poisson_ratio: 0.3,
-            density: 0.0,
-        }],
-        rock_of_cell: vec![0; mesh.cells.len()],
-        fractures: Vec::new(),
         conditions: vec![Condition {
             boundary: 0,
             load: None,
             support: Some(Support::Displacement([Some(0.0); 3])),
         }],
-        fixed_points: Vec::new(),
-        gravity: DVec3::ZERO,
-        initial_stress: None,
-        schedule: Schedule::proportional(vec![1.0]),
-        facet_quadrature: FacetQuadrature::Nodal,
-        mesh,
+        ..Problem::of_rock(mesh, rock)
     }
 }
 

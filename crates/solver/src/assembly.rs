@@ -349,12 +349,12 @@ pub(crate) fn trace(block: DMat3) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock as Material};
+    use lie_core::{Closure, ClosureKind, FractureLaw, Rock as Material};
     use lie_mesh::structured::{Cut, Patch, mixed};
     use lie_mesh::{Mesh, SurfaceRole};
 
     use super::*;
-    use crate::{Condition, Discretisation, FixedPoint, Fracture, Schedule, Support};
+    use crate::{Condition, Discretisation, FixedPoint, Fracture, Support};
 
     const CUBES: usize = 6;
 
@@ -414,22 +414,13 @@ mod tests {
                 displacement: [None, Some(0.0), None],
                 name: "corner".into(),
             }],
-            gravity: DVec3::ZERO,
-            initial_stress: None,
-            schedule: Schedule::proportional(vec![1.0]),
-            facet_quadrature: FacetQuadrature::Nodal,
-            mesh,
+            ..Problem::of_rock(mesh, rock(2.0, 0.1))
         }
     }
 
     fn with_frame<T>(problem: &Problem, of: impl FnOnce(Frame<'_>) -> T) -> T {
         let discretisation = Discretisation::of(problem).expect("supported");
-        of(Frame {
-            problem,
-            points: &discretisation.points,
-            supports: &discretisation.supports,
-            pattern: &discretisation.pattern,
-        })
+        of(discretisation.frame(problem))
     }
 
     /// Largest entry of the matrix, and of its difference from the one without [`Tetrahedra`], which

@@ -114,6 +114,22 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// A body of one rock in one load step, with neither laws of fractures nor conditions yet.
+    pub fn of_rock(mesh: Mesh, rock: Rock) -> Self {
+        Self {
+            rocks: vec![rock],
+            rock_of_cell: vec![0; mesh.cells.len()],
+            fractures: Vec::new(),
+            conditions: Vec::new(),
+            fixed_points: Vec::new(),
+            gravity: DVec3::ZERO,
+            initial_stress: None,
+            schedule: Schedule::proportional(vec![1.0]),
+            facet_quadrature: FacetQuadrature::Nodal,
+            mesh,
+        }
+    }
+
     /// Rock of a cell.
     pub fn rock(&self, cell: usize) -> &Rock {
         &self.rocks[self.rock_of_cell[cell] as usize]

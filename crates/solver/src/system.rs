@@ -33,6 +33,16 @@ pub struct Discretisation {
 }
 
 impl Discretisation {
+    /// What assembly works from.
+    pub(crate) fn frame<'a>(&'a self, problem: &'a Problem) -> Frame<'a> {
+        Frame {
+            problem,
+            points: &self.points,
+            supports: &self.supports,
+            pattern: &self.pattern,
+        }
+    }
+
     /// Enriches and numbers a problem.
     ///
     /// # Errors
@@ -139,12 +149,7 @@ const CANCELLING: f64 = 1e-3;
 impl<'a> System<'a> {
     /// Assembles rock and loads.
     pub fn assemble(problem: &'a Problem, discretisation: Discretisation) -> Self {
-        let frame = Frame {
-            problem,
-            points: &discretisation.points,
-            supports: &discretisation.supports,
-            pattern: &discretisation.pattern,
-        };
+        let frame = discretisation.frame(problem);
         let rock = assembly::rock_stiffness(frame);
         let loads = Loads::of(frame, &discretisation.interface);
         Self {

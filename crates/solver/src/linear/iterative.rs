@@ -51,12 +51,8 @@ impl Iterative {
     /// # Errors
     /// If the rock is not positive definite.
     pub fn new(system: &System<'_>) -> Result<Self, LinearFailure> {
-        let discretisation = &system.discretisation;
         let topology = Topology {
-            points: &discretisation.points,
-            pattern: &discretisation.pattern,
-            cells: &system.problem.mesh.cells,
-            supports: &discretisation.supports,
+            frame: system.discretisation.frame(system.problem),
             // Walls that stick or part change their stiffness by any factor, which the lower levels, in
             // single precision, cannot follow.
             is_cut: system.is_smooth(),

@@ -216,17 +216,16 @@ impl Plan {
             Some(forced) => forced == method,
             None => in_solid(unknowns, workload, method) < limit,
         });
+        let analysed: Vec<LinearMethod> = analysed.collect();
         let mut predictions = vec![iterative];
         let mut analyses = Vec::new();
-        let mut order = None;
-        for method in analysed {
-            let order = match &mut order {
-                Some(order) => order,
-                none => none.insert(NodeOrder::of(unknowns.pattern, unknowns.points)?),
-            };
-            let analysis = analysis(unknowns, order, method)?;
-            predictions.push(predict(unknowns, workload, method, &analysis));
-            analyses.push((method, analysis));
+        if !analysed.is_empty() {
+            let order = NodeOrder::of(unknowns.pattern, unknowns.points)?;
+            for method in analysed {
+                let analysis = analysis(unknowns, &order, method)?;
+                predictions.push(predict(unknowns, workload, method, &analysis));
+                analyses.push((method, analysis));
+            }
         }
         let candidates = || predictions.iter().filter(|p| is_wanted(p.method));
         let fitting = candidates().filter(|p| p.memory_bytes <= memory_bytes);

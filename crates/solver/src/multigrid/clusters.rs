@@ -5,6 +5,7 @@
 //! surface beside it. Such nodes move together at almost no cost, which a smoother that looks at
 //! one node after the other cannot see, and which is too local for the next level.
 
+use lie_mesh::DisjointSets;
 use rayon::prelude::*;
 
 use super::sparse::Sparse;
@@ -41,29 +42,28 @@ impl Clusters {
     pub(super) fn of(means: &Sparse<3, 3>, nodes: &[u32], node_offset: &[u32]) -> Self {
         let mut ties = ties(means, nodes);
         ties.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        let count = node_offset.len() - 1;
-        // The lowest node of each cluster, by paths, and how many nodes it has.
-        let mut lowest: Vec<u32> = (0..count as u32).collect();
-        let mut count = vec![1; count];
+        let mut sets = DisjointSets::new(node_offset.len() - 1);
+        // How many nodes a set has, at its lowest.
+        let mut count = vec![1; node_offset.len() - 1];
         for (_, a, b) in ties {
-            let (a, b) = (root(&lowest, a), root(&lowest, b));
-            let (low, high) = (a.min(b), a.max(b));
-            let both = count[low as usize] + count[high as usize];
-            if low != high && both <= MOST_NODES {
-                lowest[high as usize] = low;
-                count[low as usize] = both;
+            let (a, b) = (sets.root(a), sets.root(b));
+            let both = count[a as usize] + count[b as usize];
+            if a != b && both <= MOST_NODES {
+                sets.join(a, b);
+                count[a.min(b) as usize] = both;
             }
         }
-        Self::collect(&lowest, node_offset)
+        Self::collect(&mut sets, node_offset)
     }
 
-    fn collect(lowest: &[u32], node_offset: &[u32]) -> Self {
+    fn collect(sets: &mut DisjointSets, node_offset: &[u32]) -> Self {
+        let nodes = node_offset.len() - 1;
         let owns = |node: usize| node_offset[node + 1] > node_offset[node];
-        let mut number = vec![u32::MAX; lowest.len()];
+        let mut number = vec![u32::MAX; nodes];
         let mut clusters = 0;
-        let mut keys = Vec::with_capacity(node_offset[lowest.len()] as usize);
-        for node in (0..lowest.len()).filter(|&node| owns(node)) {
-            let first = root(lowest, node as u32) as usize;
+        let mut keys = Vec::with_capacity(node_offset[nodes] as usize);
+        for node in (0..nodes).filter(|&node| owns(node)) {
+            let first = sets.root(node as u32) as usize;
             if number[first] == u32::MAX {
                 number[first] = clusters;
                 clusters += 1;
@@ -92,13 +92,6 @@ impl Clusters {
             + size_of_val(&self.members.entries[..])
             + size_of_val(&self.place[..])
     }
-}
-
-fn root(lowest: &[u32], mut node: u32) -> u32 {
-    while lowest[node as usize] != node {
-        node = lowest[node as usize];
-    }
-    node
 }
 
 /// Norms of the blocks between mean displacements, and their nodes, where they are large. `means` is their

@@ -7,17 +7,15 @@
 //! follow it to the distance `L`. Small pieces make no copies of their own but follow those beside them, so that
 //! whatever moves rigidly on the finest level still does so exactly on the next one.
 
-use lie_mesh::Elements;
+use lie_mesh::DisjointSets;
 use rayon::prelude::*;
 
 use super::scaling::Modes;
 use super::setup::Means;
-use super::small::{narrow, product, widen};
+use super::small::{add, narrow, product, widen};
 use super::sparse::{Sparse, rows_per_task};
 use super::tangent::rows_of;
-use crate::pattern::Pattern;
-use crate::points::Points;
-use crate::supports::Supports;
+use crate::assembly::Frame;
 
 /// A piece with less than this share of the motion of its aggregate follows that of another one.
 const SMALL: f64 = 0.02;
@@ -30,10 +28,7 @@ const NOWHERE: u32 = u32::MAX;
 /// How nodes, points and cells hang together.
 #[derive(Clone, Copy)]
 pub(crate) struct Topology<'a> {
-    pub(crate) points: &'a Points,
-    pub(crate) pattern: &'a Pattern,
-    pub(crate) cells: &'a Elements,
-    pub(crate) supports: &'a Supports,
+    pub(crate) frame: Frame<'a>,
     /// Whether aggregates that fractures cut fall into pieces.
     pub(crate) is_cut: bool,
 }
@@ -65,10 +60,10 @@ impl<'a> Copies<'a> {
             .into_par_iter()
             .with_min_len(PER_TASK)
             .map_init(
-                || vec![NOWHERE; topology.points.len()],
+                || vec![NOWHERE; topology.frame.points.len()],
                 |number, aggregate| {
                     let moved = moved(topology, nodes, means, aggregate);
-                    cut(topology, &moved, number)
+                    cut(topology.frame, &moved, number)
                 },
             )
             .collect();
@@ -119,7 +114,7 @@ impl<'a> Copies<'a> {
 
     /// Aggregates that move the node of a point, and how.
     fn entries(&self, point: usize) -> impl Iterator<Item = (usize, &[[f32; 6]; 3])> {
-        let node = self.topology.points.node[point] as usize;
+        let node = self.topology.frame.points.node[point] as usize;
         self.means.prolongator.row(self.row_of_node[node] as usize)
     }
 
@@ -156,7 +151,7 @@ impl<'a> Copies<'a> {
     /// Copies that move a point, and how, as far as it is not held. A motion that follows that of a host is
     /// the same rigid one: `R_i R_j^-1`.
     fn motions(&self, point: usize) -> Vec<(u32, [[f64; 6]; 3])> {
-        let hold = self.topology.supports.hold(point);
+        let hold = self.topology.frame.supports.hold(point);
         let free = hold.map(|hold| rows_of(&hold.free));
         let motion = |(aggregate, block): (usize, &[[f32; 6]; 3])| {
             let block = match &free {
@@ -176,7 +171,7 @@ impl<'a> Copies<'a> {
     /// Rows of all unknowns: the mean displacement is the mean of the motions of the points of its node,
     /// jump `k` the motion of sector `k` less that of sector 0.
     pub(super) fn prolongator(&self) -> Sparse<3, 6> {
-        let points = self.topology.points;
+        let points = self.topology.frame.points;
         let terms = |unknown: usize| {
             let own = points.of_node(points.node[unknown] as usize);
             let weight = match unknown - own.start {
@@ -220,8 +215,7 @@ fn cancelled(mut terms: Vec<(u32, f64, [[f64; 6]; 3])>) -> Vec<(u32, [[f64; 6]; 
             sums.push((copy, [[0.0; 6]; 3]));
         }
         if let Some((_, sum)) = sums.last_mut() {
-            let pairs = sum.as_flattened_mut().iter_mut().zip(block.as_flattened());
-            pairs.for_each(|(sum, entry)| *sum += weight * entry);
+            add(sum, weight, &block);
         }
     }
     sums.retain(|(_, sum)| sum.as_flattened().iter().any(|entry| *entry != 0.0));
@@ -271,7 +265,7 @@ fn moved(
     aggregate: usize,
 ) -> Vec<(u32, f64)> {
     let column = means.transpose.column(aggregate);
-    let own = |row: u32| topology.points.of_node(nodes[row as usize] as usize);
+    let own = |row: u32| topology.frame.points.of_node(nodes[row as usize] as usize);
     if !topology.is_cut || column.iter().all(|&(row, _)| own(row).len() == 1) {
         return Vec::new();
     }
@@ -286,17 +280,15 @@ fn moved(
 
 /// Numbers the pieces into which the facets cut the points of an aggregate. `number` is room,
 /// [`NOWHERE`] for all points before and after.
-fn cut(topology: Topology<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut {
-    let Topology {
-        points,
-        pattern,
-        cells,
-        ..
-    } = topology;
+fn cut(frame: Frame<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut {
+    let Frame {
+        points, pattern, ..
+    } = frame;
+    let cells = &frame.problem.mesh.cells;
     for (place, (point, _)) in moved.iter().enumerate() {
         number[*point as usize] = place as u32;
     }
-    let mut lowest: Vec<u32> = (0..moved.len() as u32).collect();
+    let mut sets = DisjointSets::new(moved.len());
     for (place, &(point, _)) in moved.iter().enumerate() {
         for &slot in pattern.slots.of(points.node[point as usize] as usize) {
             if points.of_cell_node[slot as usize] != point {
@@ -306,8 +298,7 @@ fn cut(topology: Topology<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut 
             for other in &points.of_cell_node[slots] {
                 let other = number[*other as usize];
                 if other != NOWHERE {
-                    let (a, b) = (root(&mut lowest, place as u32), root(&mut lowest, other));
-                    lowest[a.max(b) as usize] = a.min(b);
+                    sets.join(place as u32, other);
                 }
             }
         }
@@ -316,7 +307,7 @@ fn cut(topology: Topology<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut 
         number[*point as usize] = NOWHERE;
     }
     let roots: Vec<u32> = (0..moved.len() as u32)
-        .map(|place| root(&mut lowest, place))
+        .map(|place| sets.root(place))
         .collect();
     let mut pieces = roots.clone();
     pieces.sort_unstable();
@@ -343,13 +334,4 @@ fn cut(topology: Topology<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut 
             .map(|weight| *weight < SMALL * total)
             .collect(),
     }
-}
-
-fn root(lowest: &mut [u32], mut place: u32) -> u32 {
-    while lowest[place as usize] != place {
-        let above = lowest[lowest[place as usize] as usize];
-        lowest[place as usize] = above;
-        place = above;
-    }
-    place
 }

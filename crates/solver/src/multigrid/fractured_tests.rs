@@ -1,13 +1,13 @@
 //! What the hierarchy promises for rock that fractures cut.
 
 use glam::{DMat3, DVec3};
-use lie_core::{Closure, ClosureKind, FacetQuadrature, FractureLaw, Rock};
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 use lie_mesh::structured::{Patch, tetrahedra};
 use lie_mesh::{Mesh, SurfaceRole};
 
 use super::*;
 use crate::linear::{Iterative, TangentSolver};
-use crate::{Condition, Discretisation, Fracture, Problem, Schedule, Support, System};
+use crate::{Condition, Discretisation, Fracture, Problem, Support, System};
 
 const CUBES: usize = 10;
 /// Young's modulus (Pa); the block has edges of 1 m.
@@ -43,13 +43,12 @@ fn problem(height: fn(f64) -> f64) -> Problem {
     ];
     let mesh = Mesh::build(draft, &roles).expect("a sound mesh");
     let law = FractureLaw::elastic(Closure::new(1e-4, YOUNG, ClosureKind::Linear), YOUNG);
+    let rock = Rock {
+        young_modulus: YOUNG,
+        poisson_ratio: 0.25,
+        density: 0.0,
+    };
     Problem {
-        rocks: vec![Rock {
-            young_modulus: YOUNG,
-            poisson_ratio: 0.25,
-            density: 0.0,
-        }],
-        rock_of_cell: vec![0; mesh.cells.len()],
         fractures: vec![
             Fracture {
                 law,
@@ -62,12 +61,7 @@ fn problem(height: fn(f64) -> f64) -> Problem {
             load: None,
             support: Some(Support::Displacement([Some(0.0); 3])),
         }],
-        fixed_points: Vec::new(),
-        gravity: DVec3::ZERO,
-        initial_stress: None,
-        schedule: Schedule::proportional(vec![1.0]),
-        facet_quadrature: FacetQuadrature::Nodal,
-        mesh,
+        ..Problem::of_rock(mesh, rock)
     }
 }
 
@@ -77,10 +71,7 @@ fn system(problem: &Problem) -> System<'_> {
 
 fn topology<'a>(system: &'a System<'_>) -> Topology<'a> {
     Topology {
-        points: &system.discretisation.points,
-        pattern: &system.discretisation.pattern,
-        cells: &system.problem.mesh.cells,
-        supports: &system.discretisation.supports,
+        frame: system.discretisation.frame(system.problem),
         is_cut: true,
     }
 }

@@ -2,7 +2,7 @@
 //! identity as its diagonal.
 
 use super::aggregation::{ALONE, Aggregates};
-use super::small::widen;
+use super::small::{add, widen};
 use super::sparse::{Accumulator, Sparse, rows_per_task};
 use super::tentative::Tentative;
 
@@ -33,7 +33,8 @@ pub(super) fn smoothed<const N: usize>(
         #[inline(always)]
         |sums, row, columns, blocks| {
             if of_node[row] != ALONE {
-                add(sums.at(of_node[row]), 1.0 - omega, &tentative.blocks[row]);
+                let own = widen(&tentative.blocks[row]);
+                add(sums.at(of_node[row]), 1.0 - omega, &own);
             }
             for (at, block) in neighbours(row) {
                 let sum = sums.at(of_node[at]);
@@ -42,14 +43,6 @@ pub(super) fn smoothed<const N: usize>(
             sums.take(columns, blocks);
         },
     )
-}
-
-fn add<const N: usize>(sum: &mut [[f64; 6]; N], factor: f64, block: &[[f32; 6]; N]) {
-    for (sum, line) in sum.iter_mut().zip(block) {
-        for (sum, &entry) in sum.iter_mut().zip(line) {
-            *sum += factor * f64::from(entry);
-        }
-    }
 }
 
 /// `S += A B`, with `A` as columns and `B` as rows: line by line, so that a line stays in registers.

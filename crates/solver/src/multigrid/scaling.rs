@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::MultigridFailure;
 use super::clusters::Clusters;
 use super::prolongation::add_product;
-use super::small::{Packed, narrow, product, transpose, widen};
+use super::small::{Packed, add, narrow, product, transpose, widen};
 use super::sparse::{Accumulator, Sparse, rows_per_task, sum_up};
 use super::tangent::{TangentRows, rows_of};
 use crate::pattern::split;
@@ -177,9 +177,7 @@ pub(super) fn set_matrix(
                 for (next, &column) in members.iter().enumerate() {
                     let right = block(right, place + next, place);
                     let part = product_transposed(&scaled, &right);
-                    let sum = sums.at(column).as_flattened_mut();
-                    let pairs = sum.iter_mut().zip(part.as_flattened());
-                    pairs.for_each(|(sum, part)| *sum += part);
+                    add(sums.at(column), 1.0, &part);
                 }
             });
             sums.take(columns, blocks);

@@ -9,7 +9,7 @@ use super::cycle::{Below, Level, Transfer};
 use super::galerkin::{self, Coarse};
 use super::prolongation;
 use super::scaling::{self, Factors, InverseFactors, Modes};
-use super::small::narrow;
+use super::small::{add, narrow, product, widen};
 use super::smoother::Smoother;
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
 use super::tangent::{Kept, Springs, TangentRows, rows_of};
@@ -112,7 +112,7 @@ impl Base {
             kept: None,
         };
         let whole: Vec<u32> = (0..=matrix.rows() as u32).collect();
-        let node_offset = topology.map_or(&whole[..], |topology| &topology.points.offset);
+        let node_offset = topology.map_or(&whole[..], |topology| &topology.frame.points.offset);
         let owns = |node: &u32| node_offset[*node as usize] < node_offset[*node as usize + 1];
         let nodes: Vec<u32> = (0..node_offset.len() as u32 - 1).filter(owns).collect();
         let firsts: Vec<u32> = nodes
@@ -262,10 +262,7 @@ impl Base {
                     // In double precision: a spring and the motions of its walls differ by many digits.
                     let left = rows_of(block);
                     for (column, value) in self.basis.row(at as usize) {
-                        let part = super::small::product(&left, &super::small::widen(value));
-                        let sum = sums.at(column as u32).as_flattened_mut();
-                        let pairs = sum.iter_mut().zip(part.as_flattened());
-                        pairs.for_each(|(sum, part)| *sum += part);
+                        add(sums.at(column as u32), 1.0, &product(&left, &widen(value)));
                     }
                 }
                 sums.take(columns, blocks);

@@ -55,6 +55,17 @@ pub(super) fn product<const M: usize, const K: usize, const L: usize>(
     c
 }
 
+/// `S += factor B`.
+#[inline(always)]
+pub(super) fn add<const M: usize, const L: usize>(
+    sum: &mut [[f64; L]; M],
+    factor: f64,
+    block: &[[f64; L]; M],
+) {
+    let pairs = sum.as_flattened_mut().iter_mut().zip(block.as_flattened());
+    pairs.for_each(|(sum, entry)| *sum += factor * entry);
+}
+
 /// Transpose of a small block.
 #[inline(always)]
 pub(super) fn transpose<T: Copy + Default, const M: usize, const L: usize>(

@@ -1,7 +1,7 @@
 //! What the hierarchy promises, on structured boxes of tetrahedra.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FacetQuadrature, Rock};
+use lie_core::Rock;
 use lie_mesh::structured::{Patch, cells_of};
 use lie_mesh::{Mesh, Shape, SurfaceRole};
 
@@ -9,7 +9,7 @@ use super::*;
 use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
-use crate::{Condition, Discretisation, Problem, Schedule, Support, System};
+use crate::{Condition, Discretisation, Problem, Support, System};
 
 /// A box and what is special about it.
 struct Box {
@@ -67,7 +67,6 @@ impl Box {
             rock_of_cell: (0..mesh.cells.len() as u32)
                 .map(|cell| cell / 50 % 2)
                 .collect(),
-            fractures: Vec::new(),
             conditions: held
                 .map(|boundary| Condition {
                     boundary,
@@ -75,12 +74,7 @@ impl Box {
                     support: Some(self.support),
                 })
                 .collect(),
-            fixed_points: Vec::new(),
-            gravity: DVec3::ZERO,
-            initial_stress: None,
-            schedule: Schedule::proportional(vec![1.0]),
-            facet_quadrature: FacetQuadrature::Nodal,
-            mesh,
+            ..Problem::of_rock(mesh, rock(1.0))
         }
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::prolongation::{add_columns, add_product};
-use super::small::widen;
+use super::small::{add, widen};
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task, sum_up};
 
 /// Rows of a batch, fixed so that no result depends on the number of threads. `A P` of one is kept.
@@ -85,7 +85,7 @@ impl Part {
         };
         let diagonal = (0..aggregates).into_par_iter().map(|aggregate| {
             let mut sum = [[0.0; 6]; 6];
-            of(aggregate).for_each(|(part, row)| add(&mut sum, &part.diagonal[row]));
+            of(aggregate).for_each(|(part, row)| add(&mut sum, 1.0, &part.diagonal[row]));
             sum
         });
         let upper = Sparse::build(
@@ -103,7 +103,7 @@ impl Part {
             |sums, aggregate, columns, blocks| {
                 for (part, row) in of(aggregate) {
                     for (column, block) in part.upper.row(row) {
-                        add(sums.at(column as u32), &widen(block));
+                        add(sums.at(column as u32), 1.0, &widen(block));
                     }
                 }
                 sums.take(columns, blocks);
@@ -141,12 +141,6 @@ fn places(aggregates: usize, parts: &[&Part]) -> (Vec<usize>, Vec<(u32, u32)>) {
     (offset, places)
 }
 
-#[inline(always)]
-fn add(sum: &mut Block6, block: &Block6) {
-    let pairs = sum.as_flattened_mut().iter_mut().zip(block.as_flattened());
-    pairs.for_each(|(sum, entry)| *sum += entry);
-}
-
 /// Some rows of `A P`.
 fn set_image<const N: usize>(
     image: &mut Sparse<N, 6>,
@@ -171,9 +165,7 @@ fn set_image<const N: usize>(
         |sums, row, columns, blocks| {
             let row = rows.start + row;
             for (column, block) in prolongator.row(row) {
-                let sum = sums.at(column as u32).as_flattened_mut().iter_mut();
-                let pairs = sum.zip(block.as_flattened());
-                pairs.for_each(|(sum, &entry)| *sum += f64::from(entry));
+                add(sums.at(column as u32), 1.0, &widen(block));
             }
             for (at, block) in matrix.row(row) {
                 for (column, line) in prolongator.row(at) {

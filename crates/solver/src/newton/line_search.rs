@@ -97,14 +97,12 @@ impl Newton {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use lie_core::{FacetQuadrature, Rock};
+    use lie_core::Rock;
     use lie_mesh::structured::{Patch, cells_of};
     use lie_mesh::{Mesh, Shape, SurfaceRole};
 
     use super::*;
-    use crate::{
-        Condition, Discretisation, NewtonSettings, Problem, Schedule, Support, SurfaceLoad,
-    };
+    use crate::{Condition, Discretisation, NewtonSettings, Problem, Support, SurfaceLoad};
 
     /// A block on a fixed base, pulled at its top.
     fn block() -> Problem {
@@ -127,24 +125,17 @@ mod tests {
             support,
         };
         let pull = SurfaceLoad::Traction(DVec3::new(1e6, 0.0, 2e6));
+        let rock = Rock {
+            young_modulus: 25e9,
+            poisson_ratio: 0.25,
+            density: 0.0,
+        };
         Problem {
-            rocks: vec![Rock {
-                young_modulus: 25e9,
-                poisson_ratio: 0.25,
-                density: 0.0,
-            }],
-            rock_of_cell: vec![0; mesh.cells.len()],
-            fractures: Vec::new(),
             conditions: vec![
                 condition(0, None, Some(Support::Displacement([Some(0.0); 3]))),
                 condition(1, Some(pull), None),
             ],
-            fixed_points: Vec::new(),
-            gravity: DVec3::ZERO,
-            initial_stress: None,
-            schedule: Schedule::proportional(vec![1.0]),
-            facet_quadrature: FacetQuadrature::Nodal,
-            mesh,
+            ..Problem::of_rock(mesh, rock)
         }
     }
 
