@@ -10,7 +10,7 @@ use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
 use crate::interface::Interface;
-use crate::multigrid::{Multigrid, MultigridFailure, Springs, Topology, Workspace, rigid_modes};
+use crate::multigrid::{Multigrid, MultigridFailure, Springs, Workspace, rigid_modes};
 use crate::system::{System, norm};
 
 /// Iterations after which a linear solve has failed.
@@ -51,13 +51,8 @@ impl Iterative {
     /// # Errors
     /// If the rock is not positive definite.
     pub fn new(system: &System<'_>) -> Result<Self, LinearFailure> {
-        let topology = Topology {
-            frame: system.discretisation.frame(system.problem),
-            // Walls that stick or part change their stiffness by any factor, which the lower levels, in
-            // single precision, cannot follow.
-            is_cut: system.is_smooth(),
-        };
-        let multigrid = Multigrid::of_fractured(system.rock_rows(), &modes(system), topology);
+        let frame = system.discretisation.frame(system.problem);
+        let multigrid = Multigrid::of_fractured(system.rock_rows(), &modes(system), frame);
         let multigrid = multigrid.map_err(explain)?;
         Ok(Self {
             workspace: multigrid.workspace(),

@@ -25,17 +25,9 @@ const FOLLOWS: u32 = u32::MAX;
 const PER_TASK: usize = 64;
 const NOWHERE: u32 = u32::MAX;
 
-/// How nodes, points and cells hang together.
-#[derive(Clone, Copy)]
-pub(crate) struct Topology<'a> {
-    pub(crate) frame: Frame<'a>,
-    /// Whether aggregates that fractures cut fall into pieces.
-    pub(crate) is_cut: bool,
-}
-
 /// The pieces of all aggregates.
 pub(super) struct Copies<'a> {
-    topology: Topology<'a>,
+    frame: Frame<'a>,
     means: &'a Means,
     /// Row of `means` of each node.
     row_of_node: &'a [u32],
@@ -50,7 +42,7 @@ pub(super) struct Copies<'a> {
 impl<'a> Copies<'a> {
     /// Cuts the aggregates of `means`, which has a row for each of `nodes`.
     pub(super) fn of(
-        topology: Topology<'a>,
+        frame: Frame<'a>,
         means: &'a Means,
         nodes: &[u32],
         row_of_node: &'a [u32],
@@ -60,15 +52,15 @@ impl<'a> Copies<'a> {
             .into_par_iter()
             .with_min_len(PER_TASK)
             .map_init(
-                || vec![NOWHERE; topology.frame.points.len()],
+                || vec![NOWHERE; frame.points.len()],
                 |number, aggregate| {
-                    let moved = moved(topology, nodes, means, aggregate);
-                    cut(topology.frame, &moved, number)
+                    let moved = moved(frame, nodes, means, aggregate);
+                    cut(frame, &moved, number)
                 },
             )
             .collect();
         let mut copies = Self {
-            topology,
+            frame,
             means,
             row_of_node,
             offset: vec![0],
@@ -114,7 +106,7 @@ impl<'a> Copies<'a> {
 
     /// Aggregates that move the node of a point, and how.
     fn entries(&self, point: usize) -> impl Iterator<Item = (usize, &[[f32; 6]; 3])> {
-        let node = self.topology.frame.points.node[point] as usize;
+        let node = self.frame.points.node[point] as usize;
         self.means.prolongator.row(self.row_of_node[node] as usize)
     }
 
@@ -151,7 +143,7 @@ impl<'a> Copies<'a> {
     /// Copies that move a point, and how, as far as it is not held. A motion that follows that of a host is
     /// the same rigid one: `R_i R_j^-1`.
     fn motions(&self, point: usize) -> Vec<(u32, [[f64; 6]; 3])> {
-        let hold = self.topology.frame.supports.hold(point);
+        let hold = self.frame.supports.hold(point);
         let free = hold.map(|hold| rows_of(&hold.free));
         let motion = |(aggregate, block): (usize, &[[f32; 6]; 3])| {
             let block = match &free {
@@ -171,7 +163,7 @@ impl<'a> Copies<'a> {
     /// Rows of all unknowns: the mean displacement is the mean of the motions of the points of its node,
     /// jump `k` the motion of sector `k` less that of sector 0.
     pub(super) fn prolongator(&self) -> Sparse<3, 6> {
-        let points = self.topology.frame.points;
+        let points = self.frame.points;
         let terms = |unknown: usize| {
             let own = points.of_node(points.node[unknown] as usize);
             let weight = match unknown - own.start {
@@ -258,15 +250,10 @@ fn inverse(triangle: &Modes<6>) -> Option<Modes<6>> {
 
 /// The points of the nodes that an aggregate moves, ascending, and how much; none if it has no node
 /// with several points.
-fn moved(
-    topology: Topology<'_>,
-    nodes: &[u32],
-    means: &Means,
-    aggregate: usize,
-) -> Vec<(u32, f64)> {
+fn moved(frame: Frame<'_>, nodes: &[u32], means: &Means, aggregate: usize) -> Vec<(u32, f64)> {
     let column = means.transpose.column(aggregate);
-    let own = |row: u32| topology.frame.points.of_node(nodes[row as usize] as usize);
-    if !topology.is_cut || column.iter().all(|&(row, _)| own(row).len() == 1) {
+    let own = |row: u32| frame.points.of_node(nodes[row as usize] as usize);
+    if column.iter().all(|&(row, _)| own(row).len() == 1) {
         return Vec::new();
     }
     let points = column.iter().flat_map(|&(row, position)| {

@@ -34,8 +34,6 @@ pub(super) struct Transfer<const N: usize> {
     pub(super) prolongator: Sparse<N, 6>,
     /// Its blocks once more, aggregate by aggregate.
     pub(super) restrictor: Sparse<N, 6>,
-    /// Factors `L^-1` of the unknowns of the next level, if the prolongator does not have them in its columns.
-    pub(super) factors: Vec<[[f32; 6]; 6]>,
 }
 
 impl<const N: usize> Transfer<N> {
@@ -46,11 +44,7 @@ impl<const N: usize> Transfer<N> {
         tasks.for_each(|(task, chunk)| {
             for (place, sum) in chunk.iter_mut().enumerate() {
                 let aggregate = task * rows + place;
-                let force = self.restricted(aggregate, residual);
-                *sum = match self.factors.get(aggregate) {
-                    Some(factor) => factor.map(|line| dot(&line, &force)),
-                    None => force,
-                };
+                *sum = self.restricted(aggregate, residual);
             }
         });
     }
@@ -71,15 +65,8 @@ impl<const N: usize> Transfer<N> {
         sum
     }
 
-    /// `z += P z_c`; scales `z_c`.
-    fn prolong(&self, coarse: &mut [[f32; 6]], solution: &mut [[f32; N]]) {
-        let scaled = coarse.par_iter_mut().zip(&self.factors);
-        scaled
-            .with_min_len(rows_per_task::<6>())
-            .for_each(|(entry, factor)| {
-                *entry = std::array::from_fn(|i| dot(&factor.map(|line| line[i]), entry));
-            });
-        let coarse = &*coarse;
+    /// `z += P z_c`.
+    fn prolong(&self, coarse: &[[f32; 6]], solution: &mut [[f32; N]]) {
         let rows = rows_per_task::<N>();
         let tasks = solution.par_chunks_mut(rows).enumerate();
         tasks.for_each(|(task, chunk)| {
@@ -95,12 +82,8 @@ impl<const N: usize> Transfer<N> {
     }
 
     fn bytes(&self) -> usize {
-        self.prolongator.bytes() + self.restrictor.bytes() + size_of_val(&self.factors[..])
+        self.prolongator.bytes() + self.restrictor.bytes()
     }
-}
-
-fn dot(a: &[f32; 6], b: &[f32; 6]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl<const N: usize> Level<N> {
@@ -137,7 +120,7 @@ impl<const N: usize> Level<N> {
                 residual(&self.matrix, work);
                 transfer.restrict(&work.step, &mut next_work.right);
                 next.cycle(next_work, coarser, coarser_work);
-                transfer.prolong(&mut next_work.solution, &mut work.solution);
+                transfer.prolong(&next_work.solution, &mut work.solution);
                 self.smoother.resume(&self.matrix, work);
             }
             _ => {

@@ -17,24 +17,6 @@ pub(super) struct Coarse {
     pub(super) modes: Vec<Modes<6>>,
 }
 
-impl Coarse {
-    /// The level of `P^T A P`, whose diagonal is the identity, and the factors `L^-1` that scale it.
-    pub(super) fn of(whole: &Part, modes: &[Modes<6>]) -> (Self, Vec<Block6>) {
-        let diagonal = whole.diagonal.par_iter();
-        let factors: Vec<Block6> = diagonal
-            .map(|block| inverse_factor(block, COSTS_NOTHING).0)
-            .collect();
-        // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
-        let scaled = factors.par_iter().zip(&whole.diagonal).zip(modes);
-        let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
-        let coarse = Self {
-            modes: modes.collect(),
-            matrix: scaled_matrix(&whole.upper, &factors),
-        };
-        (coarse, factors)
-    }
-}
-
 /// Computes the next level and scales the columns of the prolongator to its unknowns.
 pub(super) fn coarse<const N: usize>(
     matrix: &Sparse<N, N>,
@@ -43,9 +25,18 @@ pub(super) fn coarse<const N: usize>(
     modes: &[Modes<6>],
 ) -> Coarse {
     let whole = Part::whole(matrix, prolongator, transpose);
-    let (coarse, factors) = Coarse::of(&whole, modes);
+    let diagonal = whole.diagonal.par_iter();
+    let factors: Vec<Block6> = diagonal
+        .map(|block| inverse_factor(block, COSTS_NOTHING).0)
+        .collect();
     scale_prolongator(prolongator, &factors);
-    coarse
+    // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
+    let scaled = factors.par_iter().zip(&whole.diagonal).zip(modes);
+    let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
+    Coarse {
+        modes: modes.collect(),
+        matrix: scaled_matrix(&whole.upper, &factors),
+    }
 }
 
 /// `P L^-T`.

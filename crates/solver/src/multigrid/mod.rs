@@ -35,13 +35,14 @@ use rayon::prelude::*;
 
 use block_rows::numbers;
 pub use block_rows::{BlockRows, OwnedBlockRows};
-pub(crate) use copies::Topology;
 use cycle::Level;
 use setup::{Base, Storage};
 use smoother::Work;
 use sparse::Sparse;
 pub(crate) use tangent::Springs;
 use tangent::TangentRows;
+
+use crate::assembly::Frame;
 
 /// Why a hierarchy could not be built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,8 +104,17 @@ impl Multigrid {
     /// If `modes` has not one entry a row.
     pub fn new(matrix: BlockRows<'_>, modes: &[[DVec3; 6]]) -> Result<Self, MultigridFailure> {
         assert_eq!(modes.len(), matrix.rows(), "one set of modes a row");
-        let (base, parts) = Base::of(matrix, modes, None)?;
-        Self::complete(base, parts, None)
+        let (base, storage) = Base::of(matrix, modes, None)?;
+        let rows = TangentRows {
+            rock: matrix,
+            springs: None,
+            kept: None,
+        };
+        let multigrid = Self::complete(base, &rows, storage)?;
+        Ok(Self {
+            base: multigrid.base.without_basis(),
+            ..multigrid
+        })
     }
 
     /// Prepares the hierarchy of rock that fractures cut; it stands after [`Self::refresh`]. `modes` has
@@ -115,12 +125,12 @@ impl Multigrid {
     pub(crate) fn of_fractured(
         rock: BlockRows<'_>,
         modes: &[[DVec3; 6]],
-        topology: Topology<'_>,
+        frame: Frame<'_>,
     ) -> Result<Self, MultigridFailure> {
-        let (base, parts) = Base::of(rock, modes, Some(topology))?;
+        let (base, spare) = Base::of(rock, modes, Some(frame))?;
         Ok(Self {
             base,
-            spare: parts.storage,
+            spare,
             factors: Default::default(),
             finest: Level::empty(),
             coarser: Vec::new(),
@@ -149,17 +159,16 @@ impl Multigrid {
             springs: Some(springs),
             kept: None,
         };
-        let parts = base.parts(&rows, storage)?;
-        *self = Self::complete(base, parts, Some(springs))?;
+        *self = Self::complete(base, &rows, storage)?;
         Ok(())
     }
 
     fn complete(
         base: Base,
-        parts: setup::Parts,
-        springs: Option<Springs<'_>>,
+        rows: &TangentRows<'_>,
+        storage: Storage,
     ) -> Result<Self, MultigridFailure> {
-        let (factors, finest, mut next) = base.finest(parts, springs)?;
+        let (factors, finest, mut next) = base.finest(rows, storage)?;
         let mut coarser = Vec::new();
         while let Some(galerkin::Coarse { matrix, modes }) = next {
             let (level, below) = setup::level(matrix, &modes)?;
@@ -167,11 +176,7 @@ impl Multigrid {
             next = below;
         }
         Ok(Self {
-            base: if springs.is_some() {
-                base
-            } else {
-                base.without_rock()
-            },
+            base,
             spare: Storage::default(),
             factors,
             finest,

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::MultigridFailure;
 use super::clusters::Clusters;
-use super::prolongation::add_product;
+use super::prolongation::add_columns;
 use super::small::{Packed, add, narrow, product, transpose, widen};
 use super::sparse::{Accumulator, Sparse, rows_per_task, sum_up};
 use super::tangent::{TangentRows, rows_of};
@@ -22,12 +22,12 @@ const PER_TASK: usize = 1024;
 /// Modes of a node of a level, one row for each of its unknowns.
 pub(super) type Modes<const N: usize> = [[f64; 6]; N];
 
-/// Cholesky factors of the diagonal blocks of the clusters, and their inverses: lower triangles, row
-/// by row, one cluster behind the other.
+/// The diagonal blocks `R` of the clusters in the rock, and the inverses `L^-1` of the Cholesky factors
+/// of those of rock and fractures: lower triangles, row by row, one cluster behind the other.
 pub(super) struct Factors {
     offset: Vec<usize>,
-    /// `L`.
-    factor: Vec<f64>,
+    /// `R`.
+    rock: Vec<f64>,
     /// `L^-1`.
     inverse: Vec<f64>,
 }
@@ -48,6 +48,14 @@ fn block(triangle: &[f64], row: usize, column: usize) -> [[f64; 3]; 3] {
     })
 }
 
+/// Block of a symmetric matrix whose lower triangle is given.
+#[inline(always)]
+fn symmetric_block(triangle: &[f64], row: usize, column: usize) -> [[f64; 3]; 3] {
+    let entry = |i: usize, j: usize| triangle[i * (i + 1) / 2 + j];
+    let (i, j) = (3 * row, 3 * column);
+    std::array::from_fn(|r| std::array::from_fn(|c| entry((i + r).max(j + c), (i + r).min(j + c))))
+}
+
 impl Factors {
     /// Factorises the clusters.
     ///
@@ -62,24 +70,33 @@ impl Factors {
             offset[cluster + 1] = entries(clusters.members.of(cluster).len());
         }
         sum_up(&mut offset);
-        let mut factor = vec![0.0; offset[clusters.count()]];
-        let mut inverse = factor.clone();
-        let shares = split(&mut factor, &offset, PER_TASK);
+        let mut rock: Vec<f64> = bytemuck::zeroed_vec(offset[clusters.count()]);
+        let mut inverse: Vec<f64> = bytemuck::zeroed_vec(rock.len());
+        let of_rock = rows.without_springs();
+        let shares = split(&mut rock, &offset, PER_TASK);
         let shares = shares
             .into_par_iter()
             .zip(split(&mut inverse, &offset, PER_TASK));
         let done: Result<Vec<()>, MultigridFailure> = shares
-            .map(|((own, mut factors), (_, mut inverses))| {
+            .map(|((own, mut rocks), (_, mut inverses))| {
+                let mut factor = Vec::new();
                 for cluster in own {
                     let length = offset[cluster + 1] - offset[cluster];
-                    let (factor, inverse);
-                    (factor, factors) = factors.split_at_mut(length);
+                    let (rock, inverse);
+                    (rock, rocks) = rocks.split_at_mut(length);
                     (inverse, inverses) = inverses.split_at_mut(length);
-                    gather(rows, clusters, cluster, factor);
-                    Packed(factor).factorise_and_invert(inverse).map_err(|at| {
-                        let member = clusters.members.of(cluster)[at / 3];
-                        MultigridFailure::NotPositive(member as usize)
-                    })?;
+                    gather(&of_rock, clusters, cluster, rock);
+                    factor.clear();
+                    factor.extend_from_slice(rock);
+                    if rows.has_springs(clusters.members.of(cluster)) {
+                        gather(rows, clusters, cluster, &mut factor);
+                    }
+                    Packed(&mut factor)
+                        .factorise_and_invert(inverse)
+                        .map_err(|at| {
+                            let member = clusters.members.of(cluster)[at / 3];
+                            MultigridFailure::NotPositive(member as usize)
+                        })?;
                 }
                 Ok(())
             })
@@ -87,7 +104,7 @@ impl Factors {
         done?;
         Ok(Self {
             offset,
-            factor,
+            rock,
             inverse,
         })
     }
@@ -97,9 +114,23 @@ impl Factors {
         &self.inverse[self.offset[cluster]..self.offset[cluster + 1]]
     }
 
-    fn factor_of(&self, cluster: u32) -> &[f64] {
+    /// Block of `L^-1 R` of a cluster, as columns.
+    #[inline(always)]
+    fn to_relaxed(&self, cluster: u32, row: usize, column: usize) -> [[f64; 3]; 3] {
+        let inverse = self.inverse_of(cluster);
         let cluster = cluster as usize;
-        &self.factor[self.offset[cluster]..self.offset[cluster + 1]]
+        let rock = &self.rock[self.offset[cluster]..self.offset[cluster + 1]];
+        let mut sum = [[0.0; 3]; 3];
+        for at in 0..=row {
+            // `(L R)^T = R^T L^T`, with blocks as rows.
+            let left = transpose(&block(inverse, row, at));
+            add(
+                &mut sum,
+                1.0,
+                &product(&symmetric_block(rock, column, at), &left),
+            );
+        }
+        sum
     }
 
     /// The inverses as they are kept for the cycle.
@@ -229,7 +260,13 @@ fn single_neighbours(rows: &TangentRows<'_>, clusters: &Clusters, row: usize) ->
     (others == 0).then_some(count)
 }
 
-/// Sets `prolongator` to that of scaled unknowns, `L^T P`.
+/// Sets `prolongator` to that of scaled unknowns, `L^T P'`, of motions that the walls of fractures follow as
+/// far as these let them.
+///
+/// What `P` moves, it moves as if fractures had no stiffness `S`. The unknowns of each cluster then give way,
+/// those of all others being held: `P' = P - A^-1 S P = A^-1 R P`, with `A = R + S = L L^T` and `R` of the rock, hence
+/// `L^T P' = L^-1 R P`. Motions that would strain stiff walls strain the rock beside them instead, so that
+/// the next level has the stiffness of rock, however stiff the fractures are. Rigid motions, where `S P = 0`, stay.
 pub(super) fn set_prolongator(
     prolongator: &mut Sparse<3, 6>,
     basis: &Sparse<3, 6>,
@@ -237,17 +274,12 @@ pub(super) fn set_prolongator(
     clusters: &Clusters,
     factors: &Factors,
 ) {
-    let after = |row: usize| {
-        let (own, at) = clusters.place[row];
-        let members = &clusters.members.of(own as usize)[at as usize..];
-        (own, at as usize, members)
-    };
     prolongator.rebuild(
         basis.rows(),
         rows_per_task::<3>(),
         || Accumulator::<3, 6>::new(columns),
         |sums, row| {
-            for &member in after(row).2 {
+            for &member in clusters.members.of(clusters.place[row].0 as usize) {
                 let columns = &basis.columns[basis.range(member as usize)];
                 columns.iter().for_each(|&column| sums.touch(column));
             }
@@ -255,13 +287,11 @@ pub(super) fn set_prolongator(
         },
         #[inline(always)]
         |sums, row, columns, blocks| {
-            let (own, at, members) = after(row);
-            let factor = factors.factor_of(own);
-            for (next, &member) in members.iter().enumerate() {
-                // Columns of `L^T`, which `add_product` wants, are rows of `L`.
-                let left = block(factor, at + next, at).map(|line| line.map(|x| x as f32));
+            let (own, at) = clusters.place[row];
+            for (place, &member) in clusters.members.of(own as usize).iter().enumerate() {
+                let left = factors.to_relaxed(own, at as usize, place);
                 for (column, value) in basis.row(member as usize) {
-                    add_product(sums.at(column as u32), 1.0, &left, value);
+                    add_columns(sums.at(column as u32), &left, &widen(value));
                 }
             }
             sums.take(columns, blocks);
@@ -269,12 +299,12 @@ pub(super) fn set_prolongator(
     );
 }
 
-/// Modes in scaled unknowns, `L^T B`, where every cluster is a single row.
+/// Modes in scaled unknowns, `L^T B = L^-1 R B`, where every cluster is a single row of the rock.
 pub(super) fn modes(factors: &Factors, modes: &[[DVec3; 6]]) -> Vec<Modes<3>> {
     let scaled = |(cluster, modes): (usize, &[DVec3; 6])| {
-        let factor = transpose(&block(factors.factor_of(cluster as u32), 0, 0));
+        let left = transpose(&factors.to_relaxed(cluster as u32, 0, 0));
         let modes = transpose(&modes.map(|mode| mode.to_array()));
-        product(&factor, &modes)
+        product(&left, &modes)
     };
     modes.par_iter().enumerate().map(scaled).collect()
 }

@@ -99,21 +99,6 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
             .zip(&self.blocks[range])
     }
 
-    /// The matrix of some of its rows.
-    pub(super) fn of_rows(&self, rows: &[u32]) -> Self {
-        Self::build(
-            rows.len(),
-            rows_per_task::<M>(),
-            || (),
-            |(), row| self.range(rows[row] as usize).len(),
-            |(), row, columns, blocks| {
-                let range = self.range(rows[row] as usize);
-                columns.copy_from_slice(&self.columns[range.clone()]);
-                blocks.copy_from_slice(&self.blocks[range]);
-            },
-        )
-    }
-
     /// Bytes of storage.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.offset[..])

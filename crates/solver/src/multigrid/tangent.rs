@@ -49,6 +49,23 @@ impl<'a> TangentRows<'a> {
         self.kept.map_or(self.rock.rows(), |kept| kept.rows.len())
     }
 
+    /// The rock alone.
+    pub(super) fn without_springs(self) -> Self {
+        Self {
+            springs: None,
+            ..self
+        }
+    }
+
+    /// Whether springs act on one of some rows.
+    pub(super) fn has_springs(&self, rows: &[u32]) -> bool {
+        let act = |springs: Springs<'_>| {
+            let mut rows = rows.iter();
+            rows.any(|row| springs.rows.binary_search(row).is_ok())
+        };
+        self.springs.is_some_and(act)
+    }
+
     /// Calls `treat` with each column and block of a row, columns ascending; blocks that are zero,
     /// as beside held nodes, are left out.
     #[inline]

@@ -47,7 +47,7 @@ impl Part {
     }
 
     /// What some rows give, from their rows of `A P`.
-    pub(super) fn of_image<const N: usize>(
+    fn of_image<const N: usize>(
         prolongator: &Sparse<N, 6>,
         transpose: &Transpose,
         rows: &Range<usize>,
@@ -75,7 +75,7 @@ impl Part {
     }
 
     /// The sum of parts, with all aggregates.
-    pub(super) fn sum(aggregates: usize, parts: &[&Self]) -> Self {
+    fn sum(aggregates: usize, parts: &[&Self]) -> Self {
         let (offset, places) = places(aggregates, parts);
         let of = |aggregate: usize| {
             let places = &places[offset[aggregate]..offset[aggregate + 1]];
@@ -114,11 +114,6 @@ impl Part {
             diagonal: diagonal.collect(),
             upper,
         }
-    }
-
-    /// Bytes of storage.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.aggregates[..]) + size_of_val(&self.diagonal[..]) + self.upper.bytes()
     }
 }
 
