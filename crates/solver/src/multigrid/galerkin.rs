@@ -17,14 +17,12 @@ pub(super) struct Coarse {
     pub(super) modes: Vec<Modes<6>>,
 }
 
-/// Computes the next level and scales the columns of the prolongator to its unknowns.
+/// The next level of `P^T A P`, whose nodes have these modes; scales the columns of `P` to its unknowns.
 pub(super) fn coarse<const N: usize>(
-    matrix: &Sparse<N, N>,
+    whole: &Part,
     prolongator: &mut Sparse<N, 6>,
-    transpose: &Transpose,
     modes: &[Modes<6>],
 ) -> Coarse {
-    let whole = Part::whole(matrix, prolongator, transpose);
     let diagonal = whole.diagonal.par_iter();
     let factors: Vec<Block6> = diagonal
         .map(|block| inverse_factor(block, COSTS_NOTHING).0)

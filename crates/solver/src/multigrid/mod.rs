@@ -164,7 +164,7 @@ impl Multigrid {
     }
 
     fn complete(
-        base: Base,
+        mut base: Base,
         rows: &TangentRows<'_>,
         storage: Storage,
     ) -> Result<Self, MultigridFailure> {

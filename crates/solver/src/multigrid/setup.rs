@@ -1,6 +1,7 @@
 //! How levels come about.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::clusters::Clusters;
 use super::coarsest::Dense;
@@ -12,6 +13,7 @@ use super::scaling::{self, Factors, InverseFactors, Modes};
 use super::smoother::Smoother;
 use super::sparse::{Sparse, Transpose};
 use super::tangent::{Kept, TangentRows};
+use super::triple_product::Part;
 use super::{BlockRows, MultigridFailure, aggregation, numbers, spectrum, tentative};
 use crate::assembly::Frame;
 
@@ -22,6 +24,9 @@ pub(super) const STRENGTH: f32 = 0.02;
 /// A next level with more than this share of the nodes is not worth its cost.
 const STAGNATION: f64 = 0.8;
 
+/// With more than this share of the rows near to fractures, the others are not worth keeping.
+const MOST_NEAR: f64 = 0.5;
+
 /// What stays when the stiffness of the fractures changes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Base {
@@ -31,6 +36,8 @@ pub(super) struct Base {
     pub(super) basis: Sparse<3, 6>,
     /// Modes of the next level's nodes.
     pub(super) modes: Vec<Modes<6>>,
+    /// What the rows far from fractures give to the matrix of the next level, once that is known.
+    far: Option<Part>,
 }
 
 /// What is large of a finest level.
@@ -136,6 +143,7 @@ impl Base {
             clusters,
             basis,
             modes,
+            far: None,
         };
         let storage = Storage {
             matrix: scaled,
@@ -152,7 +160,7 @@ impl Base {
 
     /// The finest level of a tangent, in the storage of a former one, and the next one if it is worth having.
     pub(super) fn finest(
-        &self,
+        &mut self,
         rows: &TangentRows<'_>,
         storage: Storage,
     ) -> Result<(InverseFactors, Level<3>, Option<Coarse>), MultigridFailure> {
@@ -170,7 +178,10 @@ impl Base {
         let (below, next) = if self.has_next(matrix.rows()) {
             let (target, columns) = (&mut prolongator, self.modes.len());
             scaling::set_prolongator(target, &self.basis, columns, &self.clusters, &factors);
-            let (transfer, next) = descend(&matrix, prolongator, restrictor, &self.modes);
+            let transpose = Transpose::of(&prolongator, columns);
+            let product = self.product(rows, &matrix, &prolongator, &transpose);
+            let (transfer, next) =
+                descend(product, prolongator, &transpose, restrictor, &self.modes);
             (Below::Level(transfer), Some(next))
         } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
             (Below::Nothing, None)
@@ -186,6 +197,37 @@ impl Base {
         Ok((factors.compact(), level, next))
     }
 
+    /// `P^T A P`.
+    fn product(
+        &mut self,
+        rows: &TangentRows<'_>,
+        matrix: &Sparse<3, 3>,
+        prolongator: &Sparse<3, 6>,
+        transpose: &Transpose,
+    ) -> Part {
+        let has_springs: Vec<bool> = (0..self.clusters.count())
+            .into_par_iter()
+            .map(|cluster| rows.has_springs(self.clusters.members.of(cluster)))
+            .collect();
+        let has_springs = |row: usize| has_springs[self.clusters.place[row].0 as usize];
+        let is_near = |row| has_springs(row) || matrix.row(row).any(|(at, _)| has_springs(at));
+        let is_near: Vec<bool> = (0..matrix.rows()).into_par_iter().map(is_near).collect();
+        let near = is_near.iter().filter(|near| **near).count();
+        let of_rows = |is_wanted: &(dyn Fn(usize) -> bool + Sync)| {
+            Part::of_rows(matrix, prolongator, transpose, is_wanted)
+        };
+        let aggregates = transpose.columns();
+        if near == 0 || near as f64 > MOST_NEAR * matrix.rows() as f64 {
+            return Part::sum(aggregates, &of_rows(&|_| true));
+        }
+        let far = self.far.take();
+        let far = far.unwrap_or_else(|| Part::sum(aggregates, &of_rows(&|row| !is_near[row])));
+        let near = of_rows(&|row| is_near[row]);
+        let whole = Part::sum(aggregates, std::iter::once(&far).chain(&near));
+        self.far = Some(far);
+        whole
+    }
+
     /// Without what only another stiffness of fractures would ask for.
     pub(super) fn without_basis(self) -> Self {
         Self {
@@ -196,7 +238,10 @@ impl Base {
 
     /// Bytes of storage.
     pub(super) fn bytes(&self) -> usize {
-        self.clusters.bytes() + self.basis.bytes() + size_of_val(&self.modes[..])
+        self.clusters.bytes()
+            + self.basis.bytes()
+            + size_of_val(&self.modes[..])
+            + self.far.as_ref().map_or(0, Part::bytes)
     }
 }
 
@@ -234,20 +279,25 @@ fn below(
     }
     let tentative = tentative::tentative(&aggregates, modes);
     let prolongator = prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
-    let restrictor = Sparse::default();
-    let (transfer, coarse) = descend(matrix, prolongator, restrictor, &tentative.modes);
+    let transpose = Transpose::of(&prolongator, aggregates.count);
+    let parts = Part::of_rows(matrix, &prolongator, &transpose, |_| true);
+    let product = Part::sum(aggregates.count, &parts);
+    drop(parts);
+    let storage = Sparse::default();
+    let (transfer, coarse) = descend(product, prolongator, &transpose, storage, &tentative.modes);
     Ok((Below::Level(transfer), Some(coarse)))
 }
 
-/// The way to the next level, whose nodes have these modes, and that level. `restrictor` is storage.
+/// The way to the level of `P^T A P`, whose nodes have these modes, and that level. `restrictor` is storage.
 fn descend<const N: usize>(
-    matrix: &Sparse<N, N>,
+    product: Part,
     mut prolongator: Sparse<N, 6>,
+    transpose: &Transpose,
     mut restrictor: Sparse<N, 6>,
     modes: &[Modes<6>],
 ) -> (Transfer<N>, Coarse) {
-    let transpose = Transpose::of(&prolongator, modes.len());
-    let coarse = galerkin::coarse(matrix, &mut prolongator, &transpose, modes);
+    let coarse = galerkin::coarse(&product, &mut prolongator, modes);
+    drop(product);
     transpose.arrange(&prolongator, &mut restrictor);
     let transfer = Transfer {
         prolongator,

@@ -28,22 +28,32 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// All of `P^T A P`, `A` having the identity as its diagonal.
-    pub(super) fn whole<const N: usize>(
+    /// What rows of `A`, which has the identity as its diagonal, give to `P^T A P`: those that `is_wanted`, in
+    /// batches.
+    pub(super) fn of_rows<const N: usize>(
         matrix: &Sparse<N, N>,
         prolongator: &Sparse<N, 6>,
         transpose: &Transpose,
-    ) -> Self {
+        is_wanted: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<Self> {
         let rows = matrix.rows();
         let mut image = Sparse::empty();
         let starts = (0..rows).step_by(batch::<N>());
         let parts = starts.map(|start| {
             let rows = start..rows.min(start + batch::<N>());
-            set_image(&mut image, matrix, prolongator, transpose.columns(), &rows);
+            let aggregates = transpose.columns();
+            let is_wanted = &is_wanted;
+            set_image(
+                &mut image,
+                matrix,
+                prolongator,
+                aggregates,
+                &rows,
+                is_wanted,
+            );
             Self::of_image(prolongator, transpose, &rows, &image)
         });
-        let parts: Vec<Self> = parts.collect();
-        Self::sum(transpose.columns(), &parts.iter().collect::<Vec<_>>())
+        parts.collect()
     }
 
     /// What some rows give, from their rows of `A P`.
@@ -75,8 +85,9 @@ impl Part {
     }
 
     /// The sum of parts, with all aggregates.
-    fn sum(aggregates: usize, parts: &[&Self]) -> Self {
-        let (offset, places) = places(aggregates, parts);
+    pub(super) fn sum<'a>(aggregates: usize, parts: impl IntoIterator<Item = &'a Self>) -> Self {
+        let parts: Vec<&Self> = parts.into_iter().collect();
+        let (offset, places) = places(aggregates, &parts);
         let of = |aggregate: usize| {
             let places = &places[offset[aggregate]..offset[aggregate + 1]];
             places
@@ -115,6 +126,11 @@ impl Part {
             upper,
         }
     }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.aggregates[..]) + size_of_val(&self.diagonal[..]) + self.upper.bytes()
+    }
 }
 
 /// For each aggregate the parts that have it, and its row there.
@@ -136,13 +152,14 @@ fn places(aggregates: usize, parts: &[&Part]) -> (Vec<usize>, Vec<(u32, u32)>) {
     (offset, places)
 }
 
-/// Some rows of `A P`.
+/// Some rows of `A P`, empty if not wanted.
 fn set_image<const N: usize>(
     image: &mut Sparse<N, 6>,
     matrix: &Sparse<N, N>,
     prolongator: &Sparse<N, 6>,
     aggregates: usize,
     rows: &Range<usize>,
+    is_wanted: impl Fn(usize) -> bool + Sync,
 ) {
     image.rebuild(
         rows.len(),
@@ -150,6 +167,9 @@ fn set_image<const N: usize>(
         || Accumulator::<N, 6>::new(aggregates),
         |sums, row| {
             let row = rows.start + row;
+            if !is_wanted(row) {
+                return 0;
+            }
             for at in std::iter::once(row).chain(matrix.row(row).map(|(at, _)| at)) {
                 let columns = &prolongator.columns[prolongator.range(at)];
                 columns.iter().for_each(|&column| sums.touch(column));
@@ -159,6 +179,9 @@ fn set_image<const N: usize>(
         #[inline(always)]
         |sums, row, columns, blocks| {
             let row = rows.start + row;
+            if !is_wanted(row) {
+                return;
+            }
             for (column, block) in prolongator.row(row) {
                 add(sums.at(column as u32), 1.0, &widen(block));
             }
