@@ -5,7 +5,8 @@
 //! next level knows smooth jumps as the finest one knows jumps, which nothing else can take care of
 //! at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one whose sides
 //! follow it to the distance `L`. Small pieces make no copies of their own but follow those beside them, so that
-//! whatever moves rigidly on the finest level still does so exactly on the next one.
+//! whatever moves rigidly on the finest level still does so exactly on the next one. What stiff walls make of these
+//! motions is left to [`super::scaling::set_prolongator`].
 
 use lie_mesh::DisjointSets;
 use rayon::prelude::*;
