@@ -78,7 +78,10 @@ pub fn conjugate_gradients(
             residuals: vec![0.0],
         };
     }
-    product(solution, &mut state.image);
+    // The image of nothing stands there already.
+    if solution.par_iter().any(|entry| *entry != DVec3::ZERO) {
+        product(solution, &mut state.image);
+    }
     let mut length = state.start(right) / scale;
     let mut residuals = Vec::with_capacity(settings.max_iterations + 1);
     residuals.push(length);

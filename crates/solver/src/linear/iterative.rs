@@ -242,7 +242,13 @@ fn first_guess(
     let mut guess = vec![DVec3::ZERO; right.len()];
     let mut residual = right.to_vec();
     let mut size = norm(right);
-    for _ in 0..MOST_GUESSES {
+    // Moves of jumps leave most forces elsewhere as they are.
+    for &unknown in jumps {
+        residual[unknown as usize] = DVec3::ZERO;
+    }
+    let may_help = norm(&residual) < HELPS * size;
+    residual.copy_from_slice(right);
+    for _ in 0..if may_help { MOST_GUESSES } else { 0 } {
         let mut next = guess.clone();
         let alone = multigrid.clusters_alone(&residual);
         for &unknown in jumps {

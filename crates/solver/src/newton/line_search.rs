@@ -3,10 +3,10 @@
 //! All the way, as long as the iteration is on its way. Once it has taken more iterations than it should
 //! and its errors grow, the way is halved until they do not: a search for a smaller residual.
 
-use glam::DVec3;
+use rayon::prelude::*;
 
 use super::{
-    Iteration, Linearisation, Newton, Outcome, StepRecord, Trial, assess, interface, largest, walls,
+    Iteration, Linearisation, Move, Newton, Outcome, StepRecord, Trial, assess, interface, walls,
 };
 use crate::linear::Tangents;
 use crate::schedule::Load;
@@ -23,7 +23,7 @@ fn merit(iteration: &Iteration) -> f64 {
 }
 
 impl Newton {
-    /// Follows `correction` (m) on the planes of `tangents`, in iteration `count` of the step.
+    /// Follows a move on the planes of `tangents`, in iteration `count` of the step.
     ///
     /// # Errors
     /// If numbers are no longer finite.
@@ -31,19 +31,19 @@ impl Newton {
         &self,
         system: &System<'_>,
         trial: &mut Trial,
-        (correction, tangents): (&[DVec3], &Tangents),
+        (moved, tangents): (&Move, &Tangents),
         (count, former): (usize, Option<f64>),
         record: &mut StepRecord,
     ) -> Result<Iteration, Outcome> {
         let plain = self.settings.linearisation == Linearisation::Landed;
         let Some(former) = former.filter(|_| count > WHOLE && !plain) else {
-            return self.follow(system, trial, (correction, tangents), record);
+            return self.follow(system, trial, (moved, tangents), record);
         };
         let start = trial.clone();
         let mut best: Option<(Iteration, Trial)> = None;
         for halvings in 0..=HALVINGS {
             let share = 0.5_f64.powi(halvings as i32);
-            let part: Vec<DVec3> = correction.iter().map(|change| share * *change).collect();
+            let part = moved.scaled(share);
             let mut next = start.clone();
             let reached = self.follow(system, &mut next, (&part, tangents), record);
             let Ok(iteration) = reached else {
@@ -58,7 +58,7 @@ impl Newton {
             }
         }
         let Some((iteration, next)) = best else {
-            return self.follow(system, trial, (correction, tangents), record);
+            return self.follow(system, trial, (moved, tangents), record);
         };
         *trial = next;
         Ok(iteration)
@@ -68,27 +68,32 @@ impl Newton {
         &self,
         system: &System<'_>,
         trial: &mut Trial,
-        (correction, tangents): (&[DVec3], &Tangents),
+        (moved, tangents): (&Move, &Tangents),
         record: &mut StepRecord,
     ) -> Result<Iteration, Outcome> {
         let unknowns = &mut trial.state.unknowns;
-        for (unknown, change) in unknowns.iter_mut().zip(correction) {
+        for (unknown, change) in unknowns.iter_mut().zip(&moved.unknowns) {
             *unknown += *change;
         }
         if !unknowns.iter().all(|unknown| unknown.is_finite()) {
             return Err(Outcome::NotFinite(None));
         }
-        trial.rock_forces = system.rock_forces(&trial.state.unknowns);
+        match &moved.rock_forces {
+            Some(change) => {
+                let pairs = trial.rock_forces.par_iter_mut().zip(change);
+                pairs.for_each(|(force, change)| *force += *change);
+            }
+            None => trial.rock_forces = system.rock_forces(&trial.state.unknowns),
+        }
         let errors = walls::follow(
             system,
             self.settings.linearisation,
             &mut trial.state,
             &mut trial.landed,
-            &interface(system).jumps(correction, &Load::NONE),
+            &interface(system).jumps(&moved.unknowns, &Load::NONE),
             tangents,
         );
-        let change = largest(&system.displacements(correction, &Load::NONE));
-        let iteration = assess(system, trial, change, &errors, record)?;
+        let iteration = assess(system, trial, moved.size, &errors, record)?;
         trial.merit = Some(merit(&iteration));
         Ok(iteration)
     }
@@ -154,16 +159,19 @@ mod tests {
         let solved = newton.linear.solve(&system, &residual, 1e-12);
         let exact = solved.expect("solvable").unknowns;
         let far: Vec<DVec3> = exact.iter().map(|change| 4.0 * *change).collect();
+        let far = [true, false].map(|remembered| Move::of(&system, far.clone(), remembered));
         let mut record = StepRecord::new(load);
-        let mut residual_in = |count: usize| {
+        let mut residual_in = |far: &Move, count: usize| {
             let mut trial = start.clone();
             let former = (count, Some(1e-3));
             let reached =
-                newton.advance(&system, &mut trial, (&far, &tangents), former, &mut record);
+                newton.advance(&system, &mut trial, (far, &tangents), former, &mut record);
             reached.expect("finite").force_residual
         };
-        // Forces are measured against the largest, which then are those of the rock: 3 / 4.
-        assert!((residual_in(1) - 0.75).abs() < 1e-9);
-        assert!(residual_in(NewtonSettings::default().max_iterations) < 1e-9);
+        for far in &far {
+            // Forces are measured against the largest, which then are those of the rock: 3 / 4.
+            assert!((residual_in(far, 1) - 0.75).abs() < 1e-9);
+            assert!(residual_in(far, NewtonSettings::default().max_iterations) < 1e-9);
+        }
     }
 }

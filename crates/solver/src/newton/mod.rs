@@ -87,8 +87,38 @@ struct Trial {
     merit: Option<f64>,
     /// The guess that it began with, if it was made in the subspace.
     guess: Option<LastMove>,
-    /// Solutions of its linear systems (m), if they are to be remembered.
-    corrections: Vec<Vec<DVec3>>,
+    /// Its moves, if they are to be remembered.
+    moves: Vec<Move>,
+}
+
+/// What a linear solve does to the unknowns.
+#[derive(Debug, Clone)]
+struct Move {
+    /// Change of the unknowns (m).
+    unknowns: Vec<DVec3>,
+    /// Forces by which the rock resists it (N), if they are to be remembered.
+    rock_forces: Option<Vec<DVec3>>,
+    /// Its largest displacement (m).
+    size: f64,
+}
+
+impl Move {
+    fn of(system: &System<'_>, unknowns: Vec<DVec3>, is_remembered: bool) -> Self {
+        Self {
+            rock_forces: is_remembered.then(|| system.rock_forces(&unknowns)),
+            size: largest(&system.displacements(&unknowns, &Load::NONE)),
+            unknowns,
+        }
+    }
+
+    fn scaled(&self, share: f64) -> Self {
+        let scaled = |vector: &Vec<DVec3>| vector.iter().map(|entry| share * *entry).collect();
+        Self {
+            unknowns: scaled(&self.unknowns),
+            rock_forces: self.rock_forces.as_ref().map(scaled),
+            size: share * self.size,
+        }
+    }
 }
 
 impl Newton {
@@ -169,7 +199,7 @@ impl Newton {
         let outcome = self.settle(system, &mut trial, record, observe);
         if outcome == Outcome::Converged {
             if let Some(subspace) = self.subspace.as_mut() {
-                subspace.learn(trial.guess, trial.corrections);
+                subspace.learn(trial.guess, trial.moves);
             }
             let state = &mut trial.state;
             walls::commit(system, state);
@@ -245,7 +275,7 @@ impl Newton {
         Trial {
             landed,
             guess: last,
-            corrections: Vec::new(),
+            moves: Vec::new(),
             sizes: Sizes {
                 force: force.max(REMEMBERED * guess.reached.force),
                 ..guess.reached
@@ -316,17 +346,13 @@ impl Newton {
         let tolerance = self.tolerance(trial, &residual, carried(system, &trial.state));
         let solution = self.linear.solve(system, &residual, tolerance);
         let solution = solution.map_err(Outcome::Linear)?;
+        let is_remembered = self.subspace.is_some() && system.is_smooth();
+        let moved = Move::of(system, solution.unknowns, is_remembered);
         let former = (count, trial.merit);
-        let mut iteration = self.advance(
-            system,
-            trial,
-            (&solution.unknowns, &tangents),
-            former,
-            record,
-        )?;
+        let mut iteration = self.advance(system, trial, (&moved, &tangents), former, record)?;
         iteration.linear_iterations = solution.iterations;
-        if self.subspace.is_some() && system.is_smooth() {
-            trial.corrections.push(solution.unknowns);
+        if is_remembered {
+            trial.moves.push(moved);
         }
         trial.looseness = iteration.increment.clamp(1e-8, LOOSEST_SOLVE);
         Ok(iteration)

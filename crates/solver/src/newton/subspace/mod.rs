@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::walls::{self, Landed};
-use super::{NewtonSettings, interface, largest};
+use super::{Move, NewtonSettings, interface, largest};
 use crate::linear::Tangents;
 use crate::schedule::Load;
 use crate::system::{State, System};
@@ -41,7 +41,7 @@ pub(super) struct Subspace {
     /// Moves of the last steps as coefficients of the directions, the latest first; those of directions
     /// that came later are left out.
     moves: Vec<Vec<f64>>,
-    /// What is computed once a direction is used.
+    /// What is computed once for each direction.
     known: Vec<Known>,
 }
 
@@ -96,22 +96,35 @@ impl Subspace {
         let known = self.known.iter().zip(1..);
         self.directions.iter().all(|v| v.len() == unknowns)
             && self.moves.iter().all(|moved| moved.len() <= count)
-            && self.known.len() <= count
+            && self.known.len() == count
             && known.into_iter().all(|(k, i)| k.energies.len() == i)
     }
 
-    /// Keeps the moves of a step that converged: its guess, and the corrections (m) after it.
-    pub(super) fn learn(&mut self, guess: Option<LastMove>, corrections: Vec<Vec<DVec3>>) {
+    /// Keeps the moves of a step that converged: its guess, and those after it whose forces are known.
+    pub(super) fn learn(&mut self, guess: Option<LastMove>, moves: Vec<Move>) {
         if let Some(guess) = guess {
             self.moves.insert(0, guess.coefficients);
         }
-        for correction in corrections {
+        for moved in moves {
+            let Some(image) = moved.rock_forces else {
+                continue;
+            };
             let mut alone = vec![0.0; self.directions.len()];
             alone.push(1.0);
             self.moves.insert(0, alone);
-            self.directions.push(correction);
+            self.add(moved.unknowns, &image, moved.size);
         }
         self.moves.truncate(REMEMBERED);
+    }
+
+    /// Adds a direction `v`, given `K v` (N) and its largest displacement (m).
+    fn add(&mut self, direction: Vec<DVec3>, image: &[DVec3], size: f64) {
+        self.directions.push(direction);
+        let directions = self.directions.par_iter();
+        self.known.push(Known {
+            energies: directions.map(|other| dot(other, image)).collect(),
+            size,
+        });
     }
 
     /// Solves for the load in the space around a state; none if that leads nowhere.
@@ -127,7 +140,9 @@ impl Subspace {
         }
         let mut state = from.clone();
         walls::move_supports(system, &mut state, load);
-        self.prepare(system, &state);
+        if self.directions.len() > MOST {
+            self.condense(system, &state);
+        }
         let mut trial = self.start(system, state);
         let mut first = None;
         let mut increment = 0.0;
@@ -259,27 +274,6 @@ impl Subspace {
         directions.map(|(v, c)| *c * v[entry]).sum()
     }
 
-    /// Learns what it takes to use the directions, after condensing them if there are too many.
-    fn prepare(&mut self, system: &System<'_>, state: &State) {
-        self.measure(system);
-        if self.directions.len() > MOST {
-            self.condense(system, state);
-            self.measure(system);
-        }
-    }
-
-    fn measure(&mut self, system: &System<'_>) {
-        for number in self.known.len()..self.directions.len() {
-            let direction = &self.directions[number];
-            let image = system.rock_forces(direction);
-            let others = self.directions[..=number].par_iter();
-            self.known.push(Known {
-                energies: others.map(|other| dot(other, &image)).collect(),
-                size: largest(&system.displacements(direction, &Load::NONE)),
-            });
-        }
-    }
-
     /// Replaces the directions by the principal ones of the last moves, by energy (proper orthogonal
     /// decomposition).
     fn condense(&mut self, system: &System<'_>, state: &State) {
@@ -300,15 +294,20 @@ impl Subspace {
             let entries = entries.clone().into_par_iter();
             entries.map(|i| self.combined(&weights, i)).collect()
         };
-        let directions = axes.iter().map(direction).collect();
+        let directions: Vec<Vec<DVec3>> = axes.iter().map(direction).collect();
         let along = |moved: &Vec<f64>| -> Vec<f64> {
             let axes = axes.iter();
             axes.map(|axis| axis.iter().zip(moved).map(|(a, m)| a * m).sum())
                 .collect()
         };
         self.moves = moves.iter().map(along).collect();
-        self.directions = directions;
+        self.directions.clear();
         self.known.clear();
+        for direction in directions {
+            let image = system.rock_forces(&direction);
+            let size = largest(&system.displacements(&direction, &Load::NONE));
+            self.add(direction, &image, size);
+        }
     }
 }
 
