@@ -125,12 +125,12 @@ pub fn conjugate_gradients(
 
 impl State {
     fn new(length: usize) -> Self {
-        let zeros = vec![DVec3::ZERO; length];
+        // Pages that all threads map where they use them.
         Self {
-            residual: zeros.clone(),
-            preconditioned: zeros.clone(),
-            direction: zeros.clone(),
-            image: zeros,
+            residual: bytemuck::zeroed_vec(length),
+            preconditioned: bytemuck::zeroed_vec(length),
+            direction: bytemuck::zeroed_vec(length),
+            image: bytemuck::zeroed_vec(length),
             sums: Vec::with_capacity(length.div_ceil(PER_TASK)),
         }
     }

@@ -331,7 +331,7 @@ fn predict(
 fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     const SETUP_BYTES: f64 = 8_500.0;
     const ITERATION_BYTES: f64 = 400.0;
-    const MEMORY_BYTES: f64 = 233.0;
+    const MEMORY_BYTES: f64 = 225.0;
     /// Iterations of a solve that is not symmetric, which cost more than those of one that is.
     const UNSYMMETRIC: f64 = 40.0;
     let blocks = unknowns.pattern.columns.len() as f64;

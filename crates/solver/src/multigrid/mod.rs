@@ -105,12 +105,7 @@ impl Multigrid {
     pub fn new(matrix: BlockRows<'_>, modes: &[[DVec3; 6]]) -> Result<Self, MultigridFailure> {
         assert_eq!(modes.len(), matrix.rows(), "one set of modes a row");
         let (base, storage) = Base::of(matrix, modes, None)?;
-        let rows = TangentRows {
-            rock: matrix,
-            springs: None,
-            kept: None,
-        };
-        let multigrid = Self::complete(base, &rows, storage)?;
+        let multigrid = Self::complete(base, &TangentRows::of_rock(matrix), storage)?;
         Ok(Self {
             base: multigrid.base.without_basis(),
             ..multigrid
@@ -155,9 +150,8 @@ impl Multigrid {
             _ => Storage::of(former),
         };
         let rows = TangentRows {
-            rock,
             springs: Some(springs),
-            kept: None,
+            ..TangentRows::of_rock(rock)
         };
         *self = Self::complete(base, &rows, storage)?;
         Ok(())

@@ -105,11 +105,6 @@ impl Base {
         modes: &[[DVec3; 6]],
         frame: Option<Frame<'_>>,
     ) -> Result<(Self, Storage), MultigridFailure> {
-        let rows = TangentRows {
-            rock: matrix,
-            springs: None,
-            kept: None,
-        };
         let whole: Vec<u32> = (0..=matrix.rows() as u32).collect();
         let node_offset = frame.map_or(&whole[..], |frame| &frame.points.offset);
         let owns = |node: &u32| node_offset[*node as usize] < node_offset[*node as usize + 1];
@@ -126,7 +121,7 @@ impl Base {
         let is_whole = firsts.len() == matrix.rows();
         let of_means = TangentRows {
             kept: (!is_whole).then_some(kept),
-            ..rows
+            ..TangentRows::of_rock(matrix)
         };
         let (means, scaled) =
             Means::of(&of_means, modes).map_err(|failure| failure.of_rows(&firsts))?;

@@ -44,6 +44,15 @@ pub(super) struct TangentRows<'a> {
 }
 
 impl<'a> TangentRows<'a> {
+    /// All rows of the rock alone.
+    pub(super) fn of_rock(rock: BlockRows<'a>) -> Self {
+        Self {
+            rock,
+            springs: None,
+            kept: None,
+        }
+    }
+
     /// Number of rows.
     pub(super) fn count(&self) -> usize {
         self.kept.map_or(self.rock.rows(), |kept| kept.rows.len())

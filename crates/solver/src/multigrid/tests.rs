@@ -180,11 +180,7 @@ fn iterations_hardly_grow_with_the_mesh() {
 #[test]
 fn rigid_motions_are_prolonged_exactly() {
     let matrix = CLAMPED.case();
-    let rows = TangentRows {
-        rock: matrix.matrix.view(),
-        springs: None,
-        kept: None,
-    };
+    let rows = TangentRows::of_rock(matrix.matrix.view());
     let single = clusters::Clusters::single(rows.count());
     let factors = scaling::Factors::of(&rows, &single).unwrap();
     let mut scaled = Sparse::default();
