@@ -242,13 +242,15 @@ fn first_guess(
     let mut guess = vec![DVec3::ZERO; right.len()];
     let mut residual = right.to_vec();
     let mut size = norm(right);
-    // Moves of jumps leave most forces elsewhere as they are.
+    let mut elsewhere = right.to_vec();
     for &unknown in jumps {
-        residual[unknown as usize] = DVec3::ZERO;
+        elsewhere[unknown as usize] = DVec3::ZERO;
     }
-    let may_help = norm(&residual) < HELPS * size;
-    residual.copy_from_slice(right);
-    for _ in 0..if may_help { MOST_GUESSES } else { 0 } {
+    // Moves of jumps leave most forces elsewhere as they are.
+    if norm(&elsewhere) >= HELPS * size {
+        return (guess, residual);
+    }
+    for _ in 0..MOST_GUESSES {
         let mut next = guess.clone();
         let alone = multigrid.clusters_alone(&residual);
         for &unknown in jumps {

@@ -76,6 +76,12 @@ fn modes(problem: &Problem) -> Vec<[DVec3; 6]> {
         .collect()
 }
 
+fn base(system: &System<'_>) -> Base {
+    let frame = system.discretisation.frame(system.problem);
+    let base = Base::of(system.rock_rows(), &modes(system.problem), Some(frame));
+    base.expect("positive definite").0
+}
+
 /// Forces without a pattern, on directions that are free.
 fn forces(system: &System<'_>) -> Vec<DVec3> {
     let number = |at: usize| ((at * at * 7919 + at * 13) % 1009) as f64 / 1009.0 - 0.5;
@@ -150,12 +156,7 @@ fn a_sliver_beside_a_fracture_costs_no_iterations() {
     // The nodes above the level plane lie 1/20 of an edge from it.
     let thin = problem(|z| if (z - 0.6).abs() < 1e-9 { 0.505 } else { z });
     let system = system(&thin);
-    let (base, _) = Base::of(
-        system.rock_rows(),
-        &modes(&thin),
-        Some(system.discretisation.frame(system.problem)),
-    )
-    .expect("positive definite");
+    let base = base(&system);
     let nodes = thin.mesh.nodes.len();
     assert!(base.clusters.count() < nodes);
     let count = iterations(&system, |_| YOUNG);
@@ -171,12 +172,7 @@ fn parts_move_apart_exactly_on_the_next_level() {
     let Discretisation {
         points, pattern, ..
     } = &system.discretisation;
-    let (base, _) = Base::of(
-        system.rock_rows(),
-        &modes(&problem),
-        Some(system.discretisation.frame(system.problem)),
-    )
-    .expect("positive definite");
+    let base = base(&system);
     let height = |unknown: usize| problem.mesh.nodes[points.node[unknown] as usize].z;
     // Copies that move a node above the plane.
     let mut is_upper = vec![false; base.modes.len()];

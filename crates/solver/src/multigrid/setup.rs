@@ -147,7 +147,7 @@ impl Base {
         Ok((base, storage))
     }
 
-    /// Whether `next` nodes on the next level are worth having.
+    /// Whether the next level is worth having.
     fn has_next(&self, rows: usize) -> bool {
         let next = self.modes.len();
         3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
@@ -208,16 +208,15 @@ impl Base {
         let is_near = |row| has_springs(row) || matrix.row(row).any(|(at, _)| has_springs(at));
         let is_near: Vec<bool> = (0..matrix.rows()).into_par_iter().map(is_near).collect();
         let near = is_near.iter().filter(|near| **near).count();
-        let of_rows = |is_wanted: &(dyn Fn(usize) -> bool + Sync)| {
-            Part::of_rows(matrix, prolongator, transpose, is_wanted)
-        };
-        let aggregates = transpose.columns();
         if near == 0 || near as f64 > MOST_NEAR * matrix.rows() as f64 {
-            return Part::sum(aggregates, &of_rows(&|_| true));
+            return Part::whole(matrix, prolongator, transpose);
         }
+        let of_rows =
+            |near: bool| Part::of_rows(matrix, prolongator, transpose, |row| is_near[row] == near);
+        let aggregates = transpose.columns();
         let far = self.far.take();
-        let far = far.unwrap_or_else(|| Part::sum(aggregates, &of_rows(&|row| !is_near[row])));
-        let near = of_rows(&|row| is_near[row]);
+        let far = far.unwrap_or_else(|| Part::sum(aggregates, &of_rows(false)));
+        let near = of_rows(true);
         let whole = Part::sum(aggregates, std::iter::once(&far).chain(&near));
         self.far = Some(far);
         whole
@@ -275,9 +274,7 @@ fn below(
     let tentative = tentative::tentative(&aggregates, modes);
     let prolongator = prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
     let transpose = Transpose::of(&prolongator, aggregates.count);
-    let parts = Part::of_rows(matrix, &prolongator, &transpose, |_| true);
-    let product = Part::sum(aggregates.count, &parts);
-    drop(parts);
+    let product = Part::whole(matrix, &prolongator, &transpose);
     let storage = Sparse::default();
     let (transfer, coarse) = descend(product, prolongator, &transpose, storage, &tentative.modes);
     Ok((Below::Level(transfer), Some(coarse)))

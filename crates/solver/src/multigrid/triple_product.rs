@@ -28,6 +28,16 @@ pub(super) struct Part {
 }
 
 impl Part {
+    /// All of `P^T A P`, `A` having the identity as its diagonal.
+    pub(super) fn whole<const N: usize>(
+        matrix: &Sparse<N, N>,
+        prolongator: &Sparse<N, 6>,
+        transpose: &Transpose,
+    ) -> Self {
+        let parts = Self::of_rows(matrix, prolongator, transpose, |_| true);
+        Self::sum(transpose.columns(), &parts)
+    }
+
     /// What rows of `A`, which has the identity as its diagonal, give to `P^T A P`: those that `is_wanted`, in
     /// batches.
     pub(super) fn of_rows<const N: usize>(
