@@ -26,10 +26,10 @@ const WIDENING: f64 = 1.4;
 /// Steps of the first guess, and the factor by which each must reduce the residual.
 const MOST_GUESSES: usize = 6;
 const HELPS: f64 = 0.3;
-/// Change of the stiffness of a fracture that matters: as a share of what it was, or of this share of the
-/// stiffness of the rock beside it.
-const MATTERS: f64 = 0.5;
-const BESIDE: f64 = 0.02;
+/// Factor by which the stiffness of a fracture may change in any direction; and the share of the stiffness of
+/// the rock beside it which that stiffness is added to, because less does not matter.
+const ALIKE: f64 = 2.0;
+const BESIDE: f64 = 0.1;
 /// Share of the fractures' unknowns that may change so much before the multigrid is made anew.
 const TOLERATED: f64 = 0.02;
 
@@ -82,19 +82,29 @@ impl Iterative {
         };
         let interface = &system.discretisation.interface;
         let rows = system.rock_rows();
-        let changed = (0..interface.unknowns.len()).filter(|&row| {
-            let unknown = interface.unknowns[row] as usize;
-            let rock = trace(rows.diagonal(unknown));
-            let range = interface.columns.offset[row]..interface.columns.offset[row + 1];
-            let own = made_with[range.clone()].iter().zip(&stiffness[range]);
-            let size = |block: &DMat3| block.to_cols_array().iter().map(|x| x.abs()).sum::<f64>();
-            let (change, before) = own.fold((0.0, 0.0), |(change, before), (old, new)| {
-                (change + size(&(*new - *old)), before + size(old))
-            });
-            change > MATTERS * (before + BESIDE * rock)
+        let numbered = interface.unknowns.iter().enumerate();
+        let changed = numbered.filter(|&(row, unknown)| {
+            let columns = interface.columns.of(row);
+            let place = columns.partition_point(|column| column < unknown);
+            let own = interface.columns.offset[row] + place;
+            let rock = trace(rows.diagonal(*unknown as usize)) / 3.0;
+            !are_alike(made_with[own], stiffness[own], BESIDE * rock)
         });
         changed.count() as f64 <= TOLERATED * interface.unknowns.len() as f64
     }
+}
+
+/// Whether the stiffness of a fracture changes by less than a factor of [`ALIKE`] in every direction, when `rock`
+/// is added to it. A sum of entries would not tell that walls begin to slide in one direction.
+fn are_alike(old: DMat3, new: DMat3, rock: f64) -> bool {
+    let [old, new] = [old, new].map(|block| block + rock * DMat3::IDENTITY);
+    is_positive(&(ALIKE * old - new)) && is_positive(&(ALIKE * new - old))
+}
+
+/// Whether a symmetric block is positive definite, by its leading minors.
+fn is_positive(block: &DMat3) -> bool {
+    let [x, y] = [block.x_axis, block.y_axis];
+    x.x > 0.0 && x.x * y.y > x.y * y.x && block.determinant() > 0.0
 }
 
 fn springs<'a>(interface: &'a Interface, stiffness: &'a [DMat3]) -> Springs<'a> {
@@ -268,4 +278,38 @@ fn first_guess(
         (guess, residual, size) = (next, remaining, length);
     }
     (guess, residual)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `old` and `new` on orthogonal axes that no coordinate follows.
+    fn alike(old: DVec3, new: DVec3) -> bool {
+        let turn = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, 0.7, 1.1);
+        let turned = |diagonal| turn * DMat3::from_diagonal(diagonal) * turn.transpose();
+        are_alike(turned(old), turned(new), 1.0)
+    }
+
+    #[test]
+    fn a_stiffness_may_change_twofold_in_every_direction() {
+        let old = DVec3::new(1e6, 100.0, 100.0);
+        assert!(alike(old, old));
+        for (factor, is_alike) in [(1.9, true), (2.1, false), (0.55, true), (0.45, false)] {
+            assert_eq!(alike(old, factor * old), is_alike, "{factor}");
+        }
+    }
+
+    #[test]
+    fn walls_that_begin_to_slide_in_one_direction_are_told() {
+        let sticking = DVec3::new(1e6, 1e6, 1e6);
+        let sliding = DVec3::new(1e6, 1e6, 0.0);
+        assert!(!alike(sticking, sliding) && !alike(sliding, sticking));
+    }
+
+    #[test]
+    fn what_is_soft_against_the_rock_does_not_matter() {
+        assert!(alike(DVec3::ZERO, DVec3::splat(0.9)));
+        assert!(!alike(DVec3::ZERO, DVec3::new(0.0, 0.0, 1.1)));
+    }
 }
