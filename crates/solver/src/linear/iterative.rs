@@ -191,7 +191,9 @@ impl TangentSolver for Iterative {
                 ConjugateGradientOutcome::NotFinite => return Err(LinearFailure::NotFinite),
                 // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
                 _ if last <= wanted.max(ROUNDED) => break,
-                ConjugateGradientOutcome::Breakdown if attempt < MOST_WIDENINGS => {
+                ConjugateGradientOutcome::Breakdown
+                    if attempt < MOST_WIDENINGS && self.made_with == self.stiffness =>
+                {
                     self.margin *= WIDENING;
                     self.multigrid.widen(self.margin);
                 }
@@ -224,6 +226,16 @@ impl TangentSolver for Iterative {
         self.stiffness = history.stiffness;
         let made_with = history.preconditioned;
         made_with.map_or(Ok(()), |stiffness| self.refresh(system, stiffness))
+    }
+
+    fn renew(&mut self, system: &System<'_>) -> Result<bool, LinearFailure> {
+        match &self.stiffness {
+            Some(stiffness) if self.made_with.as_ref() != Some(stiffness) => {
+                self.refresh(system, stiffness.clone())?;
+                Ok(true)
+            }
+            _ => Ok(false),
+        }
     }
 
     fn precondition(
@@ -282,7 +294,88 @@ fn first_guess(
 
 #[cfg(test)]
 mod tests {
+    use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+    use lie_mesh::structured::{Patch, tetrahedra};
+    use lie_mesh::{Mesh, SurfaceRole};
+
     use super::*;
+    use crate::linear::AnyTangent;
+    use crate::{Condition, Discretisation, Fracture, Problem, Support};
+
+    /// A block on a clamped base that a level joint cuts through.
+    fn problem() -> Problem {
+        let patches = [
+            Patch {
+                name: "joint",
+                contains: &|x: [f64; 3]| x[2] == 0.5,
+            },
+            Patch {
+                name: "bottom",
+                contains: &|x: [f64; 3]| x[2] == 0.0,
+            },
+        ];
+        let draft = tetrahedra([6; 3], [1.0; 3], &patches);
+        let roles = [
+            SurfaceRole::Unused,
+            SurfaceRole::Fracture,
+            SurfaceRole::Boundary,
+        ];
+        let mesh = Mesh::build(draft, &roles).expect("a sound mesh");
+        let closure = Closure::new(1e-4, 1.0, ClosureKind::Linear);
+        let rock = Rock {
+            young_modulus: 1.0,
+            poisson_ratio: 0.25,
+            density: 0.0,
+        };
+        Problem {
+            fractures: vec![Fracture {
+                law: FractureLaw::elastic(closure, 1.0),
+                fluid_pressure: 0.0,
+            }],
+            conditions: vec![Condition {
+                boundary: 0,
+                load: None,
+                support: Some(Support::Displacement([Some(0.0); 3])),
+            }],
+            ..Problem::of_rock(mesh, rock)
+        }
+    }
+
+    /// What a multigrid for walls glued at random cannot solve for loose ones is solved with one of their own.
+    #[test]
+    fn a_multigrid_that_does_not_serve_is_made_anew() {
+        let problem = problem();
+        let discretisation = Discretisation::of(&problem).expect("held");
+        let system = System::assemble(&problem, discretisation);
+        let interface = &system.discretisation.interface;
+        let stiffness = |of: fn(usize) -> f64| {
+            let points = 0..interface.points.len();
+            let tangents = points.map(|point| of(point) * DMat3::IDENTITY);
+            interface.stiffness(&tangents.collect::<Vec<_>>())
+        };
+        let loose = stiffness(|_| 1e-3);
+        let mut outdated = Iterative::new(&system).expect("definite");
+        let history = SolverHistory {
+            stiffness: Some(loose.clone()),
+            preconditioned: Some(stiffness(|point| 10_f64.powi(point as i32 % 16))),
+            margin: None,
+        };
+        outdated.restore(&system, history).expect("definite");
+        let mut right = vec![DVec3::ZERO; system.discretisation.points.len()];
+        right[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
+        let stalled = outdated.solve(&system, &right, 1e-8);
+        assert!(matches!(stalled, Err(LinearFailure::Stalled(_))));
+        let mut renewing = AnyTangent::new(Box::new(outdated));
+        let solved = renewing.solve_positive(&system, &right, 1e-8);
+        let solved = solved.expect("solved").unknowns;
+        let mut rest = right.clone();
+        system.rock_rows().multiply(&solved, &mut rest);
+        interface.add_product(&loose, &solved, &mut rest);
+        for (rest, right) in rest.iter_mut().zip(&right) {
+            *rest -= *right;
+        }
+        assert!(norm(&rest) < 1e-7 * norm(&right));
+    }
 
     /// `old` and `new` on orthogonal axes that no coordinate follows.
     fn alike(old: DVec3, new: DVec3) -> bool {

@@ -125,6 +125,14 @@ pub trait TangentSolver: Send + Sync {
         Ok(())
     }
 
+    /// Makes anew for the tangent at hand what was kept from another one, if anything was; whether it was.
+    ///
+    /// # Errors
+    /// If the tangent is not positive definite.
+    fn renew(&mut self, _: &System<'_>) -> Result<bool, LinearFailure> {
+        Ok(false)
+    }
+
     /// An approximate solution for the forces `right` (N), in one go.
     ///
     /// # Errors

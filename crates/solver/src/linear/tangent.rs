@@ -55,7 +55,23 @@ impl AnyTangent {
         right: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
-        self.inner.solve(system, right, tolerance)
+        self.renewing(system, |own| own.inner.solve(system, right, tolerance))
+    }
+
+    /// A solution, with what `inner` kept from other tangents made anew if that stands in the way.
+    fn renewing(
+        &mut self,
+        system: &System<'_>,
+        attempt: impl Fn(&mut Self) -> Result<LinearSolution, LinearFailure>,
+    ) -> Result<LinearSolution, LinearFailure> {
+        match attempt(self) {
+            Err(LinearFailure::Stalled(spent)) if self.inner.renew(system)? => {
+                let mut solution = attempt(self)?;
+                solution.iterations += spent;
+                Ok(solution)
+            }
+            done => done,
+        }
     }
 
     /// What later solves depend on beside the tangents and the forces.
@@ -80,6 +96,16 @@ impl AnyTangent {
     /// # Errors
     /// If the iteration fails.
     pub fn solve(
+        &mut self,
+        system: &System<'_>,
+        right: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
+        self.renewing(system, |own| own.attempt(system, right, tolerance))
+    }
+
+    /// Solves with `inner` as it stands.
+    fn attempt(
         &mut self,
         system: &System<'_>,
         right: &[DVec3],
