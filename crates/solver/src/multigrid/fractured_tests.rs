@@ -7,6 +7,7 @@ use lie_mesh::{Mesh, SurfaceRole};
 
 use super::*;
 use crate::linear::{Iterative, TangentSolver};
+use crate::system::norm;
 use crate::{Condition, Discretisation, Fracture, Problem, Support, System};
 
 const CUBES: usize = 10;
@@ -15,7 +16,7 @@ const YOUNG: f64 = 1.0;
 
 /// A block that stands on its clamped bottom, cut through by a level plane; an upright one ends on it.
 /// `height` moves the planes of nodes.
-fn problem(height: fn(f64) -> f64) -> Problem {
+pub(crate) fn problem(height: fn(f64) -> f64) -> Problem {
     let patches = [
         Patch {
             name: "level",
@@ -65,7 +66,7 @@ fn problem(height: fn(f64) -> f64) -> Problem {
     }
 }
 
-fn system(problem: &Problem) -> System<'_> {
+pub(crate) fn system(problem: &Problem) -> System<'_> {
     System::assemble(problem, Discretisation::of(problem).expect("held"))
 }
 
@@ -109,19 +110,24 @@ fn iterations_along(system: &System<'_>, stiffness: impl Fn(usize) -> DVec3) -> 
     solver.update(system, &tangents).expect("positive definite");
     let right = forces(system);
     let solution = solver.solve(system, &right, 1e-8).expect("converges");
-    let mut product = right.clone();
-    system
-        .rock_rows()
-        .multiply(&solution.unknowns, &mut product);
-    interface.add_product(
-        &interface.stiffness(&tangents),
-        &solution.unknowns,
-        &mut product,
-    );
-    let length = |v: &[DVec3]| v.iter().map(|v| v.length_squared()).sum::<f64>().sqrt();
-    let rest: Vec<DVec3> = product.iter().zip(&right).map(|(a, b)| *a - *b).collect();
-    assert!(length(&rest) < 1e-7 * length(&right));
+    let stiffness = interface.stiffness(&tangents);
+    assert!(remaining(system, &stiffness, &solution.unknowns, &right) < 1e-7);
     solution.iterations
+}
+
+/// What a solution leaves of the forces, as a share of them, with this stiffness of the fractures.
+pub(crate) fn remaining(
+    system: &System<'_>,
+    stiffness: &[DMat3],
+    solution: &[DVec3],
+    forces: &[DVec3],
+) -> f64 {
+    let mut image = forces.to_vec();
+    system.rock_rows().multiply(solution, &mut image);
+    let interface = &system.discretisation.interface;
+    interface.add_product(stiffness, solution, &mut image);
+    let rest: Vec<DVec3> = image.iter().zip(forces).map(|(a, b)| *a - *b).collect();
+    norm(&rest) / norm(forces)
 }
 
 #[test]

@@ -15,7 +15,7 @@ mod coarsest;
 mod copies;
 mod cycle;
 #[cfg(test)]
-mod fractured_tests;
+pub(crate) mod fractured_tests;
 mod galerkin;
 mod prolongation;
 mod scaling;
