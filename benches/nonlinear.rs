@@ -8,10 +8,10 @@ mod block;
 use std::time::Instant;
 
 use glam::DVec3;
-use lie_core::FractureLaw;
-use lie_solver::{
+use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, SurfaceLoad, System,
 };
+use lie_core::FractureLaw;
 
 /// Seconds that `work` takes, and what it gives.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {

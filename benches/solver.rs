@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
-use lie_solver::{
+use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Pattern, Plan, System, Unknowns,
     Workload,
 };

@@ -11,9 +11,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use kluft::{MeshSource, Scene, bind, surface_roles};
+use kluft_mesh::{Defect, Faces, Mesh};
+use kluft_solver::{Discretisation, Newton, NewtonSettings, Problem, Solution, System, solution};
 use lie_core::FacetQuadrature;
-use lie_mesh::{Defect, Faces, Mesh};
-use lie_solver::{Discretisation, Newton, NewtonSettings, Problem, Solution, System, solution};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let file = env::args().nth(1).ok_or("which scene?")?;
@@ -36,7 +36,7 @@ fn problem(scene_file: &Path) -> Result<Problem, Vec<Defect>> {
         let remedy = "name a mesh file";
         return Err(vec![Defect::new("[mesh]", "no `file`", remedy)]);
     };
-    let draft = lie_io::load_msh(mesh_file, &env::temp_dir())?;
+    let draft = kluft_io::load_msh(mesh_file, &env::temp_dir())?;
     let faces = Faces::of(&draft);
     let inner = faces.inner_surfaces(&draft);
     let roles = surface_roles(&scene, &draft, |group| inner[group])?;

@@ -7,9 +7,9 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use lie_io::load_msh;
-use lie_mesh::{Defect, Faces, Mesh, SurfaceRole};
-use lie_solver::Points;
+use kluft_io::load_msh;
+use kluft_mesh::{Defect, Faces, Mesh, SurfaceRole};
+use kluft_solver::Points;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -46,7 +46,7 @@ fn read(file: &Path) -> Result<(), Vec<Defect>> {
     Ok(())
 }
 
-fn role((group, is_inner): (&lie_mesh::Group, bool)) -> SurfaceRole {
+fn role((group, is_inner): (&kluft_mesh::Group, bool)) -> SurfaceRole {
     match (group.dimension, is_inner) {
         (2, true) => SurfaceRole::Fracture,
         (2, false) => SurfaceRole::Boundary,

@@ -1,7 +1,7 @@
 //! How accurate a run says it is.
 
 use glam::DVec3;
-use lie_solver::{Estimator, MeanError, Newton, Solution, StressError, System};
+use kluft_solver::{Estimator, MeanError, Newton, Solution, StressError, System};
 
 use crate::summary::FractureSummary;
 
@@ -79,7 +79,7 @@ fn of_all_jumps(
     let points = &system.discretisation.interface.points;
     let results = &solution.facet_points;
     let largest =
-        |of: fn(&lie_solver::FacetResult) -> f64| results.iter().map(of).fold(0.0, f64::max);
+        |of: fn(&kluft_solver::FacetResult) -> f64| results.iter().map(of).fold(0.0, f64::max);
     let mesh = &system.problem.mesh;
     let has_plain_fronts = !mesh.has_quarter_points && mesh.front_nodes().contains(&true);
     let safety = if has_plain_fronts {

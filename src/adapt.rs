@@ -1,8 +1,8 @@
 //! Meshes a scene until the estimated error meets a tolerance.
 
-use lie_io::write_size_field;
-use lie_mesh::Mesh;
-use lie_solver::{Problem, target_sizes};
+use kluft_io::write_size_field;
+use kluft_mesh::Mesh;
+use kluft_solver::{Problem, target_sizes};
 use serde::Serialize;
 
 use crate::accuracy::Accuracy;
@@ -122,7 +122,7 @@ fn cells(mesh: &Mesh, sizes: &[f64]) -> f64 {
         let logarithms = corners.iter().map(|&node| sizes[node as usize].ln());
         let size = (logarithms.sum::<f64>() / corners.len() as f64).exp();
         let volume =
-            lie_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
+            kluft_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
         72.0_f64.sqrt() * volume / (size * size * size)
     };
     (0..mesh.cells.len()).map(of_cell).sum()

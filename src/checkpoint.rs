@@ -8,9 +8,9 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use lie_io::write_atomically;
-use lie_mesh::Defect;
-use lie_solver::Bookmark;
+use kluft_io::write_atomically;
+use kluft_mesh::Defect;
+use kluft_solver::Bookmark;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 

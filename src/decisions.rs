@@ -1,7 +1,7 @@
 //! What the program decided, and what went wrong, in words.
 
-use lie_mesh::Defect;
-use lie_solver::{
+use kluft_mesh::Defect;
+use kluft_solver::{
     LinearFailure, LinearMethod, NewtonSettings, Outcome, Plan, Prediction, Problem, Schedule,
     Step, StepRecord, Support, System,
 };

@@ -2,7 +2,6 @@
 
 mod accuracy;
 mod adapt;
-pub mod chart;
 mod checkpoint;
 mod decisions;
 mod inspect;
@@ -22,7 +21,7 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 pub use inspect::{InspectOptions, inspect};
-pub use lie_network::{Domain, Grouping};
+pub use kluft_network::{Domain, Grouping};
 pub use network::{NetworkOptions, make_network};
 pub use oracle::{Measure, Oracle};
 pub use report::{Failure, Verbosity, print_failure};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use lie_io::{Field, Grid, Values, write_pvd, write_vtu};
-use lie_mesh::Defect;
-use lie_solver::{Solution, System};
+use kluft_io::{Field, Grid, Values, write_pvd, write_vtu};
+use kluft_mesh::Defect;
+use kluft_solver::{Solution, System};
 
 use crate::accuracy::Accuracy;
 use crate::checkpoint;
@@ -199,7 +199,7 @@ fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
     let mesh = &system.problem.mesh;
     let elements = &mesh.facets.elements;
     let results = &solution.facet_nodes(system.problem, &system.discretisation.interface);
-    let vectors = |of: fn(&lie_solver::FacetResult) -> glam::DVec3| {
+    let vectors = |of: fn(&kluft_solver::FacetResult) -> glam::DVec3| {
         results.iter().map(move |result| of(result).to_array())
     };
     let normals = mesh

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use lie_io::{Meshing, mesh_geometry};
-use lie_mesh::{Defect, Draft, SurfaceRole};
+use kluft_io::{Meshing, mesh_geometry};
+use kluft_mesh::{Defect, Draft, SurfaceRole};
 
 use crate::decisions;
 use crate::output::Output;

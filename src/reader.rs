@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use lie_mesh::{Defect, nearest};
+use kluft_mesh::{Defect, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

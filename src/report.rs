@@ -4,8 +4,8 @@ use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lie_mesh::Defect;
-use lie_solver::Iteration;
+use kluft_mesh::Defect;
+use kluft_solver::Iteration;
 
 use crate::oracle::Measure;
 use crate::summary::FractureSummary;

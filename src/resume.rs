@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use crate::checkpoint::{self, Fingerprint, Identity, Progress};
 use crate::output::Output;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use lie_io::load_msh;
-use lie_mesh::{Defect, Draft, Faces, Mesh};
-use lie_solver::{
+use kluft_io::load_msh;
+use kluft_mesh::{Defect, Draft, Faces, Mesh};
+use kluft_solver::{
     Discretisation, Estimator, LinearFailure, Newton, NewtonSettings, Plan, Problem, State,
     StepRecord, System, Workload, solution,
 };

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use lie_io::write_atomically;
-use lie_mesh::Defect;
-use lie_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, StepRecord};
+use kluft_io::write_atomically;
+use kluft_mesh::Defect;
+use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
 use crate::adapt::Round;
@@ -121,7 +121,7 @@ impl StepSummary {
 impl From<&StepRecord> for StepMeasures {
     fn from(record: &StepRecord) -> Self {
         let last = record.iterations.last();
-        let measure = |of: fn(&lie_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
+        let measure = |of: fn(&kluft_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
         Self {
             newton_iterations: record.iterations.len(),
             parts: record.parts.clone(),

@@ -1,10 +1,10 @@
 //! The benchmark scene: a block of cubes, six tetrahedra each, cut by closing planes.
 
 use glam::DVec3;
+use kluft_mesh::structured::{Patch, tetrahedra};
+use kluft_mesh::{Draft, Mesh, SurfaceRole};
+use kluft_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
-use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Draft, Mesh, SurfaceRole};
-use lie_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 
 /// A fracture on faces of the cubes: whether a point is on it.
 pub type Plane = fn([f64; 3]) -> bool;

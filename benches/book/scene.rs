@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use kluft::{Options, Scene, Verbosity};
-use lie_mesh::{Faces, Mesh};
-use lie_solver::{Discretisation, FacetResult, Problem};
+use kluft_mesh::{Faces, Mesh};
+use kluft_solver::{Discretisation, FacetResult, Problem};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -101,7 +101,7 @@ impl Outcome {
     pub fn problem(&self) -> Problem {
         let file = self.folder.path().join("scene.toml");
         let mesh = self.folder.path().join("out/mesh.msh");
-        let draft = lie_io::load_msh(&mesh, self.folder.path());
+        let draft = kluft_io::load_msh(&mesh, self.folder.path());
         let draft = draft.unwrap_or_else(|defects| panic!("{defects:?}"));
         scenes::bound(&file, draft)
     }

@@ -2,7 +2,7 @@
 //! (Alart & Curnier 1991; Simo & Laursen 1992), around a semi-smooth Newton method.
 
 use glam::{DMat3, DVec3};
-use lie_solver::{Load, NewtonSettings, Plan, System, TangentSolver, Unknowns, Workload, norm};
+use kluft_solver::{Load, NewtonSettings, Plan, System, TangentSolver, Unknowns, Workload, norm};
 
 /// Changes of the multipliers, against the largest, that end the outer iteration.
 const SETTLED: f64 = 1e-9;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use kluft::chart::{Axis, Chart};
-use lie_mesh::Shape;
-use lie_solver::LinearMethod;
+use kluft_chart::{Axis, Chart};
+use kluft_mesh::Shape;
+use kluft_solver::LinearMethod;
 
 use crate::equal_terms::{below, chart, curves, exponents, misses, of, table};
 use crate::measured::{Case, Curve, Terms, newton, range, seconds, solve_memory};

@@ -1,6 +1,6 @@
 //! All treatments over eight decades of their stiffness.
 
-use kluft::chart::{Axis, Chart};
+use kluft_chart::{Axis, Chart};
 
 use crate::measured::{self, Case, Curve, Terms};
 use crate::studies::{Effort, Table};

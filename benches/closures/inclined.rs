@@ -1,8 +1,8 @@
 //! An inclined joint whose traction statics knows.
 
 use glam::DVec3;
-use kluft::chart::Axis;
-use lie_solver::{Discretisation, LinearMethod, System};
+use kluft_chart::Axis;
+use kluft_solver::{Discretisation, LinearMethod, System};
 
 use crate::equal_terms::{chart, curves, exponents, misses, of, table};
 use crate::measured::{Case, Curve, Terms, newton, solve_memory, worst};

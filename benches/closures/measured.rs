@@ -1,7 +1,7 @@
 //! What is measured of every treatment alike, in tables and charts.
 
-use kluft::chart::{Axis, Chart, Series};
-use lie_solver::LinearMethod;
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::LinearMethod;
 
 use crate::memory::{Peak, Place, Run, measured};
 use crate::pressed::Pressed;

@@ -4,8 +4,8 @@ use std::fmt;
 use std::fs;
 use std::process::Command;
 
-use lie_mesh::Shape;
-use lie_solver::{Discretisation, LinearMethod, System};
+use kluft_mesh::Shape;
+use kluft_solver::{Discretisation, LinearMethod, System};
 
 use crate::pressed::{Pressed, bent_crack, inclined};
 use crate::resident::{peak_bytes, used_bytes};

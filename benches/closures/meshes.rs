@@ -1,7 +1,7 @@
 //! Linear and quadratic cells, direct and iterative solvers: the crack in exact contact.
 
-use lie_mesh::Shape;
-use lie_solver::LinearMethod;
+use kluft_mesh::Shape;
+use kluft_solver::LinearMethod;
 
 use crate::crack::{inside, profile};
 use crate::measured::megabytes;

@@ -1,8 +1,8 @@
 //! What only one law has: the cutoff of the logarithmic law and the largest closure of the hyperbolic one, each
 //! over eight decades.
 
-use kluft::chart::{Axis, Chart};
-use lie_mesh::Shape;
+use kluft_chart::{Axis, Chart};
+use kluft_mesh::Shape;
 
 use crate::crack;
 use crate::measured::{Case, Curve, Terms, chart, newton, range, seconds, table, worst};

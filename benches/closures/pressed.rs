@@ -1,10 +1,10 @@
 //! Two scenes whose walls touch: an inclined joint in uniform stress, and a crack that bending half opens.
 
 use glam::DVec3;
+use kluft_mesh::structured::{Patch, cells_of};
+use kluft_mesh::{Draft, Mesh, Shape, SurfaceRole};
+use kluft_solver::{Problem, Support};
 use lie_core::{Closure, ClosureKind, FractureLaw};
-use lie_mesh::structured::{Patch, cells_of};
-use lie_mesh::{Draft, Mesh, Shape, SurfaceRole};
-use lie_solver::{Problem, Support};
 
 use crate::scenes::{self, ROCK};
 
@@ -171,7 +171,7 @@ pub fn bent_crack(shape: Shape, parts: usize) -> Pressed {
     let roles: Vec<_> = draft.groups.iter().map(|group| role(&group.name)).collect();
     let mesh = Mesh::build(draft, &roles).unwrap_or_else(|defects| panic!("{defects:?}"));
     let law = FractureLaw::elastic(Closure::contact(0.0), 0.0);
-    let fracture = lie_solver::Fracture {
+    let fracture = kluft_solver::Fracture {
         law,
         fluid_pressure: 0.0,
     };

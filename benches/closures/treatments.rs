@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use lie_core::{Closure, ClosureKind, Tension};
-use lie_solver::{
+use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Plan, Problem, System, Unknowns,
     Workload, solution,
 };
+use lie_core::{Closure, ClosureKind, Tension};
 
 use crate::augmented::augmented;
 use crate::pressed::Pressed;

@@ -1,7 +1,7 @@
 //! Unknowns, and what solving for them will take.
 
-use lie_mesh::Mesh;
-use lie_solver::{Discretisation, Pattern, Plan, Points, Prediction, Unknowns, Workload};
+use kluft_mesh::Mesh;
+use kluft_solver::{Discretisation, Pattern, Plan, Points, Prediction, Unknowns, Workload};
 
 use super::findings::{Inspection, SectorCounts, SolverFinding, UnknownFindings};
 

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lie_mesh::{Defect, Draft};
+use kluft_mesh::{Defect, Draft};
 use serde::Serialize;
 
 use crate::scene::Scene;

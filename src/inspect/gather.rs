@@ -1,7 +1,7 @@
 //! From the survey of a mesh to findings with names.
 
-use lie_mesh::{BlockSurvey, Contact, Mesh, Survey, cell_angles, facet_centre};
-use lie_solver::Problem;
+use kluft_mesh::{BlockSurvey, Contact, Mesh, Survey, cell_angles, facet_centre};
+use kluft_solver::Problem;
 
 use super::findings::{
     BlockFinding, CellFinding, CellFindings, ContactFinding, FractureFinding, Inspection,
@@ -204,7 +204,7 @@ pub fn held_and_loaded(problem: &Problem, inspection: &mut Inspection) {
             holds_fixed[block as usize] |= nodes.any(|&node| fixed[node as usize]);
         }
     }
-    let names = |wanted: &dyn Fn(&lie_solver::Condition) -> bool| -> Vec<&str> {
+    let names = |wanted: &dyn Fn(&kluft_solver::Condition) -> bool| -> Vec<&str> {
         let conditions = problem.conditions.iter().filter(|c| wanted(c));
         conditions
             .map(|c| mesh.boundaries[c.boundary].name.as_str())

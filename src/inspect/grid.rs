@@ -1,7 +1,7 @@
 //! `inspect.vtu`: the fractures and the worst cells, with what was found on them.
 
-use lie_io::{Field, Grid};
-use lie_mesh::{Mesh, Survey};
+use kluft_io::{Field, Grid};
+use kluft_mesh::{Mesh, Survey};
 
 use crate::output::{integer, real};
 

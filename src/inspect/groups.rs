@@ -1,7 +1,7 @@
 //! Physical groups: how many elements they hold and what the scene makes of them.
 
-use lie_mesh::{Draft, SurfaceRole, TaggedElements};
-use lie_solver::{Support, SurfaceLoad};
+use kluft_mesh::{Draft, SurfaceRole, TaggedElements};
+use kluft_solver::{Support, SurfaceLoad};
 
 use super::findings::GroupFinding;
 use crate::scene::{BoundaryEntry, Scene};

@@ -12,9 +12,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use lie_io::{load_msh, write_atomically, write_vtu};
-use lie_mesh::{Defect, Draft, Faces, Mesh, Survey};
-use lie_solver::{Discretisation, Problem, Workload};
+use kluft_io::{load_msh, write_atomically, write_vtu};
+use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
+use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::output::Output;
 use crate::prepare::{self, folder_for, mesh_file};

@@ -1,9 +1,9 @@
 //! Whether the loads are enough to push the walls of fractures through each other.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::{Survey, facet_area_vector};
+use kluft_solver::{Condition, Problem, Support, SurfaceLoad};
 use lie_core::{Closure, ClosureKind};
-use lie_mesh::{Survey, facet_area_vector};
-use lie_solver::{Condition, Problem, Support, SurfaceLoad};
 
 use super::findings::{Inspection, WallFinding};
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lie_mesh::Defect;
-use lie_network::{
+use kluft_mesh::Defect;
+use kluft_network::{
     Domain, Given, Orientation, Outline, Polygon, SIDES, Sizes, check_name, read_list,
     repeated_names,
 };
@@ -298,7 +298,7 @@ pub(super) fn one_of<'a>(
         return Some(word);
     }
     let list = known.join(", ");
-    let remedy = lie_mesh::nearest(word, known.iter().copied()).map_or_else(
+    let remedy = kluft_mesh::nearest(word, known.iter().copied()).map_or_else(
         || format!("known: {list}"),
         |near| format!("did you mean \"{near}\"? (known: {list})"),
     );
@@ -353,7 +353,7 @@ fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<Given> {
         .filter(|set| sets.iter().all(|known| known != set))
     {
         let known = sets.iter().map(String::as_str);
-        let remedy = lie_mesh::nearest(set, known).map_or_else(
+        let remedy = kluft_mesh::nearest(set, known).map_or_else(
             || format!("add a section [fracture_set.{set}]"),
             |near| format!("did you mean \"{near}\"?"),
         );

@@ -8,9 +8,9 @@ mod sets;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lie_io::write_atomically;
-use lie_mesh::Defect;
-use lie_network::{Domain, Grouping, Network, write_geo};
+use kluft_io::write_atomically;
+use kluft_mesh::Defect;
+use kluft_network::{Domain, Grouping, Network, write_geo};
 
 use crate::report::{Failure, Report, Verbosity};
 use input::{Input, Wish};

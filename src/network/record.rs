@@ -1,6 +1,6 @@
 //! `network.json`: what was asked, what came of it, and what became of every fracture.
 
-use lie_network::{
+use kluft_network::{
     Amount, Domain, Feature, FeatureKind, Fisher, Fracture, Moments, Network, Orientation, moments,
 };
 use serde::Serialize;

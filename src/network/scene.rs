@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use lie_network::{Grouping, Network};
+use kluft_network::{Grouping, Network};
 use toml::de::{DeTable, DeValue};
 
 use super::MADE;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use lie_mesh::Defect;
-use lie_network::{
+use kluft_mesh::Defect;
+use kluft_network::{
     Amount, Domain, Drawn, Fisher, Given, Shape, SizeLaw, StochasticSet, check_name, read_list,
 };
 

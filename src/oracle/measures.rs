@@ -1,8 +1,8 @@
 //! How far a run is from closed forms, and what it amounts to where there are none.
 
 use glam::DVec3;
+use kluft_solver::{FacetResult, Solution, System};
 use lie_core::{FacetQuadrature, FacetRulePoint, Rock, facet_points};
-use lie_solver::{FacetResult, Solution, System};
 use serde::{Deserialize, Serialize};
 
 use super::front::{Behind, stress_intensity};

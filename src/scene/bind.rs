@@ -1,9 +1,9 @@
 //! Where a scene meets a mesh: names become groups, groups become parts of a problem.
 
 use glam::DVec3;
+use kluft_mesh::{Defect, Draft, Group, Mesh, SurfaceRole, nearest};
+use kluft_solver::{Condition, FixedPoint, Problem};
 use lie_core::Rock;
-use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole, nearest};
-use lie_solver::{Condition, FixedPoint, Problem};
 
 use super::cases::{Bound, schedule};
 use super::{FixedPointEntry, FractureEntry, Named, Scene};

@@ -1,6 +1,6 @@
 //! Conditions with the same history are one load case.
 
-use lie_solver::{Cases, Load, Schedule, Step, Support};
+use kluft_solver::{Cases, Load, Schedule, Step, Support};
 
 use super::conditions::is_moved;
 use super::history::{History, StepEnd, Timetable};

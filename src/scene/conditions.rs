@@ -1,7 +1,7 @@
 //! Conditions of a scene: what acts on faces, nodes and the whole rock.
 
 use glam::DVec3;
-use lie_solver::{Fracture, Support, SurfaceLoad};
+use kluft_solver::{Fracture, Support, SurfaceLoad};
 
 use super::history::History;
 use super::load::{Clock, Scaled, read_history};

@@ -1,7 +1,7 @@
 //! What a scene may say of a fracture.
 
+use kluft_solver::Fracture;
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
-use lie_solver::Fracture;
 
 use super::FractureEntry;
 use super::load::{Clock, Scaled, read_history};
@@ -88,7 +88,7 @@ fn closure_name(section: &Section<'_, '_>) -> Option<&'static str> {
     let found = CLOSURES.into_iter().find(|known| *known == name);
     if found.is_none() {
         let known = CLOSURES.join(", ");
-        let remedy = lie_mesh::nearest(name, CLOSURES.into_iter())
+        let remedy = kluft_mesh::nearest(name, CLOSURES.into_iter())
             .map_or(format!("write one of {known}"), |near| {
                 format!("did you mean \"{near}\"? (known: {known})")
             });

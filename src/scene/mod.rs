@@ -9,9 +9,9 @@ mod load;
 
 use std::path::{Path, PathBuf};
 
+use kluft_mesh::Defect;
+use kluft_solver::{InitialStress, LinearMethod, Profile};
 use lie_core::{FacetQuadrature, Rock};
-use lie_mesh::Defect;
-use lie_solver::{InitialStress, LinearMethod, Profile};
 
 pub use bind::{Binding, bind, surface_roles};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};

@@ -1,6 +1,6 @@
 //! How far each setting is from the closed form, or from what finer and finer meshes approach.
 
-use lie_mesh::{Defect, nearest};
+use kluft_mesh::{Defect, nearest};
 
 use super::point::{Numbers, Record};
 use super::reference::{Limit, limit};

@@ -6,7 +6,7 @@ use super::point::Numbers;
 use super::reference::slope;
 use super::settings::Kind;
 use super::words::{or_the_scene, percent, unit};
-use crate::chart::{Axis, Band, Chart, Series as Line};
+use kluft_chart::{Axis, Band, Chart, Series as Line};
 
 /// Most series on a chart; more cannot be told apart.
 const MOST_SERIES: usize = 10;

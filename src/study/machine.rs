@@ -23,7 +23,7 @@ impl Machine {
             processor: processor().unwrap_or_else(unknown),
             cores: cores(),
             memory_bytes: memory::total_bytes(),
-            gmsh: lie_io::gmsh::version().unwrap_or_else(unknown),
+            gmsh: kluft_io::gmsh::version().unwrap_or_else(unknown),
         }
     }
 }

@@ -19,8 +19,8 @@ mod words;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lie_io::write_atomically;
-use lie_mesh::Defect;
+use kluft_io::write_atomically;
+use kluft_mesh::Defect;
 
 use crate::checkpoint::fingerprint_of;
 use crate::report::{Failure, Report, Verbosity};
@@ -224,7 +224,7 @@ impl Study {
         let error = |i: usize| found.drawn_error(i).unwrap_or(f64::NAN);
         let point = |i: usize| (self.seconds(i), error(i));
         let points: Vec<(f64, f64)> = (0..self.records.len()).map(point).collect();
-        crate::chart::front(&points)
+        kluft_chart::front(&points)
     }
 
     /// Writes table, charts and page.

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Instant;
 
-use lie_io::write_atomically;
-use lie_mesh::Defect;
+use kluft_io::write_atomically;
+use kluft_mesh::Defect;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 use toml::{Table, Value};
 
 use super::edits::Edit;

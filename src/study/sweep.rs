@@ -1,6 +1,6 @@
 //! The dimensions of a study: what `[study]` says, or what is swept without it.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 use toml::{Table, Value};
 
 use super::edits::Edit;

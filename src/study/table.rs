@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use lie_io::write_atomically;
-use lie_mesh::Defect;
+use kluft_io::write_atomically;
+use kluft_mesh::Defect;
 
 use super::Study;
 use super::assess::Assessment;

@@ -1,7 +1,7 @@
 //! The augmented Lagrangian of `benches/closures` against statics.
 
+use kluft_solver::{Discretisation, NewtonSettings, System};
 use lie_core::Closure;
-use lie_solver::{Discretisation, NewtonSettings, System};
 
 use crate::augmented::augmented;
 use crate::pressed::{inclined, inclined_traction};

@@ -1,8 +1,8 @@
 //! B2: the table of the logarithmic law by simulation. B3: the single joint of OpenGeoSys.
 
 use glam::DVec3;
+use kluft_solver::{Fracture, Problem, Solution, Support};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
-use lie_solver::{Fracture, Problem, Solution, Support};
 
 use crate::closing::column;
 use crate::oracles::{LOG_LAW_TABLE, closed_aperture};

@@ -1,10 +1,10 @@
 //! Scenes whose joints close under a load given as a multiple of `K_n0 b0`.
 
 use glam::DVec3;
+use kluft_mesh::Draft;
+use kluft_mesh::structured::Patch;
+use kluft_solver::{Problem, Support};
 use lie_core::ClosureKind;
-use lie_mesh::Draft;
-use lie_mesh::structured::Patch;
-use lie_solver::{Problem, Support};
 
 use crate::scenes::{self, joint};
 

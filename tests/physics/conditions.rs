@@ -1,12 +1,12 @@
 //! Conditions: supports on cut faces, loads, gravity, initial stress, load steps.
 
 use glam::{DMat3, DVec3};
-use lie_core::ClosureKind;
-use lie_mesh::structured::Patch;
-use lie_solver::{
+use kluft_mesh::structured::Patch;
+use kluft_solver::{
     Condition, Discretisation, InitialStress, Load, Newton, NewtonSettings, Problem, Profile,
     Support, SurfaceLoad, System, solution,
 };
+use lie_core::ClosureKind;
 
 use crate::closing::column;
 use crate::oracles::closed_aperture;
@@ -24,7 +24,7 @@ fn vertical_joint() -> Problem {
 
 /// Displacements of all points of the nodes that satisfy `on`.
 fn at_nodes(problem: &Problem, displacements: &[DVec3], on: impl Fn(DVec3) -> bool) -> Vec<DVec3> {
-    let points = lie_solver::Points::of(&problem.mesh);
+    let points = kluft_solver::Points::of(&problem.mesh);
     (0..points.len())
         .filter(|&point| on(problem.mesh.nodes[points.node[point] as usize]))
         .map(|point| displacements[point])
@@ -105,10 +105,10 @@ fn blocks_that_meet_at_an_edge_are_held_differently() {
     let mut roles = scenes::roles(&draft);
     for (group, role) in draft.groups.iter_mut().zip(&mut roles) {
         if ["low", "high"].contains(&group.name.as_str()) {
-            *role = lie_mesh::SurfaceRole::Boundary;
+            *role = kluft_mesh::SurfaceRole::Boundary;
         }
     }
-    let mesh = lie_mesh::Mesh::build(draft, &roles).expect("a good mesh");
+    let mesh = kluft_mesh::Mesh::build(draft, &roles).expect("a good mesh");
     let mut problem = scenes::problem(mesh, joint(ClosureKind::Linear));
     let lift = |z: f64| Support::Displacement([Some(0.0), Some(0.0), Some(z)]);
     scenes::support(&mut problem, "low", lift(1e-5));

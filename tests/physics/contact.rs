@@ -1,11 +1,11 @@
 //! Unilateral contact: closed cracks, blocks that part and meet again, blocks that nothing holds.
 
 use glam::DVec3;
-use lie_core::{Closure, FractureLaw, Tension};
-use lie_mesh::structured::Patch;
-use lie_solver::{
+use kluft_mesh::structured::Patch;
+use kluft_solver::{
     Discretisation, Fracture, NewtonSettings, Outcome, Problem, Solution, StepRecord, Support,
 };
+use lie_core::{Closure, FractureLaw, Tension};
 
 use crate::pressed;
 use crate::scenes::{self, EXACT};

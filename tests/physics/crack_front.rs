@@ -5,10 +5,10 @@
 //! artefact of quadrature (Schellekens & de Borst 1993).
 
 use glam::DVec3;
+use kluft_mesh::Shape;
+use kluft_mesh::structured::{Patch, cells_of};
+use kluft_solver::{Discretisation, Problem, Support};
 use lie_core::{ClosureKind, FacetQuadrature};
-use lie_mesh::Shape;
-use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{Discretisation, Problem, Support};
 
 use crate::scenes::{self, ROCK, joint};
 

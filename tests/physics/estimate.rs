@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
-use lie_core::{ClosureKind, Rock, kernel, recovery_rule};
-use lie_mesh::Shape;
-use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{
+use kluft_mesh::Shape;
+use kluft_mesh::structured::{Patch, cells_of};
+use kluft_solver::{
     Discretisation, Estimator, Newton, NewtonSettings, Problem, System, norm, solution,
 };
+use lie_core::{ClosureKind, Rock, kernel, recovery_rule};
 
 use crate::scenes::{self, ROCK, joint};
 

@@ -2,8 +2,8 @@
 //! joints with eight octants (B8), to 1e-9.
 
 use glam::{DMat3, DVec3};
-use lie_mesh::structured::{Cut, Patch, cells_of, mixed};
-use lie_mesh::{Draft, Shape};
+use kluft_mesh::structured::{Cut, Patch, cells_of, mixed};
+use kluft_mesh::{Draft, Shape};
 
 use crate::oracles::closed_aperture;
 use crate::scenes::{self, EXACT, joint};

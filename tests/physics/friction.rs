@@ -1,8 +1,10 @@
 //! Coulomb friction: when joints slide, and how far.
 
 use glam::{DMat3, DVec3};
+use kluft_solver::{
+    Discretisation, FacetState, Fracture, NewtonSettings, Outcome, Problem, Support,
+};
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
-use lie_solver::{Discretisation, FacetState, Fracture, NewtonSettings, Outcome, Problem, Support};
 
 use crate::scenes::{self, EXACT};
 

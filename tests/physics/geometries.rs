@@ -2,8 +2,8 @@
 //! degrees and through hexahedra, a rigid pull along a curved fault.
 
 use glam::{DMat3, DVec3};
+use kluft_solver::{Problem, Solution, Support};
 use lie_core::ClosureKind;
-use lie_solver::{Problem, Solution, Support};
 
 use crate::oracles::closed_aperture;
 use crate::scenes::{self, EXACT, joint};
@@ -51,7 +51,7 @@ fn check_uniform(problem: &Problem, stress: DMat3) -> Solution {
 /// Where the rigid motions of the body are held; the blocks may move against each other.
 const CORNERS: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
 
-fn y_junction(fracture: lie_solver::Fracture, stress: DMat3) -> Problem {
+fn y_junction(fracture: kluft_solver::Fracture, stress: DMat3) -> Problem {
     let draft = scenes::geometry("y-junction", &[("h", 0.3)]);
     let mut problem = scenes::problem(scenes::build(draft), fracture);
     assert_eq!(problem.mesh.sectors.count.iter().max(), Some(&3));
@@ -117,10 +117,10 @@ fn rigid_pull_along_a_curved_fault_is_free_of_stress() {
         let mut roles = scenes::roles(&draft);
         for (group, role) in draft.groups.iter().zip(&mut roles) {
             if group.name == "hanging" {
-                *role = lie_mesh::SurfaceRole::Boundary;
+                *role = kluft_mesh::SurfaceRole::Boundary;
             }
         }
-        let mesh = lie_mesh::Mesh::build(draft, &roles).expect("a good mesh");
+        let mesh = kluft_mesh::Mesh::build(draft, &roles).expect("a good mesh");
         let mut fracture = joint(ClosureKind::Linear);
         fracture.law.closure.normal_stiffness = 0.0;
         fracture.law.shear_stiffness = 0.0;

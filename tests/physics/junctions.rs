@@ -1,9 +1,9 @@
 //! B8: orthogonal joints as an equivalent continuum, exact for crossings; and the T patch.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::structured::Patch;
+use kluft_solver::{Fracture, Problem, Support};
 use lie_core::ClosureKind;
-use lie_mesh::structured::Patch;
-use lie_solver::{Fracture, Problem, Support};
 
 use crate::oracles::{closed_aperture, jointed_moduli};
 use crate::scenes::{self, EXACT, ROCK, joint};

@@ -1,10 +1,10 @@
 //! Laws with kinks on facets of second order: contact with friction at as many points as jumps.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Shape;
+use kluft_mesh::structured::{Patch, cells_of};
+use kluft_solver::{Discretisation, FacetState, Fracture, NewtonSettings, Problem, Support};
 use lie_core::{Closure, FractureLaw, Friction};
-use lie_mesh::Shape;
-use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{Discretisation, FacetState, Fracture, NewtonSettings, Problem, Support};
 
 use crate::scenes;
 

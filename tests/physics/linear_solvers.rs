@@ -1,12 +1,12 @@
 //! The linear solvers against each other: the same state whichever solves.
 
 use glam::DVec3;
-use lie_core::Friction;
-use lie_mesh::structured::Patch;
-use lie_solver::{
+use kluft_mesh::structured::Patch;
+use kluft_solver::{
     Bookmark, Discretisation, FacetResult, LinearMethod, Load, Newton, NewtonSettings, Problem,
     Solution, State, Support, System, solution,
 };
+use lie_core::Friction;
 
 use crate::networks;
 use crate::scenes::{self, EXACT, joint};

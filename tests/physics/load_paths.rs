@@ -4,12 +4,12 @@
 //! forms of its cases, each times its factor. Tolerances are those of Newton's test of the forces.
 
 use glam::{DMat3, DVec3};
-use lie_core::ClosureKind;
-use lie_mesh::structured::Patch;
-use lie_solver::{
+use kluft_mesh::structured::Patch;
+use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, Schedule, Solution, Step,
     Support, System, solution,
 };
+use lie_core::ClosureKind;
 
 use crate::closing::column;
 use crate::scenes::{self, EXACT, joint};
@@ -149,10 +149,10 @@ fn walls_moved_by_different_cases_keep_their_shear() {
     let mut roles = scenes::roles(&draft);
     for (group, role) in draft.groups.iter().zip(&mut roles) {
         if ["low", "high"].contains(&group.name.as_str()) {
-            *role = lie_mesh::SurfaceRole::Boundary;
+            *role = kluft_mesh::SurfaceRole::Boundary;
         }
     }
-    let mesh = lie_mesh::Mesh::build(draft, &roles).expect("a good mesh");
+    let mesh = kluft_mesh::Mesh::build(draft, &roles).expect("a good mesh");
     let mut problem = scenes::problem(mesh, joint(ClosureKind::Linear));
     let moved = |x: f64, z: f64| Support::Displacement([Some(x), Some(0.0), Some(z)]);
     scenes::support(&mut problem, "low", moved(1e-5, 2e-5));

@@ -4,8 +4,8 @@
 //! Sectors are those of the split-node formulation, jumps those of the facet points.
 
 use glam::DVec3;
-use lie_mesh::structured::Patch;
-use lie_solver::{Problem, Solution, Support};
+use kluft_mesh::structured::Patch;
+use kluft_solver::{Problem, Solution, Support};
 
 use crate::networks;
 use crate::scenes::{self, EXACT, joint};

@@ -6,12 +6,12 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use lie_core::{kernel, rule};
-use lie_mesh::Shape;
-use lie_mesh::structured::{Patch, cells_of};
-use lie_solver::{
+use kluft_mesh::Shape;
+use kluft_mesh::structured::{Patch, cells_of};
+use kluft_solver::{
     CaseLoads, Discretisation, Load, Loads, Newton, NewtonSettings, Problem, Support, System,
 };
+use lie_core::{kernel, rule};
 
 use crate::scenes::{self, ROCK, joint};
 
@@ -107,7 +107,7 @@ fn error(shape: Shape, cubes: usize) -> f64 {
     let mut sum = 0.0;
     for cell in 0..mesh.cells.len() {
         let positions = positions(cell);
-        let volume = lie_mesh::cell_volume(shape, &positions);
+        let volume = kluft_mesh::cell_volume(shape, &positions);
         let whole: f64 = rule(fine).points.iter().map(|point| point.weight).sum();
         for point in &rule(fine).points {
             let values = basis.values(point.at);

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::fs;
 
 use glam::DVec3;
+use kluft_io::{Meshing, load_msh, mesh_geometry};
+use kluft_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
+use kluft_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 use lie_core::{Closure, ClosureKind, FractureLaw};
-use lie_io::{Meshing, load_msh, mesh_geometry};
-use lie_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
-use lie_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 
 use crate::dice::Dice;
 use crate::scenes;

@@ -5,8 +5,8 @@
 )]
 
 use glam::DVec3;
+use kluft_solver::{Linearisation, NewtonSettings, Problem, StepRecord, Support};
 use lie_core::ClosureKind;
-use lie_solver::{Linearisation, NewtonSettings, Problem, StepRecord, Support};
 
 use crate::closing::{column, inclined_joint, three_planes};
 use crate::scenes::{self, EXACT};

@@ -1,7 +1,7 @@
 //! B11: traction behind a crack front in a stiff joint, nodes and control points against Gauss points.
 
+use kluft_mesh::Shape;
 use lie_core::FacetQuadrature;
-use lie_mesh::Shape;
 
 use crate::crack_front::tractions;
 

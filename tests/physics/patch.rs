@@ -5,9 +5,9 @@
 //! facets and the numbering in the file.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Draft;
+use kluft_solver::{Fracture, Problem};
 use lie_core::ClosureKind;
-use lie_mesh::Draft;
-use lie_solver::{Fracture, Problem};
 
 use crate::oracles::closed_aperture;
 use crate::scenes::{self, EXACT, joint};
@@ -128,7 +128,7 @@ fn rotated_bodies_rotate_their_solution() {
         }
         let mut problem = scenes::problem(scenes::build(draft), joint(EXACT));
         for face in ["left", "front", "bottom"] {
-            scenes::support(&mut problem, face, lie_solver::Support::Symmetry);
+            scenes::support(&mut problem, face, kluft_solver::Support::Symmetry);
         }
         scenes::load(&mut problem, "top", load);
         scenes::solve(&problem)

@@ -1,7 +1,7 @@
 //! Random networks of 3 to 12 polygons that cross, end inside and cut the boundary: the solver against
 //! split nodes.
 
-use lie_mesh::Draft;
+use kluft_mesh::Draft;
 
 use crate::networks;
 use crate::scenes;

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
-use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
-use lie_io::{Meshing, load_msh, mesh_geometry};
-use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Draft, Faces, Mesh, SurfaceRole, TaggedElements};
-use lie_solver::{
+use kluft_io::{Meshing, load_msh, mesh_geometry};
+use kluft_mesh::structured::{Patch, tetrahedra};
+use kluft_mesh::{Draft, Faces, Mesh, SurfaceRole, TaggedElements};
+use kluft_solver::{
     Condition, Discretisation, FixedPoint, Fracture, Load, Newton, NewtonSettings, Problem,
     Solution, State, StepRecord, Support, SurfaceLoad, System, solution,
 };
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 
 /// Rock of the benchmarks: E = 25 GPa, nu = 0.25.
 pub const ROCK: Rock = Rock {
@@ -231,7 +231,7 @@ pub fn load_faces_with_stress(problem: &mut Problem, faces: &[&str], stress: DMa
     for name in faces {
         let boundary = &problem.mesh.boundaries[boundary(problem, name)];
         let corners = problem.mesh.corners(&boundary.elements, 0);
-        let normal = lie_mesh::facet_area_vector(&corners).normalize();
+        let normal = kluft_mesh::facet_area_vector(&corners).normalize();
         load(problem, name, stress * normal);
     }
 }

@@ -11,9 +11,9 @@
 //! and the right one falls, so bisection finds `q`.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::{Mesh, SurfaceRole};
+use kluft_solver::{Condition, Discretisation, Points, Problem, Solution, SurfaceLoad};
 use lie_core::{ClosureKind, Rock};
-use lie_mesh::{Mesh, SurfaceRole};
-use lie_solver::{Condition, Discretisation, Points, Problem, Solution, SurfaceLoad};
 
 use crate::oracles::closed_aperture;
 use crate::scenes::{self, joint};
@@ -118,7 +118,7 @@ fn samples(problem: &Problem, solution: &Solution, part: &str, exact: &Exact) ->
             continue;
         }
         let volume =
-            lie_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
+            kluft_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
         for corner in 0..4 {
             let mut l = [0.138_196_601_125_010_5; 4];
             l[corner] = 0.585_410_196_624_968_5;

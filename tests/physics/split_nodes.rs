@@ -9,8 +9,8 @@ use faer::Side;
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use glam::DVec3;
-use lie_mesh::Mesh;
-use lie_solver::{Points, Problem, Solution, Support, SurfaceLoad};
+use kluft_mesh::Mesh;
+use kluft_solver::{Points, Problem, Solution, Support, SurfaceLoad};
 
 use crate::voigt::tetrahedron;
 

@@ -1,7 +1,7 @@
 //! Joints as stiff as can be weld: the network becomes the intact rock.
 
-use lie_mesh::SurfaceRole;
-use lie_solver::{NewtonSettings, Points, Problem};
+use kluft_mesh::SurfaceRole;
+use kluft_solver::{NewtonSettings, Points, Problem};
 
 use crate::networks;
 use crate::scenes;
@@ -17,7 +17,7 @@ fn welded(fractured: &Problem, seed: u64) -> Problem {
         kept => kept,
     };
     let roles: Vec<SurfaceRole> = scenes::roles(&draft).into_iter().map(weld).collect();
-    let mesh = lie_mesh::Mesh::build(draft, &roles).expect("a good mesh");
+    let mesh = kluft_mesh::Mesh::build(draft, &roles).expect("a good mesh");
     Problem {
         fractures: Vec::new(),
         mesh,

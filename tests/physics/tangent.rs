@@ -1,11 +1,11 @@
 //! The tangent of the whole system: derivative of the residual, symmetric, positive definite.
 
 use glam::DVec3;
-use lie_core::ClosureKind;
-use lie_mesh::structured::Patch;
-use lie_solver::{
+use kluft_mesh::structured::Patch;
+use kluft_solver::{
     Analysis, Cholesky, Discretisation, Load, NodeOrder, Problem, Support, System, norm,
 };
+use lie_core::ClosureKind;
 
 use crate::scenes::{self, EXACT, joint};
 

@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use lie_mesh::structured::Patch;
-use lie_mesh::{Defect, Draft, Mesh, Shape};
-use lie_solver::{Problem, Support};
+use kluft_mesh::structured::Patch;
+use kluft_mesh::{Defect, Draft, Mesh, Shape};
+use kluft_solver::{Problem, Support};
 
 use crate::networks;
 use crate::scenes::{self, EXACT, joint};
@@ -120,7 +120,7 @@ fn a_fracture_between_two_rocks() {
             });
             for cell in 0..problem.mesh.cells.len() {
                 let corners = problem.mesh.corners(&problem.mesh.cells, cell);
-                problem.rock_of_cell[cell] = u32::from(lie_mesh::facet_centre(&corners).z > 0.5);
+                problem.rock_of_cell[cell] = u32::from(kluft_mesh::facet_centre(&corners).z > 0.5);
             }
         },
     );
@@ -204,12 +204,12 @@ fn fractures_that_meet_at_their_tips() {
 /// Its corners span a volume, but a curved edge turns a part of it inside out.
 #[test]
 fn a_curved_cell_that_folds_over_itself_is_refused_by_name() {
-    let mut draft = lie_mesh::structured::cells_of(Shape::Tet10, [2; 3], [1.0; 3], &[]);
+    let mut draft = kluft_mesh::structured::cells_of(Shape::Tet10, [2; 3], [1.0; 3], &[]);
     let nodes = draft.cells.elements.nodes_of(7).to_vec();
     let opposite = draft.nodes[nodes[9] as usize];
     draft.nodes[nodes[4] as usize] = opposite;
     let problem = scenes::problem(scenes::build(draft), joint(EXACT));
-    let defects = lie_solver::Discretisation::of(&problem).expect_err("a folded cell");
+    let defects = kluft_solver::Discretisation::of(&problem).expect_err("a folded cell");
     assert!(defects[0].place.contains("cell"), "{defects:?}");
     assert!(defects[0].remedy.contains("HighOrderOptimize"));
 }

@@ -179,7 +179,7 @@ fn mutated(seeds: &[String], random: &mut Random) -> String {
     text
 }
 
-fn parse(text: &str) -> Result<Scene, Vec<lie_mesh::Defect>> {
+fn parse(text: &str) -> Result<Scene, Vec<kluft_mesh::Defect>> {
     Scene::parse(text, "scene.toml", Path::new("folder"))
 }
 

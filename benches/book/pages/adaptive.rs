@@ -1,6 +1,6 @@
 //! Adaptive meshes beside truly uniform ones: Sneddon's disc in a body small enough for both.
 
-use kluft::chart::{Chart, Series};
+use kluft_chart::{Chart, Series};
 
 use super::{Found, Page, count, digits, error_chart, percent, reaches, slope};
 use crate::scene::{self, Outcome};

@@ -1,8 +1,8 @@
 //! The hyperbolic closure law.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{Discretisation, Problem};
 use lie_core::{Closure, ClosureKind};
-use lie_solver::{Discretisation, Problem};
 
 use super::{Found, Page};
 use crate::closing::column;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
 
 use super::line_crack::plate;
 use super::{Found, Page, digits, percent};

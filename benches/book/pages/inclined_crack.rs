@@ -1,7 +1,7 @@
 //! A closed crack that slides against friction under compression.
 
 use glam::DVec3;
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
 
 use super::{Found, Page, half_circle, percent};
 use crate::scene::{self, Outcome};

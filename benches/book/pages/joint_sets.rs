@@ -1,9 +1,9 @@
 //! Orthogonal joint sets as an equivalent continuum.
 
 use glam::DMat3;
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{Discretisation, Fracture};
 use lie_core::ClosureKind;
-use lie_solver::{Discretisation, Fracture};
 
 use super::{Found, Page};
 use crate::junctions::{SPACING, jointed_cube, strain_of_the_diagonal};

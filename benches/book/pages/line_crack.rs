@@ -1,6 +1,6 @@
 //! Griffith's crack: the size of the box, and of the cells.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
 
 use super::{Found, Page, half_circle, percent, slope};
 use crate::scene::{self, Outcome};

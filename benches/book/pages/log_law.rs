@@ -1,7 +1,7 @@
 //! The table of the logarithmic law, by simulation.
 
-use kluft::chart::{Axis, Chart, Series};
-use lie_solver::Discretisation;
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::Discretisation;
 
 use super::{Found, Page};
 use crate::closing::column;

@@ -17,7 +17,7 @@ mod penny;
 mod single_joint;
 mod spherical_joint;
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
 
 use crate::studies::Table;
 

@@ -1,7 +1,7 @@
 //! Tractions behind a crack front in a stiff joint.
 
+use kluft_solver::Discretisation;
 use lie_core::FacetQuadrature;
-use lie_solver::Discretisation;
 
 use super::{Found, Page, digits};
 use crate::crack_front;

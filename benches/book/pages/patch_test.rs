@@ -1,8 +1,8 @@
 //! A uniform stress through an inclined joint, whatever mesh, numbering and law.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::Discretisation;
 use lie_core::ClosureKind;
-use lie_solver::Discretisation;
 
 use super::{Found, Page};
 use crate::patch::{errors, uniform, with_wavy_facets};

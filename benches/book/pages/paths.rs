@@ -1,6 +1,6 @@
 //! Opening, closing, and the way there: cycles, and the number of load steps.
 
-use lie_solver::Discretisation;
+use kluft_solver::Discretisation;
 
 use super::{Found, Page};
 use crate::studies::{

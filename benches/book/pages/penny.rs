@@ -1,6 +1,6 @@
 //! Sneddon's disc: meshes of both orders, uniform, graded and adaptive.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
 
 use super::{Found, Page, count, digits, error_chart, half_circle, percent, reaches, slope};
 use crate::scene::{self, Outcome};

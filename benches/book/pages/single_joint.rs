@@ -1,8 +1,8 @@
 //! One inclined joint in a column: the joint of OpenGeoSys whose walls would overlap.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::Discretisation;
 use lie_core::ClosureKind;
-use lie_solver::Discretisation;
 
 use super::{Found, Page, digits};
 use crate::oracles::closed_aperture;

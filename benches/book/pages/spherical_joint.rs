@@ -1,7 +1,7 @@
 //! A core that floats in a spherical joint.
 
-use kluft::chart::{Axis, Chart, Series};
-use lie_solver::Discretisation;
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::Discretisation;
 
 use super::{Found, Page, percent, slope};
 use crate::scenes::{self, EXACT, ROCK};

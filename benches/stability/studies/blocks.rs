@@ -1,9 +1,9 @@
 //! Blocks that part, meet and slide: scenes that several studies share.
 
 use glam::DVec3;
+use kluft_mesh::structured::{Patch, tetrahedra};
+use kluft_solver::{Fracture, Problem, Support};
 use lie_core::FractureLaw;
-use lie_mesh::structured::{Patch, tetrahedra};
-use lie_solver::{Fracture, Problem, Support};
 
 use crate::scenes;
 

@@ -1,8 +1,8 @@
 //! Contact: a penalty against exact contact.
 
-use kluft::chart::{Axis, Chart, Rate, Series};
+use kluft_chart::{Axis, Chart, Rate, Series};
+use kluft_solver::{Linearisation, NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
-use lie_solver::{Linearisation, NewtonSettings, Problem, Solution, StepRecord};
 
 use super::blocks::{fracture, tilting};
 use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most};

@@ -2,9 +2,9 @@
 
 use faer::Side;
 use faer::sparse::{SparseColMat, Triplet};
-use kluft::chart::{Axis, Chart, Rate, Series};
+use kluft_chart::{Axis, Chart, Rate, Series};
+use kluft_solver::{Discretisation, LinearMethod, Load, NewtonSettings, Problem, System};
 use lie_core::ClosureKind;
-use lie_solver::{Discretisation, LinearMethod, Load, NewtonSettings, Problem, System};
 
 use super::{Effort, Finding, Study, Table, entry, height, hold_promise, most};
 use crate::closing::three_planes_of;

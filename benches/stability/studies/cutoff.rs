@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{Linearisation, NewtonSettings, Problem, StepRecord};
 use lie_core::ClosureKind;
-use lie_solver::{Linearisation, NewtonSettings, Problem, StepRecord};
 
 use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, most};
 use crate::closing::{column, inclined_joint, three_planes};

@@ -1,8 +1,8 @@
 //! Cycles of loading and unloading: zero hysteresis for laws with a potential.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::Closure;
-use lie_solver::{NewtonSettings, Problem, Solution, StepRecord};
 
 use super::steps::linearised;
 use super::{Effort, Finding, Study, Table, entry, hold_promise, largest, most};

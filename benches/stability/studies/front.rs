@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_mesh::Shape;
 use lie_core::FacetQuadrature;
-use lie_mesh::Shape;
 
 use super::{Effort, Finding, Study, Table};
 use crate::crack_front::{CUBES, tractions};

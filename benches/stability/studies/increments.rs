@@ -1,8 +1,8 @@
 //! The total law against its incremental form, over the number of steps.
 
-use kluft::chart::{Axis, Chart, Rate, Series};
+use kluft_chart::{Axis, Chart, Rate, Series};
+use kluft_solver::{NewtonSettings, Problem, StepRecord, Support};
 use lie_core::Closure;
-use lie_solver::{NewtonSettings, Problem, StepRecord, Support};
 
 use super::{Effort, Finding, Study, Table, hold_promise, largest};
 use crate::closing::column;

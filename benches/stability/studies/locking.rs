@@ -1,8 +1,8 @@
 //! Poisson's ratio near one half, linear and quadratic cells.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{LinearMethod, NewtonSettings, StepRecord};
 use lie_core::Rock;
-use lie_solver::{LinearMethod, NewtonSettings, StepRecord};
 
 use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise};
 use crate::scenes::{self, EXACT, ROCK};

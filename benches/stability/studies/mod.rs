@@ -18,8 +18,8 @@ pub mod slivers;
 pub mod steps;
 pub mod units;
 
-use kluft::chart::Chart;
-use lie_solver::StepRecord;
+use kluft_chart::Chart;
+use kluft_solver::StepRecord;
 
 /// Most Newton iterations of a load step without friction: the promise of the map.
 pub const PROMISE: usize = 12;

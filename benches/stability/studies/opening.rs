@@ -1,9 +1,9 @@
 //! Opening and closing: joints without tension over cycles, and a block that nothing presses.
 
 use glam::DVec3;
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{Discretisation, NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
-use lie_solver::{Discretisation, NewtonSettings, Problem, Solution, StepRecord};
 
 use super::blocks::{fracture, lifted, stack};
 use super::cycles::hysteresis;

@@ -1,11 +1,11 @@
 //! Sticking and sliding: friction over cycles, and a wedge between two joints.
 
 use glam::DVec3;
-use kluft::chart::{Axis, Chart, Series};
-use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
-use lie_solver::{
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{
     Discretisation, InitialStress, NewtonSettings, Problem, Profile, Solution, StepRecord, Support,
 };
+use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
 
 use super::blocks::{fracture, stack, wedge};
 use super::cycles::hysteresis;
@@ -184,7 +184,7 @@ fn wedged(angle: f64, rubs: bool) -> (StepRecord, f64, f64) {
 
 fn area_of_top(problem: &Problem) -> f64 {
     let top = &problem.mesh.boundaries[scenes::boundary(problem, "top")].elements;
-    let area = |facet| lie_mesh::facet_area_vector(&problem.mesh.corners(top, facet)).length();
+    let area = |facet| kluft_mesh::facet_area_vector(&problem.mesh.corners(top, facet)).length();
     (0..top.len()).map(area).sum()
 }
 

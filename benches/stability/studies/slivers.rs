@@ -1,10 +1,10 @@
 //! Slivers: two planes that cross at a small angle.
 
 use glam::{DMat3, DVec3};
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_mesh::Survey;
+use kluft_solver::{LinearMethod, NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::ClosureKind;
-use lie_mesh::Survey;
-use lie_solver::{LinearMethod, NewtonSettings, Problem, Solution, StepRecord};
 
 use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most};
 use crate::networks::{self, Polygon};

@@ -1,8 +1,8 @@
 //! The number of load steps.
 
-use kluft::chart::{Axis, Chart, Series};
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::ClosureKind;
-use lie_solver::{NewtonSettings, Problem, Solution, StepRecord};
 
 use super::{Effort, Finding, Study, Table, entry, height, hold_promise, largest, most};
 use crate::closing::{column, three_planes};

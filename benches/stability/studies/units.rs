@@ -1,11 +1,11 @@
 //! Units: the same scene in metres and pascals, millimetres and megapascals, kilometres and gigapascals.
 
-use kluft::chart::{Axis, Chart, Series};
-use lie_core::ClosureKind;
-use lie_solver::{
+use kluft_chart::{Axis, Chart, Series};
+use kluft_solver::{
     Discretisation, LinearMethod, Linearisation, Load, NewtonSettings, Problem, Solution,
     StepRecord, Support, SurfaceLoad, System, norm,
 };
+use lie_core::ClosureKind;
 
 use super::{Effort, Finding, Study, Table, count, entry, hold_promise, largest};
 use crate::closing::{inclined_joint, three_planes};

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 /// Lets `fill` write a temporary file beside `path`, then renames it to `path`.
 ///
@@ -65,7 +65,7 @@ fn defect(path: &Path, error: &io::Error) -> Defect {
 /// A folder of one test, which removes it when it passes.
 #[cfg(test)]
 pub(crate) fn scratch_folder(test: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("lie-io-{}-{test}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!("kluft-io-{}-{test}", std::process::id()));
     fs::create_dir_all(&folder).expect("a scratch folder");
     folder
 }
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn a_missing_folder_is_a_defect() {
-        let path = std::env::temp_dir().join("lie-io-no-such-folder/file");
+        let path = std::env::temp_dir().join("kluft-io-no-such-folder/file");
         let defect = write_atomically(&path, |_| Ok(())).expect_err("a failure");
         assert!(defect.remedy.contains("create the folder"));
     }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use crate::atomic::write_atomically;
 

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use lie_mesh::{Defect, Shape};
+use kluft_mesh::{Defect, Shape};
 use rayon::prelude::*;
 use vtkio::model::{ByteOrder, CellType, IOBuffer};
 use vtkio::xml::{Compressor, Data, DataArray, EncodingInfo, Error, ScalarType};

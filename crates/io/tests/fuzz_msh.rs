@@ -3,8 +3,8 @@
 
 use std::panic::catch_unwind;
 
-use lie_io::parse_msh;
-use lie_mesh::{Draft, TaggedElements};
+use kluft_io::parse_msh;
+use kluft_mesh::{Draft, TaggedElements};
 
 const SEEDS: [&[u8]; 4] = [
     include_bytes!("data/text.msh"),

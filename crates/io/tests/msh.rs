@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use lie_io::{load_msh, parse_msh, read_msh};
-use lie_mesh::{Draft, Shape, TaggedElements};
+use kluft_io::{load_msh, parse_msh, read_msh};
+use kluft_mesh::{Draft, Shape, TaggedElements};
 use rewrite::{retag, swap_byte_order};
 
 /// Two blocks with a surface between them, and group names of all kinds.

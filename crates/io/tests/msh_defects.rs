@@ -1,7 +1,7 @@
 //! What the reader says against files that are wrong.
 
-use lie_io::parse_msh;
-use lie_mesh::Defect;
+use kluft_io::parse_msh;
+use kluft_mesh::Defect;
 
 /// One tetrahedron with one tagged face.
 const TETRAHEDRON: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n\

@@ -12,7 +12,7 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use glam::DVec3;
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 /// Powers of `x`, `y`, `z` and `1 / (1 - z)`.
 type Monomial = [i32; 4];

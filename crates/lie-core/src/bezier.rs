@@ -7,7 +7,7 @@
 //! Quad8), and no integral of one is: a field whose control values are not negative is not negative.
 //! Facets of first order are their own Bezier form.
 
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 /// The middle of a nine-node quadrangle.
 const CENTRE: u8 = 8;

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 use crate::basis::Basis;
 use crate::quadrature;
@@ -154,9 +154,9 @@ mod tests {
                     .iter()
                     .map(|&local| nodes[local as usize])
                     .collect();
-                let outward = lie_mesh::facet_centre(&corners) - middle;
+                let outward = kluft_mesh::facet_centre(&corners) - middle;
                 assert!(
-                    lie_mesh::facet_area_vector(&corners).dot(outward) > 0.0,
+                    kluft_mesh::facet_area_vector(&corners).dot(outward) > 0.0,
                     "{shape:?}"
                 );
             }

@@ -22,7 +22,7 @@
 //! Where a compliant law is integrated in this way it is of second order, the rule above of third.
 
 use glam::DVec3;
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 use crate::bezier::{bezier_function, control_value};
 use crate::element::rule;

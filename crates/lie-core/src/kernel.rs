@@ -1,7 +1,7 @@
 //! Integrals over one rock cell.
 
 use glam::{DMat3, DVec3};
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 use crate::element::{RulePoint, rule};
 use crate::fracture_law::outer;

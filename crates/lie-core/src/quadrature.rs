@@ -5,7 +5,7 @@
 //! pyramids are cones over the square, `x = xi (1 - z)`, `y = eta (1 - z)`.
 
 use glam::DVec3;
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 /// A point in reference coordinates and its weight.
 pub(crate) type Weighted = (DVec3, f64);

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use lie_mesh::Shape;
+use kluft_mesh::Shape;
 
 use crate::basis::Basis;
 use crate::element::{RulePoint, rule};

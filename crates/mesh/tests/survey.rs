@@ -1,7 +1,7 @@
 //! The survey of structured meshes, whose lengths, angles and counts are known.
 
-use lie_mesh::structured::{Cut, Patch, cells_of, mixed};
-use lie_mesh::{Draft, Mesh, Shape, SurfaceRole, Survey, cell_angles};
+use kluft_mesh::structured::{Cut, Patch, cells_of, mixed};
+use kluft_mesh::{Draft, Mesh, Shape, SurfaceRole, Survey, cell_angles};
 
 type Contains<'a> = &'a dyn Fn([f64; 3]) -> bool;
 

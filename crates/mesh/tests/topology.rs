@@ -1,7 +1,7 @@
 //! Sectors, blocks and orientation on structured meshes, and what the door refuses.
 
-use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Draft, Mesh, SurfaceRole};
+use kluft_mesh::structured::{Patch, tetrahedra};
+use kluft_mesh::{Draft, Mesh, SurfaceRole};
 
 type Contains<'a> = &'a dyn Fn([f64; 3]) -> bool;
 
@@ -107,10 +107,10 @@ fn facets_of_a_fracture_agree_and_lie_between_their_cells() {
         let fracture = mesh.facets.fracture[facet] as usize;
         let expected = [glam::DVec3::Z, glam::DVec3::X][fracture];
         assert!(area.normalize().dot(expected) > 1.0 - 1e-15);
-        let centre = lie_mesh::facet_centre(&mesh.corners(&mesh.facets.elements, facet));
+        let centre = kluft_mesh::facet_centre(&mesh.corners(&mesh.facets.elements, facet));
         let side = |cell: u32| {
             let corners = mesh.corners(&mesh.cells, cell as usize);
-            (lie_mesh::facet_centre(&corners) - centre).dot(*area)
+            (kluft_mesh::facet_centre(&corners) - centre).dot(*area)
         };
         assert!(side(mesh.facets.plus[facet]) > 0.0);
         assert!(side(mesh.facets.minus[facet]) < 0.0);
@@ -126,7 +126,7 @@ fn boundaries_face_outwards() {
     let top = &mesh.boundaries[0];
     assert_eq!(top.elements.len(), 32);
     for facet in 0..top.elements.len() {
-        let area = lie_mesh::facet_area_vector(&mesh.corners(&top.elements, facet));
+        let area = kluft_mesh::facet_area_vector(&mesh.corners(&top.elements, facet));
         assert!(area.z > 0.0);
     }
 }

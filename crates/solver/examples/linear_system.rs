@@ -1,6 +1,6 @@
 //! One linear elastic system, solved by multigrid or by factorisation.
 //!
-//! `cargo run --release -p lie-solver --example linear_system -- CUBES [multigrid|cholesky]`: the
+//! `cargo run --release -p kluft-solver --example linear_system -- CUBES [multigrid|cholesky]`: the
 //! unit cube of `CUBES^3` cubes of six tetrahedra, the face z = 0 clamped, E = 1, nu = 0.3, a
 //! pseudo-random right-hand side. Prints one line of JSON for each solver.
 #![allow(clippy::print_stdout)]
@@ -8,14 +8,14 @@
 use std::time::Instant;
 
 use glam::{DMat3, DVec3};
-use lie_core::Rock;
-use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Mesh, SurfaceRole};
-use lie_solver::multigrid::{Multigrid, rigid_modes};
-use lie_solver::{
+use kluft_mesh::structured::{Patch, tetrahedra};
+use kluft_mesh::{Mesh, SurfaceRole};
+use kluft_solver::multigrid::{Multigrid, rigid_modes};
+use kluft_solver::{
     Analysis, Cholesky, Condition, ConjugateGradientSettings, Discretisation, NodeOrder, Problem,
     Support, System, conjugate_gradients,
 };
+use lie_core::Rock;
 
 /// Unknowns from which on the factor takes more than 16 GB; it is made only if asked for.
 const LARGEST_FACTORISED: usize = 600_000;

@@ -10,9 +10,9 @@
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Shape;
 use lie_core::enrichment::coefficient;
 use lie_core::kernel::{self, MAX_NODES};
-use lie_mesh::Shape;
 use rayon::prelude::*;
 
 use crate::cell;
@@ -349,9 +349,9 @@ pub(crate) fn trace(block: DMat3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use kluft_mesh::structured::{Cut, Patch, mixed};
+    use kluft_mesh::{Mesh, SurfaceRole};
     use lie_core::{Closure, ClosureKind, FractureLaw, Rock as Material};
-    use lie_mesh::structured::{Cut, Patch, mixed};
-    use lie_mesh::{Mesh, SurfaceRole};
 
     use super::*;
     use crate::{Condition, Discretisation, FixedPoint, Fracture, Support};

@@ -1,9 +1,9 @@
 //! A cell with what moves it.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::{Mesh, Shape};
 use lie_core::kernel::MAX_NODES;
 use lie_core::{Rock, SymmetricStress};
-use lie_mesh::{Mesh, Shape};
 
 use crate::points::Points;
 use crate::problem::Problem;

@@ -1,8 +1,8 @@
 //! Cells that fold over themselves, which corners alone do not show.
 
 use glam::DVec3;
+use kluft_mesh::{Defect, Shape, sample};
 use lie_core::kernel;
-use lie_mesh::{Defect, Shape, sample};
 use rayon::prelude::*;
 
 use crate::problem::Problem;

@@ -8,9 +8,9 @@
 //! continuous displacement is zero and left out: the fractures act on the jumps alone.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::cell_volume;
 use lie_core::enrichment::coefficient;
 use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Springs, Walls, facet_points};
-use lie_mesh::cell_volume;
 use rayon::prelude::*;
 
 use crate::pattern::Lists;
@@ -81,7 +81,7 @@ struct PrescribedJump {
 #[derive(Debug, Clone)]
 pub struct Interface {
     /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
-    /// in the order of [`lie_mesh::Facets::elements`]' flat node list; middle points follow.
+    /// in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points follow.
     pub points: Vec<FacetPoint>,
     /// Start of the terms of each facet point.
     term_offset: Vec<usize>,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lie_mesh::{Elements, Mesh};
+use kluft_mesh::{Elements, Mesh};
 use rayon::prelude::*;
 
 use crate::points::Points;

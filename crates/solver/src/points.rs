@@ -6,8 +6,8 @@
 //! [`Points::gather`] are the enrichment table and its transpose, applied to all nodes.
 
 use glam::DVec3;
+use kluft_mesh::Mesh;
 use lie_core::enrichment::coefficient;
-use lie_mesh::Mesh;
 use rayon::prelude::*;
 
 /// Numbering of points and unknowns.

@@ -1,8 +1,8 @@
 //! Everything a solve needs: mesh, materials, conditions, load steps.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Mesh;
 use lie_core::{FacetQuadrature, FractureLaw, Rock};
-use lie_mesh::Mesh;
 
 use crate::schedule::Schedule;
 

@@ -5,7 +5,7 @@
 
 use faer::{Mat, Side};
 use glam::DVec3;
-use lie_mesh::{Defect, Mesh, facet_area_vector};
+use kluft_mesh::{Defect, Mesh, facet_area_vector};
 
 use crate::dense::apart;
 use crate::points::Points;

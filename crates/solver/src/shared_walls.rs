@@ -6,7 +6,7 @@
 //! of coordinates. Where the jump is a slip they open by different amounts, and no state but an open one closes all of
 //! them: walls in contact would trade their tractions, more with every iteration.
 
-use lie_mesh::{Mesh, facet_area_vector};
+use kluft_mesh::{Mesh, facet_area_vector};
 
 use crate::interface::FacetPoint;
 use crate::points::Points;

@@ -1,9 +1,9 @@
 //! What a converged state means: displacement, stress, jump, aperture, traction.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Shape;
 use lie_core::kernel;
 use lie_core::{FacetQuadrature, SymmetricStress, bezier_function};
-use lie_mesh::Shape;
 use rayon::prelude::*;
 
 use crate::cell::{Cell, components};

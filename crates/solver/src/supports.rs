@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
-use lie_mesh::{Defect, Mesh, facet_area_vector};
+use kluft_mesh::{Defect, Mesh, facet_area_vector};
 
 use crate::points::Points;
 use crate::problem::{Problem, Support};

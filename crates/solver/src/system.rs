@@ -1,8 +1,8 @@
 //! The discrete problem: unknowns, stiffness, loads, and what they make of a state.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Defect;
 use lie_core::{FractureLaw, Landing, Memory, Response, Walls};
-use lie_mesh::Defect;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -9,9 +9,9 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::Shape;
 use lie_core::enrichment::coefficient;
 use lie_core::kernel;
-use lie_mesh::Shape;
 use rayon::prelude::*;
 
 use crate::assembly::{Frame, trace};

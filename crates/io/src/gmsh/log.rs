@@ -1,6 +1,6 @@
 //! What gmsh says: its errors and warnings.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 const SHOWN: usize = 10;
 const REMEDY: &str = "correct the geometry; `gmsh FILE` shows it";

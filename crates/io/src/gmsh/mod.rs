@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use crate::msh::holds_cells;
 use run::{Gmsh, path_argument};

@@ -1,7 +1,7 @@
 //! Parameters of a geometry: gmsh ignores unknown names, and an assignment in the script wins over
 //! the caller's value. Both happen silently, so they are looked for here.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 /// One defect for each parameter that would have no effect. Names with a dot are gmsh's own options.
 pub(super) fn check(place: &str, script: &str, parameters: &[(String, f64)]) -> Vec<Defect> {

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use super::log::Log;
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 
-use lie_mesh::{Defect, Mesh, Shape};
+use kluft_mesh::{Defect, Mesh, Shape};
 
 use crate::atomic::write_atomically;
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use lie_mesh::{Defect, Draft, Elements, TaggedElements};
+use kluft_mesh::{Defect, Draft, Elements, TaggedElements};
 
 use super::header::{self, Format};
 use super::source::Source;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::str::FromStr;
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use super::source::{Encoding, Source, is_space};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lie_mesh::{Defect, Draft, Elements, Shape, TaggedElements, sample};
+use kluft_mesh::{Defect, Draft, Elements, Shape, TaggedElements, sample};
 use mshio::ElementType;
 use rayon::prelude::*;
 

@@ -1,6 +1,6 @@
 //! `$Elements`: the blocks, checked against the bytes that exist.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 use mshio::ElementType;
 use num_traits::FromPrimitive;
 

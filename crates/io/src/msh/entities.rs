@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use super::cursor::Cursor;
 

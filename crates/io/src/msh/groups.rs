@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use lie_mesh::Group;
+use kluft_mesh::Group;
 
 use super::entities::{EntityGroups, EntityKey, entity_name};
 

@@ -4,7 +4,7 @@
 //! It also drops node tags, physical names and partitioned entities. So all sections that matter
 //! are walked here first, number by number.
 
-use lie_mesh::{Defect, Group};
+use kluft_mesh::{Defect, Group};
 
 use super::cursor::Cursor;
 use super::elements::{self, Block};

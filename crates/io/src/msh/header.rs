@@ -1,6 +1,6 @@
 //! `$MeshFormat`: version and encoding.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use super::source::{Encoding, Source, is_space};
 

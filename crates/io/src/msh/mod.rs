@@ -19,7 +19,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use lie_mesh::{Defect, Draft};
+use kluft_mesh::{Defect, Draft};
 use rayon::prelude::*;
 
 use header::Format;

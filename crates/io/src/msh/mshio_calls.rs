@@ -2,7 +2,7 @@
 //! of nodes, or a piece of a block of elements in a text file, many of which can be read at the same
 //! time.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 use mshio::{Element, ElementType, MshData, MshParserError, Nodes};
 
 use super::cursor::Piece;

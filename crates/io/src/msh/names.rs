@@ -1,6 +1,6 @@
 //! `$PhysicalNames`, which mshio drops. It is text in binary files too.
 
-use lie_mesh::{Defect, Group};
+use kluft_mesh::{Defect, Group};
 
 use super::source::{Encoding, Source};
 

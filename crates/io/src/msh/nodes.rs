@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use lie_mesh::{Defect, sample};
+use kluft_mesh::{Defect, sample};
 
 use super::cursor::Cursor;
 use super::source::Source;

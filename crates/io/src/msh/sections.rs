@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use super::source::{Encoding, Source, is_space};
 

@@ -1,6 +1,6 @@
 //! The bytes of a file, and how to say where in them something is wrong.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 /// A file in memory under the name that messages give it.
 #[derive(Clone, Copy)]

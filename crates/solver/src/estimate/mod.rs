@@ -11,8 +11,8 @@ mod reach;
 mod sizes;
 
 use glam::DVec3;
+use kluft_mesh::{Mesh, Shape};
 use lie_core::{FinePoint, SymmetricStress, kernel, recovery_rule};
-use lie_mesh::{Mesh, Shape};
 use rayon::prelude::*;
 
 use crate::cell::{Cell, components};

@@ -5,9 +5,9 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use kluft_mesh::{Elements, Mesh};
 use lie_core::kernel::{self, MAX_NODES};
 use lie_core::{RulePoint, SymmetricStress, recovery_rule};
-use lie_mesh::{Elements, Mesh};
 use rayon::prelude::*;
 
 use crate::cell::{self, Cell, components};

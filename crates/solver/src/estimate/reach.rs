@@ -1,6 +1,6 @@
 //! Which fracture each cell is nearest to, counted in cells.
 
-use lie_mesh::Mesh;
+use kluft_mesh::Mesh;
 
 use crate::pattern::Lists;
 

@@ -12,7 +12,7 @@
 //! sizes, as `r^(5/7)`, leave little near the front.
 
 use glam::DVec3;
-use lie_mesh::Mesh;
+use kluft_mesh::Mesh;
 
 /// How much a cell may shrink and grow at once.
 const SHRINK: f64 = 0.125;

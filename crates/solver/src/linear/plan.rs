@@ -7,8 +7,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use kluft_mesh::Mesh;
 use lie_core::Rock;
-use lie_mesh::Mesh;
 
 use super::{Analysis, Condensed, Iterative, LinearFailure, NodeOrder, TangentSolver, Whole};
 use crate::estimate::estimate_bytes;
@@ -391,8 +391,8 @@ fn edge_ratio(mesh: &Mesh, cell: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lie_mesh::Shape;
-    use lie_mesh::structured::cells_of;
+    use kluft_mesh::Shape;
+    use kluft_mesh::structured::cells_of;
 
     const ROCK: Rock = Rock {
         young_modulus: 1e9,
@@ -404,7 +404,7 @@ mod tests {
     fn flat_cells_and_incompressible_rocks_are_difficult() {
         let layer = |thickness: f64| {
             let draft = cells_of(Shape::Hex8, [4, 4, 1], [1.0, 1.0, thickness], &[]);
-            let roles = vec![lie_mesh::SurfaceRole::Unused; draft.groups.len()];
+            let roles = vec![kluft_mesh::SurfaceRole::Unused; draft.groups.len()];
             Mesh::build(draft, &roles).expect("a sound mesh")
         };
         assert_eq!(difficulty(&layer(0.25), &[ROCK]), 1.0);

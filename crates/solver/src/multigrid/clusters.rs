@@ -5,7 +5,7 @@
 //! surface beside it. Such nodes move together at almost no cost, which a smoother that looks at
 //! one node after the other cannot see, and which is too local for the next level.
 
-use lie_mesh::DisjointSets;
+use kluft_mesh::DisjointSets;
 use rayon::prelude::*;
 
 use super::sparse::Sparse;

@@ -8,7 +8,7 @@
 //! whatever moves rigidly on the finest level still does so exactly on the next one. What stiff walls make of these
 //! motions is left to [`super::scaling::set_prolongator`].
 
-use lie_mesh::DisjointSets;
+use kluft_mesh::DisjointSets;
 use rayon::prelude::*;
 
 use super::scaling::Modes;

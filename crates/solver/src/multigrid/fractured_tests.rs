@@ -1,9 +1,9 @@
 //! What the hierarchy promises for rock that fractures cut.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::structured::{Patch, tetrahedra};
+use kluft_mesh::{Mesh, SurfaceRole};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
-use lie_mesh::structured::{Patch, tetrahedra};
-use lie_mesh::{Mesh, SurfaceRole};
 
 use super::*;
 use crate::linear::{Iterative, TangentSolver};

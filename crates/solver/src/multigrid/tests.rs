@@ -1,9 +1,9 @@
 //! What the hierarchy promises, on structured boxes of tetrahedra.
 
 use glam::{DMat3, DVec3};
+use kluft_mesh::structured::{Patch, cells_of};
+use kluft_mesh::{Mesh, Shape, SurfaceRole};
 use lie_core::Rock;
-use lie_mesh::structured::{Patch, cells_of};
-use lie_mesh::{Mesh, Shape, SurfaceRole};
 
 use super::*;
 use crate::conjugate_gradients::{

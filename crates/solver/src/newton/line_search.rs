@@ -102,9 +102,9 @@ impl Newton {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use kluft_mesh::structured::{Patch, cells_of};
+    use kluft_mesh::{Mesh, Shape, SurfaceRole};
     use lie_core::Rock;
-    use lie_mesh::structured::{Patch, cells_of};
-    use lie_mesh::{Mesh, Shape, SurfaceRole};
 
     use super::*;
     use crate::{Condition, Discretisation, NewtonSettings, Problem, Support, SurfaceLoad};

@@ -1,6 +1,6 @@
 //! Blocks that nothing holds once fractures have opened or slide.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 use rayon::prelude::*;
 
 use super::walls::tangent;

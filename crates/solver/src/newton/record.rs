@@ -1,6 +1,6 @@
 //! Settings of a nonlinear solve, and its record.
 
-use lie_mesh::Defect;
+use kluft_mesh::Defect;
 
 use crate::linear::{LinearFailure, LinearMethod};
 use crate::schedule::Load;
