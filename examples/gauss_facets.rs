@@ -10,8 +10,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use kluft::{MeshSource, Scene, bind, surface_roles};
-use kluft_mesh::{Defect, Faces, Mesh};
+use kluft_mesh::Defect;
+use kluft_scene::{MeshSource, Scene};
 use kluft_solver::{Discretisation, Newton, NewtonSettings, Problem, Solution, System, solution};
 use lie_core::FacetQuadrature;
 
@@ -37,10 +37,7 @@ fn problem(scene_file: &Path) -> Result<Problem, Vec<Defect>> {
         return Err(vec![Defect::new("[mesh]", "no `file`", remedy)]);
     };
     let draft = kluft_io::load_msh(mesh_file, &env::temp_dir())?;
-    let faces = Faces::of(&draft);
-    let inner = faces.inner_surfaces(&draft);
-    let roles = surface_roles(&scene, &draft, |group| inner[group])?;
-    let mut problem = bind(&scene, Mesh::build_on(draft, faces, &roles)?)?.problem;
+    let mut problem = scene.problem(draft)?.problem;
     problem.facet_quadrature = FacetQuadrature::Gauss;
     Ok(problem)
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::accuracy::Accuracy;
 use crate::report::Failure;
 use crate::run::{Run, one};
-use crate::scene::{Adapt, MeshSource};
+use kluft_scene::{Adapt, MeshSource};
 
 /// File of the sizes that the last mesh was made with.
 const SIZES: &str = "sizes.pos";

@@ -14,7 +14,7 @@ use kluft_solver::Bookmark;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
-use crate::oracle::Measure;
+use crate::measures::Measure;
 use crate::summary::{FractureSummary, Seconds, StepMeasures};
 
 /// Its name in the folder of the results.

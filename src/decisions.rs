@@ -6,23 +6,8 @@ use kluft_solver::{
     Step, StepRecord, Support, System,
 };
 
-use crate::scene::SolverEntry;
 use crate::summary::FractureSummary;
-
-/// Surfaces that the scene does not name, inside the rock and outside.
-pub fn unused_surfaces(inside: &[&str], outside: &[&str]) -> Vec<String> {
-    let line = |names: &[&str], what: &str| {
-        (!names.is_empty()).then(|| format!("{}: not named in the scene, {what}", names.join(", ")))
-    };
-    let lines = [
-        line(
-            inside,
-            "so welded (name it under [fracture] to let it move)",
-        ),
-        line(outside, "so free"),
-    ];
-    lines.into_iter().flatten().collect()
-}
+use kluft_scene::SolverEntry;
 
 /// How much model a problem needs.
 pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {

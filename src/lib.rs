@@ -3,18 +3,17 @@
 mod accuracy;
 mod adapt;
 mod checkpoint;
+mod crack_front;
 mod decisions;
 mod inspect;
+mod measures;
 mod memory;
 mod network;
-mod oracle;
 mod output;
 mod prepare;
-mod reader;
 mod report;
 mod resume;
 mod run;
-mod scene;
 mod study;
 mod summary;
 
@@ -22,13 +21,10 @@ use std::path::{Path, PathBuf};
 
 pub use inspect::{InspectOptions, inspect};
 pub use kluft_network::{Domain, Grouping};
+pub use kluft_scene::Scene;
+pub use measures::Measure;
 pub use network::{NetworkOptions, make_network};
-pub use oracle::{Measure, Oracle};
 pub use report::{Failure, Verbosity, print_failure};
-pub use scene::{
-    Adapt, Binding, BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, History, MeshSource,
-    Named, Scene, SolverEntry, StepEnd, Timetable, bind, surface_roles,
-};
 pub use study::{StudyOptions, study};
 pub use summary::{FractureSummary, Spread, StepSummary, Summary};
 

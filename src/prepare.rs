@@ -4,12 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use kluft_io::{Meshing, mesh_geometry};
-use kluft_mesh::{Defect, Draft, SurfaceRole};
+use kluft_mesh::Defect;
 
-use crate::decisions;
 use crate::output::Output;
 use crate::report::Report;
-use crate::scene::{MeshSource, Scene, surface_roles};
+use kluft_scene::{MeshSource, Scene};
 
 /// A mesh file, and how long gmsh took to make it, if it did.
 pub struct MeshFile {
@@ -64,32 +63,4 @@ pub fn mesh_file(
             })
         }
     }
-}
-
-/// What a scene makes of the groups of a mesh.
-pub struct Roles {
-    /// One entry for each group; only those of surfaces count.
-    pub of_group: Vec<SurfaceRole>,
-    /// What becomes of surfaces that the scene does not name.
-    pub decisions: Vec<String>,
-}
-
-/// Gives roles to the groups of a mesh; `inner` tells which of them are surfaces inside the rock.
-///
-/// # Errors
-/// Names of the scene that are no group of the mesh, or one of the wrong dimension.
-pub fn roles(scene: &Scene, draft: &Draft, inner: &[bool]) -> Result<Roles, Vec<Defect>> {
-    let of_group = surface_roles(scene, draft, |group| inner[group])?;
-    let unused = |inside: bool| -> Vec<&str> {
-        let groups = draft.groups.iter().zip(&of_group).zip(inner);
-        let chosen = groups.filter(|((group, role), inner)| {
-            group.dimension == 2 && **role == SurfaceRole::Unused && **inner == inside
-        });
-        chosen.map(|((group, _), _)| group.name.as_str()).collect()
-    };
-    let decisions = decisions::unused_surfaces(&unused(true), &unused(false));
-    Ok(Roles {
-        of_group,
-        decisions,
-    })
 }

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use kluft_mesh::Defect;
 use kluft_solver::Iteration;
 
-use crate::oracle::Measure;
+use crate::measures::Measure;
 use crate::summary::FractureSummary;
 
 /// How much a run tells.

@@ -6,7 +6,7 @@ use kluft_mesh::Defect;
 
 use crate::checkpoint::{self, Fingerprint, Identity, Progress};
 use crate::output::Output;
-use crate::scene::{MeshSource, Scene};
+use kluft_scene::{MeshSource, Scene};
 
 /// An interrupted run, or a finished one.
 pub struct Former {

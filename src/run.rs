@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use kluft_io::load_msh;
-use kluft_mesh::{Defect, Draft, Faces, Mesh};
+use kluft_mesh::{Defect, Draft};
 use kluft_solver::{
     Discretisation, Estimator, LinearFailure, Newton, NewtonSettings, Plan, Problem, State,
     StepRecord, System, Workload, solution,
@@ -13,14 +13,15 @@ use kluft_solver::{
 use crate::accuracy::{self, Accuracy};
 use crate::checkpoint::{self, Identity, Progress};
 use crate::decisions;
+use crate::measures::{energy, measures};
 use crate::memory;
-use crate::oracle::{Oracle, energy, measures};
 use crate::output::Output;
 use crate::prepare::{self, MeshFile};
 use crate::report::{Failure, Report};
 use crate::resume::Former;
-use crate::scene::{Binding, MeshSource, Scene, SolverEntry, bind};
 use crate::summary::{self, StepMeasures, StepSummary, Summary};
+use kluft_scene::Oracle;
+use kluft_scene::{Binding, MeshSource, Scene, SolverEntry};
 
 /// A run under way.
 pub struct Run<'a> {
@@ -421,11 +422,7 @@ fn build_problem(
     draft: Draft,
     summary: &mut Summary,
 ) -> Result<Binding, Vec<Defect>> {
-    let faces = Faces::of(&draft);
-    let roles = prepare::roles(scene, &draft, &faces.inner_surfaces(&draft))?;
-    summary.decisions.extend(roles.decisions);
-    let mesh = Mesh::build_on(draft, faces, &roles.of_group)?;
-    let mut binding = bind(scene, mesh)?;
+    let mut binding = scene.problem(draft)?;
     summary.decisions.append(&mut binding.decisions);
     let mesh = &binding.problem.mesh;
     let counts = mesh.sectors.count.iter();

@@ -8,7 +8,7 @@ use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, 
 use serde::{Deserialize, Serialize};
 
 use crate::adapt::Round;
-use crate::oracle::Measure;
+use crate::measures::Measure;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use kluft::{Options, Scene, Verbosity};
+use kluft::{Options, Verbosity};
 use kluft_mesh::{Faces, Mesh};
+use kluft_scene::Scene;
 use kluft_solver::{Discretisation, FacetResult, Problem};
 use serde_json::Value;
 use tempfile::TempDir;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use kluft_mesh::{Defect, Draft};
 use serde::Serialize;
 
-use crate::scene::Scene;
+use kluft_scene::Scene;
 
 /// A position (m).
 pub type Place = [f64; 3];

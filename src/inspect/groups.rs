@@ -4,7 +4,7 @@ use kluft_mesh::{Draft, SurfaceRole, TaggedElements};
 use kluft_solver::{Support, SurfaceLoad};
 
 use super::findings::GroupFinding;
-use crate::scene::{BoundaryEntry, Scene};
+use kluft_scene::{BoundaryEntry, Scene};
 
 /// Roles for a mesh without a scene: surfaces with rock on both sides are fractures.
 pub fn guess(draft: &Draft, inner: &[bool]) -> Vec<SurfaceRole> {

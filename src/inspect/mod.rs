@@ -17,9 +17,9 @@ use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::output::Output;
-use crate::prepare::{self, folder_for, mesh_file};
+use crate::prepare::{folder_for, mesh_file};
 use crate::report::{Failure, Report, Verbosity};
-use crate::scene::{Scene, bind};
+use kluft_scene::{Scene, bind, roles};
 
 use findings::Inspection;
 
@@ -82,16 +82,16 @@ fn look(
     let faces = Faces::of(&draft);
     let inner = faces.inner_surfaces(&draft);
     inspection.groups = groups::list(&draft, &inner, None, scene);
-    let roles = match scene {
+    let surface_roles = match scene {
         None => Ok(groups::guess(&draft, &inner)),
-        Some(scene) => prepare::roles(scene, &draft, &inner).map(|roles| roles.of_group),
+        Some(scene) => roles(scene, &draft, &inner).map(|found| found.of_group),
     };
-    let roles = match roles {
-        Ok(roles) => roles,
+    let surface_roles = match surface_roles {
+        Ok(found) => found,
         Err(defects) => return defects,
     };
-    inspection.groups = groups::list(&draft, &inner, Some(&roles), scene);
-    let mesh = match Mesh::build_on(draft, faces, &roles) {
+    inspection.groups = groups::list(&draft, &inner, Some(&surface_roles), scene);
+    let mesh = match Mesh::build_on(draft, faces, &surface_roles) {
         Ok(mesh) => mesh,
         Err(defects) => return defects,
     };

@@ -11,8 +11,8 @@ use kluft_network::{
 
 use super::scene::{Passages, passages};
 use super::sets::{Set, read_set};
-use crate::reader::{Accept, Section, Source};
-use crate::scene::check_conditions;
+use kluft_scene::check_conditions;
+use kluft_scene::reader::{Accept, Section, Source};
 
 /// What the command line says.
 pub(super) struct Wish {

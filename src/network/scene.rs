@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::MADE;
 use super::input::Input;
-use crate::reader::Section;
+use kluft_scene::reader::Section;
 
 /// Keys and values of a section, as TOML.
 pub(super) type Passage = Vec<(String, String)>;

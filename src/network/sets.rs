@@ -9,8 +9,8 @@ use kluft_network::{
 
 use super::input::{one_of, read_orientation, read_seed, read_sides, read_text};
 use super::scene::{Passage, passage};
-use crate::reader::{Accept, Section, Source};
-use crate::scene::{Clock, read_fracture};
+use kluft_scene::reader::{Accept, Section, Source};
+use kluft_scene::{Clock, read_fracture};
 
 /// Keys of a set that are not its material.
 const OWN: [&str; 9] = [

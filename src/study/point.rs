@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use crate::checkpoint::{Fingerprint, fingerprint, fingerprint_of};
-use crate::oracle::Measure;
+use crate::measures::Measure;
 
 /// The record of a finished point, in its folder.
 const RECORD: &str = "point.json";

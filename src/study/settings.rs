@@ -7,8 +7,8 @@ use toml::{Table, Value};
 
 use super::edits::Edit;
 use super::sweep;
-use crate::reader::{Section, Source};
-use crate::scene::Scene;
+use kluft_scene::Scene;
+use kluft_scene::reader::{Section, Source};
 
 /// Most settings of a study; more are taken for a slip.
 const MOST_SETTINGS: usize = 2000;

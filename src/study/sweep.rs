@@ -6,8 +6,8 @@ use toml::{Table, Value};
 use super::edits::Edit;
 use super::settings::{Choice, Dimension, Kind};
 use super::words::digits;
-use crate::reader::{Accept, Entry, Section};
-use crate::scene::{CLOSURES, FACETS, refused_keys};
+use kluft_scene::reader::{Accept, Entry, Section};
+use kluft_scene::{CLOSURES, FACETS, refused_keys};
 
 /// Factors on cell sizes of a study that the scene does not describe.
 const SIZES: [f64; 3] = [2.0, 1.4, 1.0];

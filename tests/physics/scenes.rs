@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DMat3, DVec3};
 use kluft_io::{Meshing, load_msh, mesh_geometry};
 use kluft_mesh::structured::{Patch, tetrahedra};
-use kluft_mesh::{Draft, Faces, Mesh, SurfaceRole, TaggedElements};
+use kluft_mesh::{Draft, Mesh, SurfaceRole, TaggedElements};
 use kluft_solver::{
     Condition, Discretisation, FixedPoint, Fracture, Load, Newton, NewtonSettings, Problem,
     Solution, State, StepRecord, Support, SurfaceLoad, System, solution,
@@ -152,14 +152,11 @@ pub fn scene_file(name: &str, parameters: &[(&str, f64)]) -> Problem {
 
 /// The problem of a scene file on a mesh.
 pub fn bound(file: &Path, draft: Draft) -> Problem {
-    let scene = kluft::Scene::read(file).unwrap_or_else(|defects| panic!("{defects:?}"));
-    let faces = Faces::of(&draft);
-    let inner = faces.inner_surfaces(&draft);
-    let roles = kluft::surface_roles(&scene, &draft, |group| inner[group]);
-    let roles = roles.unwrap_or_else(|defects| panic!("{defects:?}"));
-    let mesh = Mesh::build_on(draft, faces, &roles).unwrap_or_else(|d| panic!("{d:?}"));
-    let bound = kluft::bind(&scene, mesh).unwrap_or_else(|defects| panic!("{defects:?}"));
-    bound.problem
+    let scene = kluft_scene::Scene::read(file).unwrap_or_else(|defects| panic!("{defects:?}"));
+    let bound = scene.problem(draft);
+    bound
+        .unwrap_or_else(|defects| panic!("{defects:?}"))
+        .problem
 }
 
 /// Solves load steps one after the other, from the state before any load; the record and the

@@ -4,7 +4,7 @@
 use std::panic::catch_unwind;
 use std::path::Path;
 
-use kluft::{Scene, Timetable};
+use kluft_scene::{Scene, Timetable};
 
 use crate::harness::root;
 

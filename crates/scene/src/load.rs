@@ -1,6 +1,6 @@
 //! The load steps of a scene, and histories of its conditions.
 
-use super::history::{History, StepEnd, Timetable};
+use crate::history::{LoadHistory, StepEnd, Timetable};
 use crate::reader::{Accept, Section};
 
 /// Most load steps of a phase; more are taken for a slip.
@@ -8,25 +8,25 @@ const MOST_STEPS: f64 = 1e5;
 
 /// Whether the load steps of a scene have times, as histories need them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Clock {
+pub struct Clock {
     /// Whether they do.
-    pub(crate) runs: bool,
+    pub runs: bool,
 }
 
 /// What a history scales.
-pub(super) struct Scaled {
+pub(crate) struct Scaled {
     /// Whether the section has it.
-    pub(super) is_there: bool,
+    pub(crate) is_there: bool,
     /// What it would be.
-    pub(super) what: &'static str,
+    pub(crate) what: &'static str,
 }
 
 /// Reads the history of a condition.
-pub(super) fn read_history(
+pub(crate) fn read_history(
     section: &Section<'_, '_>,
     clock: Clock,
     scaled: Scaled,
-) -> Option<History> {
+) -> Option<LoadHistory> {
     let points = section.time_factors("history")?;
     let title = &section.title;
     if points.is_empty() {
@@ -55,11 +55,11 @@ pub(super) fn read_history(
         let remedy = format!("add {} to {title}, or remove the history", scaled.what);
         section.refuse("history", problem, remedy);
     }
-    Some(History { points })
+    Some(LoadHistory { points })
 }
 
 /// Reads the load steps, and whether they have times.
-pub(super) fn read_timetable(root: &Section<'_, '_>) -> (Timetable, Clock) {
+pub(crate) fn read_timetable(root: &Section<'_, '_>) -> (Timetable, Clock) {
     let Some(section) = root.section("load") else {
         return (Timetable::default(), Clock { runs: false });
     };

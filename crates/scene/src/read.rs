@@ -1,111 +1,17 @@
-//! The scene file: what a user may say, before it meets a mesh.
-
-mod bind;
-mod cases;
-mod conditions;
-mod fracture;
-mod history;
-mod load;
+//! Reads the sections of a scene.
 
 use std::path::{Path, PathBuf};
 
 use kluft_mesh::Defect;
-use kluft_solver::{InitialStress, LinearMethod, Profile};
+use kluft_solver::{InitialStress, Profile};
 use lie_core::{FacetQuadrature, Rock};
 
-pub use bind::{Binding, bind, surface_roles};
-pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-pub(crate) use fracture::{CLOSURES, read_fracture, refused_keys};
-pub use history::{History, StepEnd, Timetable};
-pub(crate) use load::Clock;
-
-use crate::oracle::{self, Oracle};
+use crate::conditions::{read_body, read_boundary, read_fixed_point};
+use crate::fracture::read_fracture;
+use crate::load::{Clock, read_timetable};
+use crate::oracle;
 use crate::reader::{Accept, Section, Source};
-use conditions::{read_body, read_boundary, read_fixed_point};
-use load::read_timetable;
-
-/// Something the scene says about a named group, and where it says so.
-#[derive(Debug, Clone)]
-pub struct Named<T> {
-    /// Name of the group, or `default`.
-    pub name: String,
-    /// File and line.
-    pub place: String,
-    /// What it says.
-    pub value: T,
-}
-
-/// Where the mesh comes from.
-#[derive(Debug, Clone)]
-pub enum MeshSource {
-    /// A gmsh geometry.
-    Geometry {
-        /// The .geo file.
-        geometry: PathBuf,
-        /// Values handed to gmsh.
-        parameters: Vec<(String, f64)>,
-        /// Order of the elements, 1 or 2.
-        order: u32,
-        /// How far to refine it, if not as the geometry says.
-        adapt: Option<Adapt>,
-    },
-    /// A mesh file.
-    File(PathBuf),
-}
-
-/// A mesh that follows the estimated error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Adapt {
-    /// Largest estimated error of the mean jump of a fracture, as a share of it.
-    pub tolerance: f64,
-    /// Unknowns beyond which no mesh goes.
-    pub max_unknowns: f64,
-    /// Most meshes.
-    pub max_rounds: usize,
-}
-
-/// What is asked of the linear solver.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct SolverEntry {
-    /// The solver; chosen by predicted cost if not given.
-    pub linear: Option<LinearMethod>,
-    /// Memory it may take (bytes); what the machine has free if not given.
-    pub memory_limit: Option<f64>,
-    /// Largest difference between a load step in one part and in two, against the largest jump, where
-    /// the way of the loads matters; 1e-3 if not given.
-    pub path_accuracy: Option<f64>,
-    /// How fractures are integrated over their facets.
-    pub facets: FacetQuadrature,
-}
-
-/// A scene, all values in SI units.
-#[derive(Debug, Clone)]
-pub struct Scene {
-    /// Its title.
-    pub title: String,
-    /// Its mesh.
-    pub mesh: MeshSource,
-    /// Whether second-order cells at crack fronts become quarter-point elements.
-    pub quarter_points: bool,
-    /// Rocks by physical volume.
-    pub rocks: Vec<Named<Rock>>,
-    /// Fractures by physical surface.
-    pub fractures: Vec<Named<FractureEntry>>,
-    /// Conditions by physical surface.
-    pub boundaries: Vec<Named<BoundaryEntry>>,
-    /// Nodes held by themselves.
-    pub fixed_points: Vec<Named<FixedPointEntry>>,
-    /// What acts in all of the rock.
-    pub body: BodyEntry,
-    /// Stress before any load.
-    pub initial_stress: Option<InitialStress>,
-    /// Load steps.
-    pub timetable: Timetable,
-    /// What is asked of the linear solver.
-    pub solver: SolverEntry,
-    /// Closed forms by fracture.
-    pub oracles: Vec<Named<Oracle>>,
-}
+use crate::scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
 
 impl Scene {
     /// Reads a scene file; paths in it are relative to its folder.
@@ -167,7 +73,7 @@ impl Scene {
 /// Finds the defects of everything in a scene that speaks of neither mesh nor fractures; another
 /// file may hold those sections for a scene to be made from it. Returns whether its load steps have
 /// times.
-pub(crate) fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Clock {
+pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Clock {
     let (_, clock) = read_timetable(root);
     root.text("title");
     for (name, section) in root.named_sections("rock") {
@@ -387,7 +293,7 @@ fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
 }
 
 /// Names of the rules by which fractures are integrated over their facets.
-pub(crate) const FACETS: [&str; 2] = ["nodal", "gauss"];
+pub const FACETS: [&str; 2] = ["nodal", "gauss"];
 
 fn read_facets(section: &Section<'_, '_>) -> FacetQuadrature {
     match section.text("facets") {

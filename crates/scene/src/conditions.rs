@@ -3,8 +3,8 @@
 use glam::DVec3;
 use kluft_solver::{Fracture, Support, SurfaceLoad};
 
-use super::history::History;
-use super::load::{Clock, Scaled, read_history};
+use crate::history::LoadHistory;
+use crate::load::{Clock, Scaled, read_history};
 use crate::reader::{Accept, Section};
 
 /// What acts on a part of the outer surface.
@@ -15,7 +15,7 @@ pub struct BoundaryEntry {
     /// Its support.
     pub support: Option<Support>,
     /// How both change with time.
-    pub history: Option<History>,
+    pub history: Option<LoadHistory>,
 }
 
 /// A fracture and the history of its fluid pressure.
@@ -24,7 +24,7 @@ pub struct FractureEntry {
     /// Its law and what fills it.
     pub fracture: Fracture,
     /// How the fluid pressure changes with time.
-    pub history: Option<History>,
+    pub history: Option<LoadHistory>,
 }
 
 /// What acts in all of the rock.
@@ -33,7 +33,7 @@ pub struct BodyEntry {
     /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// How it changes with time.
-    pub history: Option<History>,
+    pub history: Option<LoadHistory>,
 }
 
 /// A node held by itself.
@@ -44,11 +44,11 @@ pub struct FixedPointEntry {
     /// Prescribed components (m).
     pub displacement: [Option<f64>; 3],
     /// How they change with time.
-    pub history: Option<History>,
+    pub history: Option<LoadHistory>,
 }
 
 /// Reads what acts on a part of the outer surface.
-pub(super) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<BoundaryEntry> {
+pub(crate) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<BoundaryEntry> {
     let traction = section.vector("traction");
     let pressure = section.number("pressure", Accept::Finite);
     let symmetry = section.flag("symmetry");
@@ -114,7 +114,7 @@ fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
 }
 
 /// Reads a node held by itself.
-pub(super) fn read_fixed_point(section: &Section<'_, '_>, clock: Clock) -> Option<FixedPointEntry> {
+pub(crate) fn read_fixed_point(section: &Section<'_, '_>, clock: Clock) -> Option<FixedPointEntry> {
     section.require("at", "[0.0, 0.0, 0.0]");
     section.require("displacement", "{ x = 0.0 }");
     let at = section.vector("at");
@@ -132,7 +132,7 @@ pub(super) fn read_fixed_point(section: &Section<'_, '_>, clock: Clock) -> Optio
 }
 
 /// Reads what acts in all of the rock.
-pub(super) fn read_body(root: &Section<'_, '_>, clock: Clock) -> BodyEntry {
+pub(crate) fn read_body(root: &Section<'_, '_>, clock: Clock) -> BodyEntry {
     let Some(section) = root.section("body") else {
         return BodyEntry::default();
     };
@@ -151,6 +151,6 @@ pub(super) fn read_body(root: &Section<'_, '_>, clock: Clock) -> BodyEntry {
 }
 
 /// Whether any component is held elsewhere than where it is (m).
-pub(super) fn is_moved(components: &[Option<f64>; 3]) -> bool {
+pub(crate) fn is_moved(components: &[Option<f64>; 3]) -> bool {
     components.iter().flatten().any(|value| *value != 0.0)
 }

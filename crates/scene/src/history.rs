@@ -3,12 +3,12 @@
 /// A factor as a function of time: linear between points, constant before the first and after the
 /// last.
 #[derive(Debug, Clone, PartialEq)]
-pub struct History {
+pub struct LoadHistory {
     /// Times, ascending, each with its factor; at least one.
     pub points: Vec<[f64; 2]>,
 }
 
-impl History {
+impl LoadHistory {
     /// Grows from 0 at time 0 to 1 at `end`, and stays.
     pub fn ramp(end: f64) -> Self {
         Self {
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn factors_are_linear_between_points_and_constant_outside() {
-        let history = History {
+        let history = LoadHistory {
             points: vec![[1.0, 2.0], [3.0, -0.5], [4.0, 0.0]],
         };
         let times = [-1.0, 1.0, 2.0, 3.0, 3.5, 4.0, 9.0];
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn a_point_has_exactly_its_factor() {
         let (time, factor) = (0.1 + 0.2, 1.0 / 3.0);
-        let history = History {
+        let history = LoadHistory {
             points: vec![[0.0, 0.7], [time, factor], [1.0, 0.9]],
         };
         assert_eq!(history.at(time), factor);
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn without_a_history_a_condition_grows_once() {
-        let ramp = History::ramp(2.0);
+        let ramp = LoadHistory::ramp(2.0);
         assert_eq!(
             [0.0, 0.5, 2.0, 5.0].map(|time| ramp.at(time)),
             [0.0, 0.25, 1.0, 1.0]

@@ -1,4 +1,4 @@
-//! Closed forms that a scene may name for a fracture, and how far a run is from them.
+//! Closed forms that a scene may name for a fracture.
 //!
 //! All of them have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance from
 //! the centre as a share of the radius: cracks in unbounded rock, opened by a pressure `p` or sheared by
@@ -9,16 +9,12 @@
 //! - strip ("line"), opening and slip `4 (1 - nu^2) p a / E` (A. A. Griffith, Phil. Trans. R. Soc. A 221, 1921);
 //! - "uniform": the same everywhere, as given.
 
-mod front;
-mod measures;
-
 use std::f64::consts::PI;
 
 use glam::DVec3;
 use lie_core::Rock;
 
 use crate::reader::{Accept, Section};
-pub use measures::{Measure, energy, measures};
 
 /// Share of the radius next to the front that measures "inside" leave out, unless given.
 const RING: f64 = 0.1;
@@ -26,26 +22,36 @@ const RING: f64 = 0.1;
 /// The closed form of one fracture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oracle {
-    extent: Extent,
+    /// Where the fracture lies.
+    pub extent: Extent,
     opening: Option<Amount>,
     slip: Option<Amount>,
-    normal_traction: Option<f64>,
-    ring: f64,
+    /// Normal traction (Pa), tension positive.
+    pub normal_traction: Option<f64>,
+    /// Share of the radius next to the crack front that measures "inside" leave out.
+    pub ring: f64,
 }
 
 /// Where the fracture lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Extent {
+pub enum Extent {
+    /// A disc.
     Disc {
+        /// Its centre (m).
         centre: DVec3,
+        /// Its radius (m).
         radius: f64,
     },
     /// Endless across `along` in its plane.
     Strip {
+        /// A point of its middle line (m).
         centre: DVec3,
+        /// Unit vector from the middle line to the crack front.
         along: DVec3,
+        /// Half its length along that (m).
         half_length: f64,
     },
+    /// All of the fracture.
     Everywhere,
 }
 
@@ -60,15 +66,16 @@ enum Amount {
 
 /// One component of a jump in closed form.
 #[derive(Debug, Clone, Copy)]
-struct Profile {
-    extent: Extent,
+pub struct JumpProfile {
+    /// Where the fracture lies.
+    pub extent: Extent,
     /// Value at the centre (m).
     amplitude: f64,
 }
 
 impl Oracle {
     /// Opening in closed form, in this rock.
-    fn opening(&self, rock: &Rock) -> Option<Profile> {
+    pub fn opening(&self, rock: &Rock) -> Option<JumpProfile> {
         let (e, nu) = (rock.young_modulus, rock.poisson_ratio);
         let per_stress = match self.extent {
             Extent::Disc { radius, .. } => 8.0 * (1.0 - nu * nu) * radius / (PI * e),
@@ -79,7 +86,7 @@ impl Oracle {
     }
 
     /// Magnitude of the slip in closed form, in this rock.
-    fn slip(&self, rock: &Rock) -> Option<Profile> {
+    pub fn slip(&self, rock: &Rock) -> Option<JumpProfile> {
         let (e, nu) = (rock.young_modulus, rock.poisson_ratio);
         let mu = e / (2.0 * (1.0 + nu));
         let per_stress = match self.extent {
@@ -90,12 +97,12 @@ impl Oracle {
         self.profile(self.slip, per_stress)
     }
 
-    fn profile(&self, amount: Option<Amount>, per_stress: f64) -> Option<Profile> {
+    fn profile(&self, amount: Option<Amount>, per_stress: f64) -> Option<JumpProfile> {
         let amplitude = match amount? {
             Amount::Stress(stress) => stress * per_stress,
             Amount::Length(length) => length,
         };
-        Some(Profile {
+        Some(JumpProfile {
             extent: self.extent,
             amplitude,
         })
@@ -103,7 +110,7 @@ impl Oracle {
 
     /// `K_I` of the opening pressure (Pa sqrt(m)): `2 p sqrt(a / pi)` of a disc, `p sqrt(pi a)` of a
     /// strip.
-    fn stress_intensity(&self) -> Option<f64> {
+    pub fn stress_intensity(&self) -> Option<f64> {
         let Some(Amount::Stress(p)) = self.opening else {
             return None;
         };
@@ -117,7 +124,7 @@ impl Oracle {
 
 impl Extent {
     /// Distance from the centre as a share of the radius.
-    fn rho(&self, x: DVec3) -> f64 {
+    pub fn rho(&self, x: DVec3) -> f64 {
         match *self {
             Self::Disc { centre, radius } => (x - centre).length() / radius,
             Self::Strip {
@@ -130,7 +137,7 @@ impl Extent {
     }
 
     /// Radius or half-length (m).
-    fn radius(&self) -> Option<f64> {
+    pub fn radius(&self) -> Option<f64> {
         match *self {
             Self::Disc { radius, .. } => Some(radius),
             Self::Strip { half_length, .. } => Some(half_length),
@@ -139,15 +146,15 @@ impl Extent {
     }
 }
 
-impl Profile {
+impl JumpProfile {
     /// The value at a place.
-    fn at(&self, x: DVec3) -> f64 {
+    pub fn at(&self, x: DVec3) -> f64 {
         let rho = self.extent.rho(x);
         self.amplitude * (1.0 - rho * rho).max(0.0).sqrt()
     }
 
     /// Integral over a fracture whose facets have this area (m^2).
-    fn volume(&self, area: f64) -> f64 {
+    pub fn volume(&self, area: f64) -> f64 {
         match self.extent {
             Extent::Disc { radius, .. } => 2.0 / 3.0 * PI * radius * radius * self.amplitude,
             Extent::Strip { .. } => 0.25 * PI * area * self.amplitude,

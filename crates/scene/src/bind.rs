@@ -1,16 +1,15 @@
 //! Where a scene meets a mesh: names become groups, groups become parts of a problem.
 
 use glam::DVec3;
-use kluft_mesh::{Defect, Draft, Group, Mesh, SurfaceRole, nearest};
+use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
 use kluft_solver::{Condition, FixedPoint, Problem};
 use lie_core::Rock;
 
-use super::cases::{Bound, schedule};
-use super::{FixedPointEntry, FractureEntry, Named, Scene};
+use crate::cases::{Bound, schedule};
+use crate::conditions::{FixedPointEntry, FractureEntry};
 use crate::oracle::Oracle;
-
-/// Name under which a section serves all groups without one of their own.
-const DEFAULT: &str = "default";
+use crate::roles::{DEFAULT, Roles, roles};
+use crate::scene::{Named, Scene};
 
 /// A problem and what was decided on the way to it.
 pub struct Binding {
@@ -22,108 +21,25 @@ pub struct Binding {
     pub oracles: Vec<Option<Oracle>>,
 }
 
-/// What each group of the draft is, going by the scene. Surfaces that the scene does not name are
-/// fractures if there is a `[fracture.default]` and they lie inside the rock, and unused otherwise.
-///
-/// # Errors
-/// Names of the scene that are no group of the mesh, or one of the wrong dimension.
-pub fn surface_roles(
-    scene: &Scene,
-    draft: &Draft,
-    is_inside: impl Fn(usize) -> bool,
-) -> Result<Vec<SurfaceRole>, Vec<Defect>> {
-    let mut defects = Vec::new();
-    let mut roles = vec![SurfaceRole::Unused; draft.groups.len()];
-    let mut assign = |name: &str, place: &str, role: SurfaceRole, roles: &mut Vec<SurfaceRole>| {
-        match find_group(&draft.groups, name, 2, place) {
-            Ok(group) if roles[group] == SurfaceRole::Unused => roles[group] = role,
-            Ok(_) => defects.push(Defect::new(
-                place,
-                format!("surface `{name}` is both a fracture and a boundary"),
-                "a fracture lies inside the rock, a boundary outside; remove one of the sections",
-            )),
-            Err(defect) => defects.push(defect),
-        }
-    };
-    for entry in scene.fractures.iter().filter(|entry| entry.name != DEFAULT) {
-        assign(&entry.name, &entry.place, SurfaceRole::Fracture, &mut roles);
+impl Scene {
+    /// The problem of this scene on a mesh as read, with what was decided on the way.
+    ///
+    /// # Errors
+    /// Every defect of the mesh, and everything in the scene that does not fit it.
+    pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
+        let faces = Faces::of(&draft);
+        let Roles {
+            of_group,
+            mut decisions,
+        } = roles(self, &draft, &faces.inner_surfaces(&draft))?;
+        let mesh = Mesh::build_on(draft, faces, &of_group)?;
+        let mut binding = bind(self, mesh)?;
+        decisions.append(&mut binding.decisions);
+        Ok(Binding {
+            decisions,
+            ..binding
+        })
     }
-    for entry in &scene.boundaries {
-        assign(&entry.name, &entry.place, SurfaceRole::Boundary, &mut roles);
-    }
-    defects.extend(volume_names(scene, &draft.groups));
-    if scene.fractures.iter().any(|entry| entry.name == DEFAULT) {
-        for (group, role) in roles.iter_mut().enumerate() {
-            let unnamed = *role == SurfaceRole::Unused && draft.groups[group].dimension == 2;
-            if unnamed && is_inside(group) {
-                *role = SurfaceRole::Fracture;
-            }
-        }
-    }
-    if defects.is_empty() {
-        Ok(roles)
-    } else {
-        Err(defects)
-    }
-}
-
-fn volume_names(scene: &Scene, groups: &[Group]) -> Vec<Defect> {
-    let named = scene.rocks.iter().filter(|entry| entry.name != DEFAULT);
-    named
-        .filter_map(|entry| find_group(groups, &entry.name, 3, &entry.place).err())
-        .collect()
-}
-
-fn kind(dimension: usize) -> &'static str {
-    ["point", "curve", "surface", "volume"][dimension.min(3)]
-}
-
-fn find_group(
-    groups: &[Group],
-    name: &str,
-    dimension: usize,
-    place: &str,
-) -> Result<usize, Defect> {
-    let fits = |group: &Group| group.dimension == dimension;
-    if let Some(found) = groups
-        .iter()
-        .position(|group| fits(group) && group.name == name)
-    {
-        return Ok(found);
-    }
-    let wanted = kind(dimension);
-    let declare = format!(
-        "give the {wanted} a physical group: Physical {}(\"{name}\") = {{...}};",
-        capital(wanted)
-    );
-    if let Some(other) = groups.iter().find(|group| group.name == name) {
-        let found = kind(other.dimension);
-        return Err(Defect::new(
-            place,
-            format!("`{name}` is a physical {found} of the mesh, not a physical {wanted}"),
-            declare,
-        ));
-    }
-    let known: Vec<&str> = groups
-        .iter()
-        .filter(|g| fits(g))
-        .map(|g| g.name.as_str())
-        .collect();
-    let remedy = match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("the mesh has none at all: {declare}"),
-        None => format!("physical {wanted}s of the mesh: {}", known.join(", ")),
-    };
-    Err(Defect::new(
-        place,
-        format!("the mesh has no physical {wanted} `{name}`"),
-        remedy,
-    ))
-}
-
-fn capital(word: &str) -> String {
-    let (first, rest) = word.split_at(1);
-    first.to_uppercase() + rest
 }
 
 /// Binds a scene to its mesh.

@@ -10,11 +10,11 @@ use kluft_mesh::{Defect, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-pub(crate) use lists::Entry;
+pub use lists::Entry;
 
 /// Which numbers a key accepts.
 #[derive(Clone, Copy)]
-pub(crate) enum Accept {
+pub enum Accept {
     /// Any finite number.
     Finite,
     /// Finite and greater than zero.
@@ -51,7 +51,7 @@ impl Accept {
 }
 
 /// The file being read and the defects found so far.
-pub(crate) struct Source<'a> {
+pub struct Source<'a> {
     name: &'a str,
     text: &'a str,
     /// How messages call the whole file.
@@ -63,7 +63,8 @@ pub(crate) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    pub(crate) fn new(name: &'a str, text: &'a str, what: &'static str) -> Self {
+    /// A text to read; `name` is the file for messages, `what` how they call the whole.
+    pub fn new(name: &'a str, text: &'a str, what: &'static str) -> Self {
         let bytes = text.bytes().enumerate();
         let breaks = bytes.filter(|(_, byte)| *byte == b'\n');
         Self {
@@ -75,13 +76,15 @@ impl<'a> Source<'a> {
         }
     }
 
-    pub(crate) fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
+    /// Keeps a defect of a part of the text.
+    pub fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
         self.defects
             .borrow_mut()
             .push((at.start, Defect::new(self.place(at), problem, remedy)));
     }
 
-    pub(crate) fn place(&self, at: &Range<usize>) -> String {
+    /// File and line of a part of the text.
+    pub fn place(&self, at: &Range<usize>) -> String {
         format!("{}:{}", self.name, self.line(at.start))
     }
 
@@ -90,7 +93,7 @@ impl<'a> Source<'a> {
     }
 
     /// The defects in the order of the text.
-    pub(crate) fn into_defects(self) -> Vec<Defect> {
+    pub fn into_defects(self) -> Vec<Defect> {
         let mut defects = self.defects.into_inner();
         defects.sort_by_key(|(position, _)| *position);
         defects.into_iter().map(|(_, defect)| defect).collect()
@@ -98,7 +101,7 @@ impl<'a> Source<'a> {
 
     /// The whole file as a table. With a syntax error there is none: whatever stands behind the
     /// error may have got lost or into another section, and would be reported for nothing.
-    pub(crate) fn parse(&self) -> Option<Spanned<DeTable<'a>>> {
+    pub fn parse(&self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         let is_sound = errors.is_empty();
         let mut lines = BTreeSet::new();
@@ -116,18 +119,19 @@ impl<'a> Source<'a> {
 
 /// A table of the file. Keys that nobody asked for are defects when it is dropped by
 /// [`Section::finish`].
-pub(crate) struct Section<'a, 'i> {
+pub struct Section<'a, 'i> {
     source: &'a Source<'i>,
     table: &'a DeTable<'i>,
     /// How messages call it, e.g. `[rock.granite]`.
-    pub(crate) title: String,
+    pub title: String,
     /// Where it stands.
-    pub(crate) at: Range<usize>,
+    pub at: Range<usize>,
     asked: RefCell<BTreeSet<&'static str>>,
 }
 
 impl<'a, 'i> Section<'a, 'i> {
-    pub(crate) fn new(
+    /// A table of a file; `title` is how messages call it.
+    pub fn new(
         source: &'a Source<'i>,
         table: &'a DeTable<'i>,
         title: String,
@@ -161,28 +165,28 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Everything in it, unread.
-    pub(crate) fn table(&self) -> &'a DeTable<'i> {
+    pub fn table(&self) -> &'a DeTable<'i> {
         self.table
     }
 
     /// File and line.
-    pub(crate) fn place(&self) -> String {
+    pub fn place(&self) -> String {
         self.source.place(&self.at)
     }
 
     /// Whether the key is there.
-    pub(crate) fn has(&self, key: &'static str) -> bool {
+    pub fn has(&self, key: &'static str) -> bool {
         self.get(key).is_some()
     }
 
     /// Whether the key is there and holds a table.
-    pub(crate) fn is_table(&self, key: &'static str) -> bool {
+    pub fn is_table(&self, key: &'static str) -> bool {
         self.get(key)
             .is_some_and(|value| value.get_ref().is_table())
     }
 
     /// Reports a key that must be there and is not.
-    pub(crate) fn require(&self, key: &'static str, example: &str) {
+    pub fn require(&self, key: &'static str, example: &str) {
         if !self.has(key) && self.misspelt(key).is_none() {
             self.report(
                 &self.at,
@@ -193,7 +197,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Reports a section that must be there and is not.
-    pub(super) fn require_section(&self, key: &'static str, example: &str) {
+    pub fn require_section(&self, key: &'static str, example: &str) {
         if !self.has(key) && self.misspelt(key).is_none() {
             self.report(
                 &self.at,
@@ -221,7 +225,8 @@ impl<'a, 'i> Section<'a, 'i> {
             .find(|name| strsim::normalized_damerau_levenshtein(name, key) > 0.7)
     }
 
-    pub(crate) fn number(&self, key: &'static str, accept: Accept) -> Option<f64> {
+    /// A number.
+    pub fn number(&self, key: &'static str, accept: Accept) -> Option<f64> {
         let value = self.get(key)?;
         self.as_number(key, value, accept)
     }
@@ -242,7 +247,8 @@ impl<'a, 'i> Section<'a, 'i> {
         Some(number)
     }
 
-    pub(crate) fn flag(&self, key: &'static str) -> Option<bool> {
+    /// A truth value.
+    pub fn flag(&self, key: &'static str) -> Option<bool> {
         let value = self.get(key)?;
         let flag = value.get_ref().as_bool();
         if flag.is_none() {
@@ -251,7 +257,8 @@ impl<'a, 'i> Section<'a, 'i> {
         flag
     }
 
-    pub(crate) fn text(&self, key: &'static str) -> Option<&'a str> {
+    /// A text in quotes.
+    pub fn text(&self, key: &'static str) -> Option<&'a str> {
         let value = self.get(key)?;
         let text = value.get_ref().as_str();
         if text.is_none() {
@@ -261,12 +268,13 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Reports `key`'s value with a remedy.
-    pub(crate) fn refuse(&self, key: &'static str, problem: String, remedy: impl Into<String>) {
+    pub fn refuse(&self, key: &'static str, problem: String, remedy: impl Into<String>) {
         let at = self.table.get(key).map_or(self.at.clone(), Spanned::span);
         self.report(&at, problem, remedy.into());
     }
 
-    pub(crate) fn numbers(&self, key: &'static str, accept: Accept) -> Option<Vec<f64>> {
+    /// Numbers in brackets.
+    pub fn numbers(&self, key: &'static str, accept: Accept) -> Option<Vec<f64>> {
         let value = self.get(key)?;
         let Some(array) = value.get_ref().as_array() else {
             self.wrong_type(key, value, "numbers in brackets, e.g. [0.5, 1.0]");
@@ -278,7 +286,8 @@ impl<'a, 'i> Section<'a, 'i> {
             .collect()
     }
 
-    pub(crate) fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
+    /// Three numbers in brackets.
+    pub fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
         let numbers = self.numbers(key, Accept::Finite)?;
         let vector = <[f64; 3]>::try_from(numbers).ok();
         if vector.is_none() {
@@ -292,13 +301,13 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Points in brackets.
-    pub(crate) fn vectors(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
+    pub fn vectors(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
         let example = "points in brackets, e.g. [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
         self.tuples(key, ("points", example))
     }
 
     /// Pairs of a time and a factor in brackets.
-    pub(crate) fn time_factors(&self, key: &'static str) -> Option<Vec<[f64; 2]>> {
+    pub fn time_factors(&self, key: &'static str) -> Option<Vec<[f64; 2]>> {
         let example = "[time, factor] in brackets, e.g. [[0, 0], [1, 1]]";
         self.tuples(key, ("times with factors", example))
     }
@@ -329,7 +338,8 @@ impl<'a, 'i> Section<'a, 'i> {
         points.flatten()
     }
 
-    pub(crate) fn section(&self, key: &'static str) -> Option<Section<'a, 'i>> {
+    /// The section below this one with a name.
+    pub fn section(&self, key: &'static str) -> Option<Section<'a, 'i>> {
         let value = self.get(key)?;
         let Some(table) = value.get_ref().as_table() else {
             self.wrong_type(key, value, &format!("a section: [{key}]"));
@@ -348,7 +358,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// All sections `[key.NAME]`.
-    pub(crate) fn named_sections(&self, key: &'static str) -> Vec<(String, Section<'a, 'i>)> {
+    pub fn named_sections(&self, key: &'static str) -> Vec<(String, Section<'a, 'i>)> {
         let Some(parent) = self.section(key) else {
             return Vec::new();
         };
@@ -380,7 +390,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// All sections `[[key]]`.
-    pub(crate) fn listed_sections(&self, key: &'static str) -> Vec<Section<'a, 'i>> {
+    pub fn listed_sections(&self, key: &'static str) -> Vec<Section<'a, 'i>> {
         let Some(value) = self.get(key) else {
             return Vec::new();
         };
@@ -403,13 +413,13 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// All keys of a table of numbers whose names are free.
-    pub(crate) fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
+    pub fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
         let section = self.section(key);
         section.map_or_else(Vec::new, |section| section.all_numbers())
     }
 
     /// All keys of this section, which must be numbers.
-    pub(crate) fn all_numbers(&self) -> Vec<(String, f64)> {
+    pub fn all_numbers(&self) -> Vec<(String, f64)> {
         let entries = self.table.iter();
         entries
             .filter_map(|(name, value)| {
@@ -420,7 +430,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Reports the keys that nobody asked for, each with the nearest known one.
-    pub(crate) fn finish(self) {
+    pub fn finish(self) {
         let known = self.asked.borrow();
         for (name, _) in self.table.iter() {
             let key = name.get_ref().as_ref();

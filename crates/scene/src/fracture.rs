@@ -3,15 +3,15 @@
 use kluft_solver::Fracture;
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
 
-use super::FractureEntry;
-use super::load::{Clock, Scaled, read_history};
+use crate::conditions::FractureEntry;
+use crate::load::{Clock, Scaled, read_history};
 use crate::reader::{Accept, Section};
 
 /// Names of the closure laws.
-pub(crate) const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
+pub const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
 
 /// Reads a section on a fracture.
-pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
+pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
     let known = closure_name(section);
     let closure = known.unwrap_or("linear");
     let contact = closure == "contact";
@@ -67,7 +67,7 @@ pub(crate) fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<F
 }
 
 /// Keys that a closure law refuses; `rubs` tells whether the fracture has friction.
-pub(crate) fn refused_keys(closure: &str, rubs: bool) -> Vec<&'static str> {
+pub fn refused_keys(closure: &str, rubs: bool) -> Vec<&'static str> {
     let refused = [
         (closure != "logarithmic", "cutoff_aperture"),
         (closure != "hyperbolic", "max_closure"),

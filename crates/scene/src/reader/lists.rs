@@ -6,7 +6,7 @@ use toml::de::DeValue;
 use super::{Accept, Section};
 
 /// An entry of a list.
-pub(crate) enum Entry<'a, 'i> {
+pub enum Entry<'a, 'i> {
     /// Text in quotes.
     Text(&'a str),
     /// Keys in braces.
@@ -15,7 +15,7 @@ pub(crate) enum Entry<'a, 'i> {
 
 impl<'a, 'i> Section<'a, 'i> {
     /// The entries of a list, each with its number: texts and tables.
-    pub(crate) fn entries(&self, key: &'static str, wanted: &str) -> Vec<Entry<'a, 'i>> {
+    pub fn entries(&self, key: &'static str, wanted: &str) -> Vec<Entry<'a, 'i>> {
         let Some(value) = self.get(key) else {
             return Vec::new();
         };
@@ -41,11 +41,7 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     /// Texts in brackets, each one of those known; what they are called.
-    pub(crate) fn choices(
-        &self,
-        key: &'static str,
-        known: &[&'static str],
-    ) -> Option<Vec<&'static str>> {
+    pub fn choices(&self, key: &'static str, known: &[&'static str]) -> Option<Vec<&'static str>> {
         let value = self.get(key)?;
         let wanted = format!("some of \"{}\" in brackets", known.join("\", \""));
         let find = |entry: &Spanned<DeValue<'i>>| {
@@ -68,7 +64,7 @@ impl<'a, 'i> Section<'a, 'i> {
 
     /// All keys of this section, which must be lists of numbers, or `{ from, to, count }` for numbers
     /// whose logarithms lie evenly.
-    pub(crate) fn number_lists(&self) -> Vec<(String, Vec<f64>)> {
+    pub fn number_lists(&self) -> Vec<(String, Vec<f64>)> {
         let mut lists = Vec::new();
         for (name, value) in self.table.iter() {
             let key = name.get_ref().as_ref();

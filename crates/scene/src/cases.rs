@@ -2,22 +2,22 @@
 
 use kluft_solver::{Cases, Load, Schedule, Step, Support};
 
-use super::conditions::is_moved;
-use super::history::{History, StepEnd, Timetable};
-use super::{BoundaryEntry, FixedPointEntry, FractureEntry, Named, Scene};
+use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, is_moved};
+use crate::history::{LoadHistory, StepEnd, Timetable};
+use crate::scene::{Named, Scene};
 
 /// Times that differ by less than this share of the last one are the same.
 const SAME_TIME: f64 = 1e-9;
 
 /// The entries of a scene that became parts of the problem, in its order.
-pub(super) struct Bound<'a> {
-    pub(super) boundaries: Vec<&'a Named<BoundaryEntry>>,
-    pub(super) fractures: Vec<&'a Named<FractureEntry>>,
-    pub(super) fixed_points: Vec<&'a Named<FixedPointEntry>>,
+pub(crate) struct Bound<'a> {
+    pub(crate) boundaries: Vec<&'a Named<BoundaryEntry>>,
+    pub(crate) fractures: Vec<&'a Named<FractureEntry>>,
+    pub(crate) fixed_points: Vec<&'a Named<FixedPointEntry>>,
 }
 
 /// The schedule of a scene; what the user should know of it goes to `decisions`.
-pub(super) fn schedule(scene: &Scene, bound: &Bound<'_>, decisions: &mut Vec<String>) -> Schedule {
+pub(crate) fn schedule(scene: &Scene, bound: &Bound<'_>, decisions: &mut Vec<String>) -> Schedule {
     let (ends, grown) = match &scene.timetable {
         Timetable::Factors(factors) => return Schedule::proportional(factors.clone()),
         Timetable::Times { ends, grown } => (ends, *grown),
@@ -46,8 +46,8 @@ pub(super) fn schedule(scene: &Scene, bound: &Bound<'_>, decisions: &mut Vec<Str
 struct Found {
     /// When a condition without a history has grown to its full size.
     grown: f64,
-    /// History of each case, and the sections that belong to it.
-    cases: Vec<(History, Vec<String>)>,
+    /// LoadHistory of each case, and the sections that belong to it.
+    cases: Vec<(LoadHistory, Vec<String>)>,
 }
 
 impl Found {
@@ -81,11 +81,13 @@ impl Found {
     }
 
     /// Load case of a section; what does not act may be in any.
-    fn case(&mut self, acts: bool, history: &Option<History>, name: String) -> usize {
+    fn case(&mut self, acts: bool, history: &Option<LoadHistory>, name: String) -> usize {
         if !acts {
             return 0;
         }
-        let history = history.clone().unwrap_or_else(|| History::ramp(self.grown));
+        let history = history
+            .clone()
+            .unwrap_or_else(|| LoadHistory::ramp(self.grown));
         let known = self.cases.iter().position(|(other, _)| *other == history);
         let case = known.unwrap_or(self.cases.len());
         if known.is_none() {
@@ -101,7 +103,7 @@ impl Found {
     /// Factors on the cases at a time; there is always one case.
     fn factors(&self, time: f64) -> Vec<f64> {
         match self.cases.is_empty() {
-            true => vec![History::ramp(self.grown).at(time)],
+            true => vec![LoadHistory::ramp(self.grown).at(time)],
             false => self
                 .cases
                 .iter()

@@ -5,8 +5,9 @@ use kluft_solver::{FacetResult, Solution, System};
 use lie_core::{FacetQuadrature, FacetRulePoint, Rock, facet_points};
 use serde::{Deserialize, Serialize};
 
-use super::front::{Behind, stress_intensity};
-use super::{Extent, Oracle, Profile};
+use kluft_scene::{Extent, JumpProfile, Oracle};
+
+use crate::crack_front::{Behind, stress_intensity};
 use crate::summary::FractureSummary;
 
 /// One number by which runs are compared.
@@ -129,7 +130,7 @@ impl<'a> Fracture<'a> {
         name: &str,
         oracle: &Oracle,
         of: fn(&Sample) -> f64,
-        exact: &Profile,
+        exact: &JumpProfile,
     ) -> Vec<Measure> {
         norms(name, oracle, || {
             self.samples.iter().map(move |sample| {
@@ -141,7 +142,7 @@ impl<'a> Fracture<'a> {
     }
 
     /// Opening at the place nearest to the centre, against the closed form there.
-    fn at_centre(&self, exact: &Profile) -> Measure {
+    fn at_centre(&self, exact: &JumpProfile) -> Measure {
         let rho = |sample: &&Sample| exact.extent.rho(sample.position);
         let nearest = self.samples.iter().min_by(|a, b| rho(a).total_cmp(&rho(b)));
         let (value, expected) = nearest.map_or((f64::NAN, f64::NAN), |sample| {

@@ -1,0 +1,27 @@
+//! What a user may say: the scene file, its reader, and where it meets a mesh.
+//!
+//! [`Scene::read`] turns a TOML file into a [`Scene`], or into every defect of the file, each with its
+//! line and a remedy. [`Scene::problem`] is the only way from a scene and a mesh as read to a problem
+//! that a solver takes. Values are in SI units.
+
+mod bind;
+mod cases;
+mod conditions;
+mod fracture;
+mod history;
+mod load;
+mod oracle;
+mod read;
+pub mod reader;
+mod roles;
+mod scene;
+
+pub use bind::{Binding, bind};
+pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+pub use fracture::{CLOSURES, read_fracture, refused_keys};
+pub use history::{LoadHistory, StepEnd, Timetable};
+pub use load::Clock;
+pub use oracle::{Extent, JumpProfile, Oracle};
+pub use read::{FACETS, check_conditions};
+pub use roles::{Roles, roles};
+pub use scene::{Adapt, MeshSource, Named, Scene, SolverEntry};

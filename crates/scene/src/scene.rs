@@ -1,0 +1,93 @@
+//! A scene: what is meshed, of what rock, cut by which fractures, under which loads.
+
+use std::path::PathBuf;
+
+use kluft_solver::{InitialStress, LinearMethod};
+use lie_core::{FacetQuadrature, Rock};
+
+use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+use crate::history::Timetable;
+use crate::oracle::Oracle;
+
+/// Something the scene says about a named group, and where it says so.
+#[derive(Debug, Clone)]
+pub struct Named<T> {
+    /// Name of the group, or `default`.
+    pub name: String,
+    /// File and line.
+    pub place: String,
+    /// What it says.
+    pub value: T,
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Clone)]
+pub enum MeshSource {
+    /// A gmsh geometry.
+    Geometry {
+        /// The .geo file.
+        geometry: PathBuf,
+        /// Values handed to gmsh.
+        parameters: Vec<(String, f64)>,
+        /// Order of the elements, 1 or 2.
+        order: u32,
+        /// How far to refine it, if not as the geometry says.
+        adapt: Option<Adapt>,
+    },
+    /// A mesh file.
+    File(PathBuf),
+}
+
+/// A mesh that follows the estimated error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adapt {
+    /// Largest estimated error of the mean jump of a fracture, as a share of it.
+    pub tolerance: f64,
+    /// Unknowns beyond which no mesh goes.
+    pub max_unknowns: f64,
+    /// Most meshes.
+    pub max_rounds: usize,
+}
+
+/// What is asked of the linear solver.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SolverEntry {
+    /// The solver; chosen by predicted cost if not given.
+    pub linear: Option<LinearMethod>,
+    /// Memory it may take (bytes); what the machine has free if not given.
+    pub memory_limit: Option<f64>,
+    /// Largest difference between a load step in one part and in two, against the largest jump, where
+    /// the way of the loads matters; 1e-3 if not given.
+    pub path_accuracy: Option<f64>,
+    /// How fractures are integrated over their facets.
+    pub facets: FacetQuadrature,
+}
+
+/// A scene, all values in SI units.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Its title.
+    pub title: String,
+    /// Its mesh.
+    pub mesh: MeshSource,
+    /// Whether second-order cells at crack fronts become quarter-point elements.
+    pub quarter_points: bool,
+    /// Rocks by physical volume.
+    pub rocks: Vec<Named<Rock>>,
+    /// Fractures by physical surface.
+    pub fractures: Vec<Named<FractureEntry>>,
+    /// Conditions by physical surface.
+    pub boundaries: Vec<Named<BoundaryEntry>>,
+    /// Nodes held by themselves.
+    pub fixed_points: Vec<Named<FixedPointEntry>>,
+    /// What acts in all of the rock.
+    pub body: BodyEntry,
+    /// Stress before any load.
+    pub initial_stress: Option<InitialStress>,
+    /// Load steps.
+    pub timetable: Timetable,
+    /// What is asked of the linear solver.
+    pub solver: SolverEntry,
+    /// Closed forms by fracture.
+    pub oracles: Vec<Named<Oracle>>,
+}
