@@ -1,14 +1,12 @@
-//! What a run tells its user: progress, decisions, iterations, the closing table.
+//! The terminal: it follows a run, with progress, decisions, iterations and the closing table.
 
 use std::io::{IsTerminal, Write};
-use std::time::{Duration, Instant};
+use std::ops::ControlFlow;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use kluft_mesh::Defect;
+use kluft_run::{FractureSummary, Measure, Observer, Stage, StepStart};
 use kluft_solver::Iteration;
-
-use crate::measures::Measure;
-use crate::summary::FractureSummary;
 
 /// How much a run tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,39 +17,6 @@ pub enum Verbosity {
     Terminal,
     /// The report always, with gmsh's warnings.
     Verbose,
-}
-
-/// Why a run did not end well.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Failure {
-    /// A load step did not converge: where and why.
-    NotConverged(String),
-    /// The input is wrong.
-    BadInput(Vec<Defect>),
-    /// A study did not yield what was wanted of it: why, and what to try.
-    NotReached(String),
-}
-
-impl From<Vec<Defect>> for Failure {
-    fn from(defects: Vec<Defect>) -> Self {
-        Failure::BadInput(defects)
-    }
-}
-
-/// Prints a failure to the standard error stream.
-pub fn print_failure(failure: &Failure) {
-    let mut err = std::io::stderr().lock();
-    // With the error stream gone there is nobody left to tell.
-    let _ = match failure {
-        Failure::NotConverged(why) => writeln!(err, "not converged: {why}"),
-        Failure::NotReached(why) => writeln!(err, "not reached: {why}"),
-        Failure::BadInput(defects) => {
-            let count = defects.len();
-            let noun = if count == 1 { "defect" } else { "defects" };
-            let lines: Vec<String> = defects.iter().map(ToString::to_string).collect();
-            writeln!(err, "{count} {noun} in the input\n{}", lines.join("\n"))
-        }
-    };
 }
 
 /// Where the report goes.
@@ -96,52 +61,25 @@ impl Report {
         self.line(&format!("{kind:<10} {text}"));
     }
 
-    /// Prints a line that only `-v` asks for.
-    pub fn detail(&self, kind: &str, text: &str) {
-        if self.verbose {
-            self.entry(kind, text);
+    /// Shows on a terminal that work is under way.
+    pub fn work_begins(&mut self, what: &'static str) {
+        if !self.speaks {
+            return;
         }
+        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}")
+            .unwrap_or_else(|_| ProgressStyle::default_spinner());
+        let spinner = ProgressBar::new_spinner()
+            .with_style(style)
+            .with_message(what);
+        spinner.enable_steady_tick(Duration::from_millis(120));
+        self.spinner = Some(spinner);
     }
 
-    /// Runs a stage of the work, showing on a terminal that it is under way; returns its result and
-    /// its duration.
-    pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce(&Self) -> T) -> (T, Duration) {
-        if self.speaks {
-            let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}")
-                .unwrap_or_else(|_| ProgressStyle::default_spinner());
-            let spinner = ProgressBar::new_spinner()
-                .with_style(style)
-                .with_message(name);
-            spinner.enable_steady_tick(Duration::from_millis(120));
-            self.spinner = Some(spinner);
-        }
-        let start = Instant::now();
-        let result = work(self);
+    /// Ends what [`Report::work_begins`] shows.
+    pub fn work_ends(&mut self) {
         if let Some(spinner) = self.spinner.take() {
             spinner.finish_and_clear();
         }
-        (result, start.elapsed())
-    }
-
-    /// Prints the head of an iteration table.
-    pub fn step(&self, number: usize, count: usize, what: &str) {
-        self.line(&format!("\nstep {number} of {count}, {what}"));
-        self.line(
-            "  iteration  force balance      increment  closure error  smallest aperture [m]",
-        );
-    }
-
-    /// Prints one iteration.
-    pub fn iteration(&self, number: usize, iteration: &Iteration) {
-        let aperture = if iteration.smallest_aperture.is_finite() {
-            format!("{:>21.4e}", iteration.smallest_aperture)
-        } else {
-            format!("{:>21}", "-")
-        };
-        self.line(&format!(
-            "  {number:>9}  {:>13.3e}  {:>13.3e}  {:>13.3e}  {aperture}",
-            iteration.force_residual, iteration.increment, iteration.closure_error
-        ));
     }
 
     /// Prints the closing table, one line a fracture.
@@ -192,5 +130,50 @@ impl Report {
                 &format!("{fracture}: {what} {:.3} % off", 100.0 * error),
             );
         }
+    }
+}
+
+impl Observer for Report {
+    fn stage_begins(&mut self, stage: Stage) {
+        self.work_begins(stage.name());
+    }
+
+    fn stage_ends(&mut self, _stage: Stage, _took: Duration) {
+        self.work_ends();
+    }
+
+    fn note(&mut self, kind: &str, text: &str) {
+        self.entry(kind, text);
+    }
+
+    fn detail(&mut self, kind: &str, text: &str) {
+        if self.verbose {
+            self.entry(kind, text);
+        }
+    }
+
+    fn step_begins(&mut self, step: StepStart<'_>) {
+        let StepStart {
+            number,
+            count,
+            what,
+        } = step;
+        self.line(&format!("\nstep {number} of {count}, {what}"));
+        self.line(
+            "  iteration  force balance      increment  closure error  smallest aperture [m]",
+        );
+    }
+
+    fn iteration(&mut self, number: usize, iteration: &Iteration) -> ControlFlow<()> {
+        let aperture = if iteration.smallest_aperture.is_finite() {
+            format!("{:>21.4e}", iteration.smallest_aperture)
+        } else {
+            format!("{:>21}", "-")
+        };
+        self.line(&format!(
+            "  {number:>9}  {:>13.3e}  {:>13.3e}  {:>13.3e}  {aperture}",
+            iteration.force_residual, iteration.increment, iteration.closure_error
+        ));
+        ControlFlow::Continue(())
     }
 }

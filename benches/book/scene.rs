@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use kluft::{Options, Verbosity};
 use kluft_mesh::{Faces, Mesh};
+use kluft_run::{Ending, MeshInput, Origin, Request};
 use kluft_scene::Scene;
 use kluft_solver::{Discretisation, FacetResult, Problem};
 use serde_json::Value;
@@ -30,18 +30,28 @@ pub fn run(scene: &str, mesh: &str, replaced: &[(&str, &str)]) -> Outcome {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("scene.toml");
     fs::write(&file, varied(&text, &own, mesh, replaced)).expect("a scene of its own");
-    let options = Options {
-        out: None,
-        threads: None,
-        verbosity: Verbosity::Quiet,
-        resume: false,
-    };
-    if let Err(failure) = kluft::run(&file, &options) {
-        panic!("{scene}, {mesh}: {failure:?}");
-    }
+    run_file(&file, &folder.path().join("out"));
     let summary = fs::read_to_string(folder.path().join("out/summary.json")).expect("a summary");
     let summary = serde_json::from_str(&summary).expect("JSON");
     Outcome { folder, summary }
+}
+
+/// Runs a scene file into a folder; whatever is not solved ends the page.
+fn run_file(file: &Path, out: &Path) {
+    let text = fs::read_to_string(file).expect("a scene");
+    let scene = Scene::parse_file(file, &text).unwrap_or_else(|defects| panic!("{defects:?}"));
+    let pool = rayon::ThreadPoolBuilder::new().build().expect("threads");
+    let request = Request {
+        scene: &scene,
+        mesh: MeshInput::OfScene,
+        pool: &pool,
+        folder: Some(out),
+        origin: Some(Origin { file, text: &text }),
+        resume: false,
+        keep_results: false,
+    };
+    let outcome = kluft_run::run(request, &mut ()).unwrap_or_else(|defects| panic!("{defects:?}"));
+    assert_eq!(outcome.ending, Ending::Solved, "{}", file.display());
 }
 
 fn varied(text: &str, own: &Path, mesh: &str, replaced: &[(&str, &str)]) -> String {

@@ -31,8 +31,7 @@ mod own_parameters;
 #[path = "../stability/page.rs"]
 mod page;
 mod pressed;
-#[path = "../../src/memory.rs"]
-mod resident;
+use kluft_run::memory as resident;
 #[path = "../../tests/physics/scenes.rs"]
 mod scenes;
 #[path = "../../tests/physics/spherical_joint.rs"]

@@ -3,7 +3,7 @@
 use kluft_io::{Field, Grid};
 use kluft_mesh::{Mesh, Survey};
 
-use crate::output::{integer, real};
+use kluft_run::{integer_field, real_field};
 
 /// Facets of all fractures, each with points of its own, then the worst cells.
 pub fn of(mesh: &Mesh, survey: &Survey) -> Grid {
@@ -29,7 +29,7 @@ pub fn of(mesh: &Mesh, survey: &Survey) -> Grid {
     let sectors = nodes
         .iter()
         .map(|&node| mesh.sectors.count[node as usize] as i32);
-    grid.point_fields = vec![integer("sectors", sectors)];
+    grid.point_fields = vec![integer_field("sectors", sectors)];
     grid.cell_fields = fields(mesh, survey, &cells);
     grid
 }
@@ -53,21 +53,21 @@ fn fields(mesh: &Mesh, survey: &Survey, cells: &[u32]) -> Vec<Field> {
     let patches = survey.patch_of_facet.iter();
     let tips = survey.tip_edges_of_facet.iter();
     vec![
-        integer(
+        integer_field(
             "fracture",
             numbers(&facets.fracture).into_iter().chain(none()),
         ),
-        real("normal", normals.chain(flat).map(|n| n.to_array())),
-        integer(
+        real_field("normal", normals.chain(flat).map(|n| n.to_array())),
+        integer_field(
             "mute_patch",
             patches
                 .map(|patch| patch.map_or(-1, |patch| patch as i32))
                 .chain(none()),
         ),
-        integer("tip_edges", tips.map(|&tips| i32::from(tips)).chain(none())),
-        integer("block_minus", blocks(&facets.minus)),
-        integer("block_plus", blocks(&facets.plus)),
-        real(
+        integer_field("tip_edges", tips.map(|&tips| i32::from(tips)).chain(none())),
+        integer_field("block_minus", blocks(&facets.minus)),
+        integer_field("block_plus", blocks(&facets.plus)),
+        real_field(
             "quality",
             beside
                 .chain(cells.iter().map(|&cell| quality(cell)))

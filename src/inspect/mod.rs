@@ -16,9 +16,9 @@ use kluft_io::{load_msh, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
-use crate::output::Output;
-use crate::prepare::{folder_for, mesh_file};
-use crate::report::{Failure, Report, Verbosity};
+use crate::failure::Failure;
+use kluft_run::Output;
+use kluft_run::{folder_for, mesh_file};
 use kluft_scene::{Scene, bind, roles};
 
 use findings::Inspection;
@@ -67,8 +67,7 @@ fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, V
     let Some(scene) = scene else {
         return load_msh(input, &scratch);
     };
-    let mut silent = Report::new(Verbosity::Quiet);
-    let file = mesh_file(scene, output, None, &mut silent)?;
+    let file = mesh_file(scene, output, None, &mut ())?;
     load_msh(&file.path, &scratch)
 }
 

@@ -12,7 +12,8 @@ use kluft_io::write_atomically;
 use kluft_mesh::Defect;
 use kluft_network::{Domain, Grouping, Network, write_geo};
 
-use crate::report::{Failure, Report, Verbosity};
+use crate::failure::Failure;
+use crate::report::{Report, Verbosity};
 use input::{Input, Wish};
 use record::Record;
 

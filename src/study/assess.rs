@@ -6,7 +6,7 @@ use super::point::{Numbers, Record};
 use super::reference::{Limit, limit};
 use super::settings::{Kind, Plan, Setting};
 use super::words::or_the_scene;
-use crate::measures::Measure;
+use kluft_run::Measure;
 
 /// What is charted.
 #[derive(Debug, Clone, PartialEq)]

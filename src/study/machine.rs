@@ -1,6 +1,6 @@
 //! What a study ran on.
 
-use crate::memory;
+use kluft_run::memory;
 
 /// The machine and the programs, as far as they tell.
 #[derive(Debug, Clone, PartialEq)]

@@ -22,10 +22,10 @@ use std::path::{Path, PathBuf};
 use kluft_io::write_atomically;
 use kluft_mesh::Defect;
 
-use crate::checkpoint::fingerprint_of;
-use crate::report::{Failure, Report, Verbosity};
-use crate::run::one;
+use crate::failure::Failure;
+use crate::report::{Report, Verbosity};
 use assess::{Assessment, assess};
+use kluft_run::fingerprint_of;
 use kluft_scene::Scene;
 use machine::Machine;
 use point::{Outcome, Record, Runner};
@@ -105,18 +105,18 @@ impl Study {
         let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
         let out = options.out.clone().unwrap_or_else(beside);
         let out = std::path::absolute(&out).unwrap_or(out);
-        let program = one(own_program())?;
+        let program = own_program()?;
         let runner = Runner {
             folder: out.join("points"),
-            build: one(fingerprint_of(&program))?,
+            build: fingerprint_of(&program)?,
             program,
             threads: options.threads.unwrap_or_else(machine::cores),
         };
-        one(std::fs::create_dir_all(&runner.folder).map_err(|error| {
+        std::fs::create_dir_all(&runner.folder).map_err(|error| {
             let place = runner.folder.display().to_string();
             let problem = format!("the folder cannot be made: {error}");
             Defect::new(place, problem, "name another folder with --out")
-        }))?;
+        })?;
         let (folders, records) = claim(&plan, &runner);
         let title = plan.scene.get("title").and_then(toml::Value::as_str);
         Ok(Self {
@@ -133,7 +133,7 @@ impl Study {
 
     /// Runs what has not been run, until a setting reaches the tolerance.
     fn run(&mut self, report: &mut Report, tolerance: Option<f64>) -> Result<Assessment, Failure> {
-        let mut found = one(assess(&self.plan, &self.records))?;
+        let mut found = assess(&self.plan, &self.records)?;
         let count = self.plan.settings.len();
         let kept = self.records.iter().flatten().count();
         report.entry("settings", &format!("{count}, {kept} of them run before"));
@@ -155,10 +155,11 @@ impl Study {
             let time = self.time_left();
             let time = time.map_or_else(String::new, |time| format!(", about {}", duration(time)));
             report.entry("point", &format!("{name} ({left} left{time})"));
-            let (record, _) =
-                report.stage("running", |_| self.runner.run(&self.folders[index], &scene));
-            self.records[index] = Some(one(record)?);
-            found = one(assess(&self.plan, &self.records))?;
+            report.work_begins("running");
+            let record = self.runner.run(&self.folders[index], &scene);
+            report.work_ends();
+            self.records[index] = Some(record?);
+            found = assess(&self.plan, &self.records)?;
             self.tell(report, &found, index);
             // Whoever interrupts a study finds what is known so far.
             self.write(&found)?;
@@ -236,14 +237,13 @@ impl Study {
             .collect();
         for (named, svg) in &drawn {
             let path = self.out.join(format!("{}.svg", named.file));
-            one(write_atomically(&path, |out| out.write_all(svg.as_bytes())))?;
+            write_atomically(&path, |out| out.write_all(svg.as_bytes()))?;
         }
-        one(table::write(&self.out.join("study.csv"), self, found))?;
+        table::write(&self.out.join("study.csv"), self, found)?;
         let page = page::page(self, found, &drawn);
         let path = self.out.join("study.html");
-        Ok(one(write_atomically(&path, |out| {
-            out.write_all(page.as_bytes())
-        }))?)
+        write_atomically(&path, |out| out.write_all(page.as_bytes()))?;
+        Ok(())
     }
 }
 

@@ -11,8 +11,8 @@ use kluft_mesh::Defect;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use crate::checkpoint::{Fingerprint, fingerprint, fingerprint_of};
-use crate::measures::Measure;
+use kluft_run::Measure;
+use kluft_run::{Fingerprint, fingerprint, fingerprint_of};
 
 /// The record of a finished point, in its folder.
 const RECORD: &str = "point.json";

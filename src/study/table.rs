@@ -100,7 +100,7 @@ fn counts(numbers: &Numbers) -> Vec<String> {
     ]
 }
 
-fn name_of(measure: &crate::measures::Measure) -> String {
+fn name_of(measure: &kluft_run::Measure) -> String {
     match &measure.fracture {
         Some(fracture) => format!("{fracture}.{}", measure.name),
         None => measure.name.clone(),

@@ -2,39 +2,30 @@
 
 use kluft_io::write_size_field;
 use kluft_mesh::Mesh;
-use kluft_solver::{Problem, target_sizes};
-use serde::Serialize;
+use kluft_scene::{Adapt, MeshSource};
+use kluft_solver::target_sizes;
 
 use crate::accuracy::Accuracy;
-use crate::report::Failure;
-use crate::run::{Run, one};
-use kluft_scene::{Adapt, MeshSource};
+use crate::stages::{Interruption, Run};
+use crate::summary::MeshTrial;
 
 /// File of the sizes that the last mesh was made with.
 const SIZES: &str = "sizes.pos";
-
-/// One mesh on the way to the last.
-#[derive(Debug, Clone, Serialize)]
-pub struct Round {
-    /// Its unknowns.
-    pub unknowns: usize,
-    /// Estimated error on it, as [`Accuracy::to_meet`] has it.
-    pub error: f64,
-    /// Time that it took, meshing included (s).
-    pub seconds: f64,
-}
 
 /// Leaves a mesh on which the estimated error meets the tolerance of the scene, or the budget is spent.
 ///
 /// # Errors
 /// As a run on any of the meshes.
-pub fn search(run: &mut Run<'_>) -> Result<(), Failure> {
+pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
     let MeshSource::Geometry {
         adapt: Some(adapt), ..
-    } = run.scene.mesh
+    } = run.request.scene.mesh
     else {
         return Ok(());
     };
+    if run.has_own_mesh {
+        return Ok(());
+    }
     let mut aim = adapt.tolerance;
     for number in 1..=adapt.max_rounds {
         let start = std::time::Instant::now();
@@ -42,14 +33,14 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Failure> {
         let (unknowns, accuracy) = run.trial(&problem)?;
         let error = accuracy.to_meet();
         let seconds = start.elapsed().as_secs_f64();
-        run.report.entry(
+        run.observer.note(
             "adapted",
             &format!(
                 "mesh {number}: {unknowns} unknowns, off by at most {:.2} % ({seconds:.1} s)",
                 100.0 * error
             ),
         );
-        run.summary.meshes.push(Round {
+        run.summary.meshes.push(MeshTrial {
             unknowns,
             error,
             seconds,
@@ -64,9 +55,10 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Failure> {
             // The last mesh fell short of its prediction, and so will the next.
             aim *= adapt.tolerance / error;
         }
-        let sizes = next_sizes(&problem, &accuracy, (&adapt, aim), unknowns);
+        let budget = adapt.max_unknowns / unknowns as f64;
+        let sizes = next_sizes(&problem.mesh, &accuracy, aim, budget);
         let path = run.output.path(SIZES);
-        one(write_size_field(&path, &problem.mesh, &sizes))?;
+        write_size_field(&path, &problem.mesh, &sizes)?;
         run.mesh_again_with(path);
     }
     Ok(())
@@ -83,23 +75,17 @@ const LEAST_GROWTH: f64 = 1.6;
 
 fn stopped(adapt: &Adapt, is_met: bool, error: f64) -> String {
     let (error, tolerance) = (100.0 * error, 100.0 * adapt.tolerance);
-    match is_met {
-        true => format!("adaptive mesh: off by at most {error:.2} %, {tolerance} % was asked for"),
-        false => format!(
-            "adaptive mesh: the budget is spent at {error:.2} %, {tolerance} % was asked for \
-             (max_unknowns or max_rounds under [mesh] adapt allow more, order = 2 needs less)"
-        ),
+    if is_met {
+        return format!("adaptive mesh: off by at most {error:.2} %, {tolerance} % was asked for");
     }
+    format!(
+        "adaptive mesh: the budget is spent at {error:.2} %, {tolerance} % was asked for \
+         (max_unknowns or max_rounds under [mesh] adapt allow more, order = 2 needs less)"
+    )
 }
 
-/// Sizes with which the error should fall to `aim`, within the budget.
-fn next_sizes(
-    problem: &Problem,
-    accuracy: &Accuracy,
-    (adapt, aim): (&Adapt, f64),
-    unknowns: usize,
-) -> Vec<f64> {
-    let mesh = &problem.mesh;
+/// Sizes with which the error should fall to `aim`; the number of cells grows at most by `budget`.
+fn next_sizes(mesh: &Mesh, accuracy: &Accuracy, aim: f64, budget: f64) -> Vec<f64> {
     let mut sizes = match &accuracy.jumps {
         Some(jumps) => target_sizes(mesh, &jumps.of_cell, &jumps.nearest_fracture, aim),
         None => {
@@ -109,7 +95,6 @@ fn next_sizes(
         }
     };
     let growth = cells(mesh, &sizes) / mesh.cells.len() as f64;
-    let budget = adapt.max_unknowns / unknowns as f64;
     let scale = (growth / growth.max(LEAST_GROWTH).min(budget)).cbrt();
     sizes.iter_mut().for_each(|size| *size *= scale);
     sizes

@@ -14,7 +14,7 @@ use kluft_solver::Bookmark;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
-use crate::measures::Measure;
+use crate::measure::Measure;
 use crate::summary::{FractureSummary, Seconds, StepMeasures};
 
 /// Its name in the folder of the results.
@@ -226,15 +226,16 @@ impl Identity {
 
 /// A mesh that is not the one of the interrupted run.
 pub fn other_mesh(path: &Path, is_made: bool) -> Defect {
-    let (problem, remedy) = match is_made {
-        true => (
+    let (problem, remedy) = if is_made {
+        (
             "gmsh now makes another mesh than that of the interrupted run",
             "use the same gmsh and the same files that the geometry includes, or put the former mesh.msh back",
-        ),
-        false => (
+        )
+    } else {
+        (
             "the mesh has changed since the run was interrupted",
             "put the former mesh back",
-        ),
+        )
     };
     let remedy = format!("{remedy}; or {AFRESH}");
     Defect::new(path.display().to_string(), problem, remedy)

@@ -1,14 +1,14 @@
 //! From a scene to a checked problem, piece by piece; a run and an inspection share them.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use kluft_io::{Meshing, mesh_geometry};
 use kluft_mesh::Defect;
-
-use crate::output::Output;
-use crate::report::Report;
 use kluft_scene::{MeshSource, Scene};
+
+use crate::observer::{Observer, Stage};
+use crate::output::Output;
 
 /// A mesh file, and how long gmsh took to make it, if it did.
 pub struct MeshFile {
@@ -32,7 +32,7 @@ pub fn mesh_file(
     scene: &Scene,
     output: &Output,
     sizes: Option<&Path>,
-    report: &mut Report,
+    observer: &mut dyn Observer,
 ) -> Result<MeshFile, Vec<Defect>> {
     match &scene.mesh {
         MeshSource::File(file) => Ok(MeshFile {
@@ -53,9 +53,13 @@ pub fn mesh_file(
                 sizes,
                 output: &path,
             };
-            let (warnings, took) = report.stage("meshing (gmsh)", |_| mesh_geometry(&meshing));
+            observer.stage_begins(Stage::Mesh);
+            let start = Instant::now();
+            let warnings = mesh_geometry(&meshing);
+            let took = start.elapsed();
+            observer.stage_ends(Stage::Mesh, took);
             for warning in warnings? {
-                report.detail("gmsh", &warning);
+                observer.detail("gmsh", &warning);
             }
             Ok(MeshFile {
                 path,

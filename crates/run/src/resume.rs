@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use kluft_mesh::Defect;
+use kluft_scene::{MeshSource, Scene};
 
 use crate::checkpoint::{self, Fingerprint, Identity, Progress};
 use crate::output::Output;
-use kluft_scene::{MeshSource, Scene};
+use crate::request::Origin;
 
 /// An interrupted run, or a finished one.
 pub struct Former {
@@ -26,10 +27,10 @@ impl Former {
 }
 
 /// What the scene and the program are, for checkpoints; the mesh is not known yet.
-pub fn identity(scene: &Scene, text: &str) -> Identity {
+pub fn identity(scene: &Scene, origin: Option<Origin<'_>>) -> Identity {
     Identity {
         version: env!("CARGO_PKG_VERSION").into(),
-        scene: checkpoint::fingerprint(text),
+        scene: origin.map_or(0, |origin| checkpoint::fingerprint(origin.text)),
         // One that cannot be read is refused when it is meshed.
         geometry: geometry(scene).and_then(|path| checkpoint::fingerprint_of(path).ok()),
         mesh: 0,
@@ -83,9 +84,7 @@ fn mesh_of(scene: &Scene, former: &Identity, output: &Output) -> Result<bool, De
             let kept = checkpoint::fingerprint_of(&output.path("mesh.msh"));
             Ok(kept.is_ok_and(|kept| kept == former.mesh))
         }
-        MeshSource::File(file) => match checkpoint::fingerprint_of(file)? == former.mesh {
-            true => Ok(false),
-            false => Err(checkpoint::other_mesh(file, false)),
-        },
+        MeshSource::File(file) if checkpoint::fingerprint_of(file)? == former.mesh => Ok(false),
+        MeshSource::File(file) => Err(checkpoint::other_mesh(file, false)),
     }
 }

@@ -1,13 +1,11 @@
-//! What the program decided, and what went wrong, in words.
+//! What the program decided, in words.
 
-use kluft_mesh::Defect;
+use kluft_scene::SolverEntry;
 use kluft_solver::{
-    LinearFailure, LinearMethod, NewtonSettings, Outcome, Plan, Prediction, Problem, Schedule,
-    Step, StepRecord, Support, System,
+    LinearMethod, NewtonSettings, Plan, Prediction, Problem, Schedule, Step, Support,
 };
 
 use crate::summary::FractureSummary;
-use kluft_scene::SolverEntry;
 
 /// How much model a problem needs.
 pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
@@ -98,10 +96,10 @@ pub fn of_plan(plan: &Plan, asked: &SolverEntry) -> String {
     let others = plan.predictions.iter().filter(|p| p.method != plan.method);
     let others: Vec<String> = others.map(cost).collect();
     let line = format!("linear solver: {why}, predicted {}", cost(chosen));
-    match others.is_empty() {
-        true => line,
-        false => format!("{line} (against {})", others.join(", ")),
+    if others.is_empty() {
+        return line;
     }
+    format!("{line} (against {})", others.join(", "))
 }
 
 fn duration(seconds: f64) -> String {
@@ -112,38 +110,9 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-fn gigabytes(bytes: usize) -> String {
+/// A memory in gigabytes.
+pub fn gigabytes(bytes: usize) -> String {
     format!("{:.2} GB", bytes as f64 / 1e9)
-}
-
-/// A solver that does not fit in memory, and what would.
-pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
-    let chosen = plan.prediction();
-    let smaller = plan.predictions.iter().find(|p| p.memory_bytes <= limit);
-    let place = match (asked.linear, asked.memory_limit) {
-        (None, None) => "memory of this machine",
-        _ => "[solver]",
-    };
-    let remedy = smaller.map_or(
-        "mesh coarser (a larger h, or order = 1), or run it on a machine with more memory".into(),
-        |smaller| {
-            format!(
-                "write linear = \"{}\" under [solver] ({}), or leave the choice to the program",
-                smaller.method,
-                gigabytes(smaller.memory_bytes)
-            )
-        },
-    );
-    Defect::new(
-        place,
-        format!(
-            "the {} solver needs {} with the estimate of errors, and may take {}",
-            chosen.method,
-            gigabytes(chosen.memory_bytes),
-            gigabytes(limit)
-        ),
-        remedy,
-    )
 }
 
 fn nothing_acts(problem: &Problem) -> bool {
@@ -199,81 +168,4 @@ pub fn of_step(schedule: &Schedule, step: &Step) -> String {
 fn brief(number: f64) -> String {
     let rounded: f64 = format!("{number:.5e}").parse().unwrap_or(number);
     rounded.to_string()
-}
-
-/// Why a load step did not converge, and where.
-pub fn not_converged(
-    problem: &Problem,
-    system: &System<'_>,
-    number: usize,
-    record: &StepRecord,
-) -> String {
-    let step = of_step(&problem.schedule, &problem.schedule.steps[number - 1]);
-    let count = record.iterations.len();
-    let at = |point: Option<usize>| {
-        point.map_or(String::new(), |point| {
-            format!(" at {}", facet_place(problem, system, point))
-        })
-    };
-    let why = match &record.outcome {
-        Outcome::Converged => "nothing went wrong".to_owned(),
-        Outcome::OutOfIterations => format!(
-            "the tests do not hold after {count} iterations; the closure error is largest{}",
-            at(record.worst_facet_point)
-        ),
-        Outcome::Loose => "the loads push rock that nothing holds any more".to_owned(),
-        Outcome::NotFinite(point) => format!(
-            "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
-            count + 1,
-            at(*point)
-        ),
-        Outcome::Linear(failure) => linear_failure(problem, system, failure),
-    };
-    let walked = (record.walked > 0.0).then(|| {
-        let percent = 100.0 * record.walked;
-        format!("; {percent:.1} % of the way from the step before could be walked")
-    });
-    let loose = record.loose.iter().map(|block| {
-        let (place, problem, remedy) = (&block.place, &block.problem, &block.remedy);
-        format!("; {place}: {problem}: {remedy}")
-    });
-    let rest: String = walked.into_iter().chain(loose).collect();
-    format!("step {number} ({step}): {why}{rest}")
-}
-
-fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
-    let facet_point = &system.discretisation.interface.points[point];
-    let facet = facet_point.facet as usize;
-    let node = problem.mesh.facets.elements.nodes_of(facet)[0] as usize;
-    let x = problem.mesh.nodes[node];
-    let fracture = &problem.mesh.fractures[facet_point.fracture as usize];
-    format!(
-        "fracture `{fracture}`, facet at node {} ({:.4}, {:.4}, {:.4})",
-        problem.mesh.node_tags[node], x.x, x.y, x.z
-    )
-}
-
-/// Why a linear system could not be solved.
-pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFailure) -> String {
-    match failure {
-        LinearFailure::OutOfMemory => {
-            "the factor does not fit in memory; mesh coarser (a larger h)".into()
-        }
-        LinearFailure::Indefinite(row) => {
-            let node = system.discretisation.points.node[*row] as usize;
-            let x = problem.mesh.nodes[node];
-            format!(
-                "the stiffness is not positive definite at node {} ({:.4}, {:.4}, {:.4}): the rock there can move freely; hold it, or give the fractures around it stiffness",
-                problem.mesh.node_tags[node], x.x, x.y, x.z
-            )
-        }
-        LinearFailure::NotFinite => {
-            "a number in the linear system is not finite; check the units of stiffness and load"
-                .into()
-        }
-        LinearFailure::Stalled(iterations) => format!(
-            "the linear solver gave up after {iterations} iterations; choose another with [solver]"
-        ),
-        LinearFailure::Analysis(what) => format!("the linear solver failed: {what}"),
-    }
 }

@@ -7,8 +7,7 @@ use kluft_mesh::Defect;
 use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
-use crate::adapt::Round;
-use crate::measures::Measure;
+use crate::measure::Measure;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -60,6 +59,17 @@ pub struct MeshSummary {
     pub fracture_facets: usize,
     /// Largest number of sectors around a node.
     pub max_sectors: u32,
+}
+
+/// One mesh on the way to the last.
+#[derive(Debug, Clone, Serialize)]
+pub struct MeshTrial {
+    /// Its unknowns.
+    pub unknowns: usize,
+    /// Estimated error on it: what the tolerance speaks of.
+    pub error: f64,
+    /// Time that it took, meshing included (s).
+    pub seconds: f64,
 }
 
 /// Numbers of scalar unknowns.
@@ -172,7 +182,7 @@ pub struct Summary {
     pub mesh: MeshSummary,
     /// The meshes on the way to this one, if the scene adapts it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub meshes: Vec<Round>,
+    pub meshes: Vec<MeshTrial>,
     /// The unknowns.
     pub unknowns: UnknownSummary,
     /// The fractures after the last converged step, by name.
@@ -215,19 +225,19 @@ impl Summary {
     }
 }
 
-/// Sums up the fractures of a solution.
+/// Sums up the fractures of a solution; `nodes` are its results at the nodes of the facets.
 pub fn fractures(
     problem: &Problem,
     interface: &Interface,
     solution: &Solution,
+    nodes: &[FacetResult],
 ) -> Vec<(String, FractureSummary)> {
     let mesh = &problem.mesh;
     let names = mesh.fractures.iter().enumerate();
-    let nodes = solution.facet_nodes(problem, interface);
     names
         .map(|(fracture, name)| {
             let points = solution.facet_points.as_slice();
-            let summary = fracture_summary(problem, interface, [points, &nodes], fracture as u32);
+            let summary = fracture_summary(problem, interface, [points, nodes], fracture as u32);
             (name.clone(), summary)
         })
         .collect()

@@ -3,27 +3,12 @@
 use glam::DVec3;
 use kluft_solver::{FacetResult, Solution, System};
 use lie_core::{FacetQuadrature, FacetRulePoint, Rock, facet_points};
-use serde::{Deserialize, Serialize};
 
 use kluft_scene::{Extent, JumpProfile, Oracle};
 
 use crate::crack_front::{Behind, stress_intensity};
+use crate::measure::Measure;
 use crate::summary::FractureSummary;
-
-/// One number by which runs are compared.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Measure {
-    /// What is measured.
-    pub name: String,
-    /// The fracture; none for the whole body.
-    pub fracture: Option<String>,
-    /// Its value, if it is one number.
-    pub value: Option<f64>,
-    /// Its value in closed form.
-    pub exact: Option<f64>,
-    /// Error as a share of the closed form; of a field, of its norm.
-    pub error: Option<f64>,
-}
 
 /// Jump at one quadrature point of a facet.
 struct Sample {

@@ -1,18 +1,20 @@
-//! From a solution to the files that ParaView opens.
+//! The folder of the results: grids for ParaView and their collections.
 
 use std::path::{Path, PathBuf};
 
-use kluft_io::{Field, Grid, Values, write_pvd, write_vtu};
+use kluft_io::{Grid, write_pvd, write_vtu};
 use kluft_mesh::Defect;
-use kluft_solver::{Solution, System};
+use tempfile::TempDir;
 
-use crate::accuracy::Accuracy;
 use crate::checkpoint;
 
 /// Writes the results of a run into one folder, step by step; the collections always list exactly
 /// the steps that are complete.
+///
+/// An output nowhere has a temporary folder for what gmsh needs, which goes with it, and keeps nothing.
 pub struct Output {
     folder: PathBuf,
+    temporary: Option<TempDir>,
     rock: Vec<(f64, String)>,
     fractures: Vec<(f64, String)>,
 }
@@ -36,9 +38,35 @@ impl Output {
         std::fs::remove_file(&probe).map_err(refused)?;
         Ok(Self {
             folder: folder.to_owned(),
+            temporary: None,
             rock: Vec::new(),
             fractures: Vec::new(),
         })
+    }
+
+    /// An output that keeps nothing.
+    ///
+    /// # Errors
+    /// If there is no place for temporary files.
+    pub fn nowhere() -> Result<Self, Defect> {
+        let temporary = tempfile::tempdir().map_err(|error| {
+            Defect::new(
+                std::env::temp_dir().display().to_string(),
+                format!("no temporary folder can be made: {error}"),
+                "name a folder you may write to in the environment variable TMPDIR",
+            )
+        })?;
+        Ok(Self {
+            folder: temporary.path().to_owned(),
+            temporary: Some(temporary),
+            rock: Vec::new(),
+            fractures: Vec::new(),
+        })
+    }
+
+    /// Whether results are kept.
+    pub fn is_kept(&self) -> bool {
+        self.temporary.is_none()
     }
 
     /// A path in the folder.
@@ -67,10 +95,10 @@ impl Output {
             Defect::new(file.display().to_string(), problem, remedy)
         });
         let missing: Vec<Defect> = missing.collect();
-        match missing.is_empty() {
-            true => Ok(()),
-            false => Err(missing),
+        if missing.is_empty() {
+            return Ok(());
         }
+        Err(missing)
     }
 
     /// Removes what another run has written: its load steps, so that the folder never holds steps of
@@ -103,23 +131,22 @@ impl Output {
         })
     }
 
-    /// Writes one load step with its time for ParaView.
+    /// Writes the grids of one load step with its time for ParaView.
     ///
     /// # Errors
     /// If a file cannot be written.
     pub fn write_step(
         &mut self,
-        system: &System<'_>,
-        solution: &Solution,
-        accuracy: &Accuracy,
         time: f64,
+        rock_grid: impl FnOnce() -> Grid + Send,
+        fracture_grid: impl FnOnce() -> Grid + Send,
     ) -> Result<(), Defect> {
+        if !self.is_kept() {
+            return Ok(());
+        }
         let [rock, fractures] = names(self.rock.len() + 1);
-        let of_rock = || write_vtu(&self.path(&rock), rock_grid(system, solution, accuracy));
-        let of_fractures = || {
-            let grid = fracture_grid(system, solution, accuracy);
-            write_vtu(&self.path(&fractures), grid)
-        };
+        let of_rock = || write_vtu(&self.path(&rock), rock_grid());
+        let of_fractures = || write_vtu(&self.path(&fractures), fracture_grid());
         let (rock_written, fractures_written) = rayon::join(of_rock, of_fractures);
         rock_written?;
         fractures_written?;
@@ -165,102 +192,4 @@ fn is_step(name: &str) -> bool {
         rest == ".pvd" || number.is_some_and(is_number)
     };
     of_kind("rock") || of_kind("fractures")
-}
-
-/// The rock, with one copy of a node for each of its sectors.
-fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
-    let mesh = &system.problem.mesh;
-    let points = &system.discretisation.points;
-    let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
-    let displacements = solution.displacements.iter().map(|u| u.to_array());
-    Grid {
-        points: points
-            .node
-            .iter()
-            .map(|&node| mesh.nodes[node as usize].to_array())
-            .collect(),
-        shapes: mesh.cells.shapes.clone(),
-        offsets: mesh.cells.offsets.clone(),
-        nodes: points.of_cell_node.clone(),
-        point_fields: vec![real("displacement", displacements)],
-        cell_fields: vec![
-            real("stress", solution.stresses.iter().copied()),
-            integer("rock", rocks),
-            real(
-                "stress_error",
-                accuracy.stress_errors.iter().map(|&error| [error]),
-            ),
-        ],
-    }
-}
-
-/// The fractures; every facet has its own points, so that fields may jump between facets.
-fn fracture_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
-    let mesh = &system.problem.mesh;
-    let elements = &mesh.facets.elements;
-    let results = &solution.facet_nodes(system.problem, &system.discretisation.interface);
-    let vectors = |of: fn(&kluft_solver::FacetResult) -> glam::DVec3| {
-        results.iter().map(move |result| of(result).to_array())
-    };
-    let normals = mesh
-        .facet_areas()
-        .into_iter()
-        .map(|area| area.normalize().to_array());
-    let mut grid = Grid {
-        points: elements
-            .nodes
-            .iter()
-            .map(|&node| mesh.nodes[node as usize].to_array())
-            .collect(),
-        shapes: elements.shapes.clone(),
-        offsets: elements.offsets.clone(),
-        nodes: (0..elements.nodes.len() as u32).collect(),
-        point_fields: vec![
-            real("aperture", results.iter().map(|result| [result.aperture])),
-            real("opening", results.iter().map(|result| [result.opening])),
-            real("slip", vectors(|result| result.slip)),
-            real("jump", vectors(|result| result.jump)),
-            real("traction", vectors(|result| result.traction)),
-            real(
-                "normal_traction",
-                results.iter().map(|result| [result.normal_traction]),
-            ),
-            integer("state", results.iter().map(|result| result.state as i32)),
-        ],
-        cell_fields: vec![
-            real("normal", normals),
-            integer(
-                "fracture",
-                mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
-            ),
-        ],
-    };
-    if let Some(jumps) = &accuracy.jumps {
-        let of_facets = mesh.facets.fracture.iter();
-        let of_facets = of_facets.map(|&fracture| [jumps.aperture[fracture as usize]]);
-        let field = real("aperture_uncertainty", of_facets);
-        grid.cell_fields.push(field);
-    }
-    grid
-}
-
-/// A field of `N` numbers a point or cell.
-pub(crate) fn real<const N: usize>(
-    name: &'static str,
-    values: impl Iterator<Item = [f64; N]>,
-) -> Field {
-    let values: Vec<[f64; N]> = values.collect();
-    Field {
-        name,
-        components: N as u32,
-        values: Values::Real(values.into_flattened()),
-    }
-}
-
-pub(crate) fn integer(name: &'static str, values: impl Iterator<Item = i32>) -> Field {
-    Field {
-        name,
-        components: 1,
-        values: Values::Integer(values.collect()),
-    }
 }

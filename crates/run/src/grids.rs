@@ -1,0 +1,105 @@
+//! The results of a load step as grids.
+
+use glam::DVec3;
+use kluft_io::{Field, Grid, Values};
+use kluft_solver::{FacetResult, Solution, System};
+
+use crate::accuracy::Accuracy;
+
+/// The rock, with one copy of a node for each of its sectors.
+pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
+    let mesh = &system.problem.mesh;
+    let points = &system.discretisation.points;
+    let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
+    let displacements = solution.displacements.iter().map(|u| u.to_array());
+    Grid {
+        points: points
+            .node
+            .iter()
+            .map(|&node| mesh.nodes[node as usize].to_array())
+            .collect(),
+        shapes: mesh.cells.shapes.clone(),
+        offsets: mesh.cells.offsets.clone(),
+        nodes: points.of_cell_node.clone(),
+        point_fields: vec![real_field("displacement", displacements)],
+        cell_fields: vec![
+            real_field("stress", solution.stresses.iter().copied()),
+            integer_field("rock", rocks),
+            real_field(
+                "stress_error",
+                accuracy.stress_errors.iter().map(|&error| [error]),
+            ),
+        ],
+    }
+}
+
+/// The fractures; every facet has its own points, so that fields may jump between facets. `results` are
+/// those of the nodes of the facets.
+pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Accuracy) -> Grid {
+    let mesh = &system.problem.mesh;
+    let elements = &mesh.facets.elements;
+    let vectors =
+        |of: fn(&FacetResult) -> DVec3| results.iter().map(move |result| of(result).to_array());
+    let normals = mesh
+        .facet_areas()
+        .into_iter()
+        .map(|area| area.normalize().to_array());
+    let mut grid = Grid {
+        points: elements
+            .nodes
+            .iter()
+            .map(|&node| mesh.nodes[node as usize].to_array())
+            .collect(),
+        shapes: elements.shapes.clone(),
+        offsets: elements.offsets.clone(),
+        nodes: (0..elements.nodes.len() as u32).collect(),
+        point_fields: vec![
+            real_field("aperture", results.iter().map(|result| [result.aperture])),
+            real_field("opening", results.iter().map(|result| [result.opening])),
+            real_field("slip", vectors(|result| result.slip)),
+            real_field("jump", vectors(|result| result.jump)),
+            real_field("traction", vectors(|result| result.traction)),
+            real_field(
+                "normal_traction",
+                results.iter().map(|result| [result.normal_traction]),
+            ),
+            integer_field("state", results.iter().map(|result| result.state as i32)),
+        ],
+        cell_fields: vec![
+            real_field("normal", normals),
+            integer_field(
+                "fracture",
+                mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
+            ),
+        ],
+    };
+    if let Some(jumps) = &accuracy.jumps {
+        let of_facets = mesh.facets.fracture.iter();
+        let of_facets = of_facets.map(|&fracture| [jumps.aperture[fracture as usize]]);
+        let field = real_field("aperture_uncertainty", of_facets);
+        grid.cell_fields.push(field);
+    }
+    grid
+}
+
+/// A field of `N` numbers a point or cell.
+pub fn real_field<const N: usize>(
+    name: &'static str,
+    values: impl Iterator<Item = [f64; N]>,
+) -> Field {
+    let values: Vec<[f64; N]> = values.collect();
+    Field {
+        name,
+        components: N as u32,
+        values: Values::Real(values.into_flattened()),
+    }
+}
+
+/// A field of one whole number a point or cell.
+pub fn integer_field(name: &'static str, values: impl Iterator<Item = i32>) -> Field {
+    Field {
+        name,
+        components: 1,
+        values: Values::Integer(values.collect()),
+    }
+}

@@ -1,0 +1,61 @@
+//! A run as a library: a scene and a mesh go in, the results of all load steps come out as values.
+//!
+//! [`run`] takes a [`Request`] (scene, mesh, thread pool, where results go) and an [`Observer`], and
+//! returns an [`Outcome`]. It prints nothing, sets nothing global and ends no process; two runs with
+//! different numbers of threads may work side by side.
+//!
+//! | file | part of a run |
+//! |---|---|
+//! | `run` | the story: former run, mesh, problem, load steps, summary |
+//! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
+//! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
+//! | `output`, `grids`, `checkpoint`, `resume` | files |
+//! | `decisions`, `failures` | what the program decided, and why a run failed, in words |
+//!
+//! ```
+//! use kluft_run::{Ending, MeshInput, Request, run};
+//! use kluft_scene::Scene;
+//!
+//! let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../geometries/closing-blocks");
+//! let scene = Scene::read(&std::path::Path::new(folder).join("scene.toml")).expect("a scene");
+//! # let is_meshed = kluft_io::gmsh::version().is_some();
+//! # if !is_meshed { return; }
+//! let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+//! let outcome = run(Request::in_memory(&scene, MeshInput::OfScene, &pool), &mut ()).expect("no defects");
+//! assert_eq!(outcome.ending, Ending::Solved);
+//! let last = outcome.steps.last().expect("a load step");
+//! assert!(last.fractures.iter().all(|(_, numbers)| numbers.aperture.min > 0.0));
+//! ```
+
+mod accuracy;
+mod adapt;
+mod checkpoint;
+mod crack_front;
+mod decisions;
+mod failures;
+mod grids;
+mod measure;
+mod measures;
+pub mod memory;
+mod observer;
+mod outcome;
+mod output;
+mod prepare;
+mod request;
+mod resume;
+mod run;
+mod stages;
+mod steps;
+mod summary;
+
+pub use checkpoint::{Fingerprint, fingerprint, fingerprint_of};
+pub use grids::{integer_field, real_field};
+pub use measure::Measure;
+pub use observer::{Observer, Stage, StepStart};
+pub use outcome::{Ending, Outcome, StepResult};
+pub use output::Output;
+pub use prepare::{folder_for, mesh_file};
+pub use request::{MeshInput, Origin, Request};
+pub use run::run;
+pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary};

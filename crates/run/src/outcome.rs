@@ -1,0 +1,42 @@
+//! What a run returns.
+
+use kluft_io::Grid;
+
+use crate::summary::{FractureSummary, StepSummary, Summary};
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ending {
+    /// All load steps converged.
+    Solved,
+    /// A load step did not converge: which, where and why.
+    NotConverged(String),
+    /// The observer stopped it.
+    Stopped,
+    /// A former run had finished all load steps: nothing was left to do.
+    NothingLeft,
+}
+
+/// Everything that came out of a run, the steps that converged before a failure included.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// Its numbers, as `summary.json` holds them.
+    pub summary: Summary,
+    /// The results of the load steps that it solved, if it was asked to keep them.
+    pub steps: Vec<StepResult>,
+}
+
+/// The results of a converged load step.
+#[derive(Debug, Clone)]
+pub struct StepResult {
+    /// How it was solved.
+    pub summary: StepSummary,
+    /// The numbers of each fracture, by name.
+    pub fractures: Vec<(String, FractureSummary)>,
+    /// The rock, with one copy of a node for each of its sectors: displacement (m), stress (Pa).
+    pub rock: Grid,
+    /// The fractures, each facet with points of its own: aperture, jump (m), traction (Pa).
+    pub fracture_grid: Grid,
+}

@@ -1,0 +1,86 @@
+//! A run, told as a story.
+
+use kluft_mesh::Defect;
+
+use crate::adapt;
+use crate::checkpoint;
+use crate::observer::Observer;
+use crate::outcome::{Ending, Outcome};
+use crate::output::Output;
+use crate::request::Request;
+use crate::resume::{self, Former};
+use crate::stages::{Interruption, Run};
+
+/// Runs a scene: mesh, enrich, assemble, solve, write.
+///
+/// # Errors
+/// Every defect of geometry, mesh and scene, and files that cannot be written. A load step that does not
+/// converge is no error: see [`Ending::NotConverged`].
+pub fn run(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome, Vec<Defect>> {
+    let pool = request.pool;
+    pool.install(|| run_here(request, observer))
+}
+
+/// Runs a scene on the present thread pool.
+fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome, Vec<Defect>> {
+    let output = match request.folder {
+        Some(folder) => Output::prepare(folder),
+        None => Output::nowhere(),
+    };
+    let output = output.map_err(|defect| vec![defect])?;
+    let version = env!("CARGO_PKG_VERSION");
+    observer.note("kluft", &format!("{version}  {}", request.scene.title));
+    let identity = resume::identity(request.scene, request.origin);
+    let mut former = None;
+    if let Some(origin) = request.origin.filter(|_| request.resume) {
+        former = resume::find(origin.file, request.scene, &identity, &output)?;
+        observer.note("resume", &what_is_left(former.as_ref(), &output));
+    }
+    let is_finished = former.as_ref().is_some_and(Former::is_finished);
+    let mesh_is_kept = former.as_ref().is_some_and(|former| former.mesh_is_kept);
+    let mut run = Run::new(request, output, observer, identity, former.as_ref());
+    if is_finished {
+        return Ok(run.into_outcome(Ending::NothingLeft));
+    }
+    match solve(&mut run, former, mesh_is_kept) {
+        Ok(()) => run.finish(Ending::Solved),
+        Err(Interruption::NotConverged(why)) => run.finish(Ending::NotConverged(why)),
+        Err(Interruption::Stopped) => run.finish(Ending::Stopped),
+        Err(Interruption::Defects(defects)) => Err(defects),
+    }
+}
+
+fn solve(
+    run: &mut Run<'_>,
+    former: Option<Former>,
+    mesh_is_kept: bool,
+) -> Result<(), Interruption> {
+    if !mesh_is_kept {
+        adapt::search(run)?;
+    }
+    let problem = run.prepare(former.as_ref())?;
+    run.solve(&problem, former)
+}
+
+fn what_is_left(former: Option<&Former>, output: &Output) -> String {
+    match former {
+        None => format!(
+            "there is no {} in {}: from the beginning",
+            checkpoint::NAME,
+            output.path("").display()
+        ),
+        Some(former) if former.is_finished() => format!(
+            "all {} load steps are finished: nothing is left to do",
+            former.progress.steps.len()
+        ),
+        Some(former) => format!(
+            "{} load steps are finished{}",
+            former.progress.steps.len(),
+            if former.mesh_is_kept {
+                ", and their mesh is there"
+            } else {
+                ""
+            }
+        ),
+    }
+}

@@ -1,0 +1,363 @@
+//! The stages of a run that are done once: mesh, problem, unknowns, matrix, linear solver.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use kluft_io::load_msh;
+use kluft_mesh::{Defect, Draft};
+use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry};
+use kluft_solver::{
+    Discretisation, LinearFailure, Newton, NewtonSettings, Plan, Problem, System, Workload,
+};
+
+use crate::checkpoint::{self, Identity};
+use crate::decisions;
+use crate::failures;
+use crate::memory;
+use crate::observer::{Observer, Stage};
+use crate::outcome::{Ending, Outcome, StepResult};
+use crate::output::Output;
+use crate::prepare::{self, MeshFile};
+use crate::request::{MeshInput, Request};
+use crate::resume::Former;
+use crate::summary::{MeshSummary, Seconds, StepMeasures, Summary, UnknownSummary};
+
+/// What ends a run early.
+pub enum Interruption {
+    /// A load step did not converge: which, where and why.
+    NotConverged(String),
+    /// The observer said so.
+    Stopped,
+    /// The input is wrong, or a file cannot be written.
+    Defects(Vec<Defect>),
+}
+
+impl From<Vec<Defect>> for Interruption {
+    fn from(defects: Vec<Defect>) -> Self {
+        Self::Defects(defects)
+    }
+}
+
+impl From<Defect> for Interruption {
+    fn from(defect: Defect) -> Self {
+        Self::Defects(vec![defect])
+    }
+}
+
+/// A run under way.
+pub struct Run<'a> {
+    /// What is asked for.
+    pub request: Request<'a>,
+    /// Where results go.
+    pub output: Output,
+    /// Who follows it.
+    pub observer: &'a mut dyn Observer,
+    /// What `summary.json` will hold.
+    pub summary: Summary,
+    /// What checkpoints belong to.
+    pub identity: Identity,
+    /// The finished load steps.
+    pub finished: Vec<StepMeasures>,
+    /// The results that are kept.
+    pub kept: Vec<StepResult>,
+    /// Name of the linear solver, and why it was chosen.
+    pub choice: (String, String),
+    /// Closed form of each fracture that has one.
+    pub oracles: Vec<Option<Oracle>>,
+    /// Whether its mesh came from memory; no checkpoint could tell it from another.
+    pub has_own_mesh: bool,
+    /// When it would have begun, had a former run not been interrupted.
+    start: Instant,
+    /// How long the last stage took.
+    took: Duration,
+    /// What the next mesh is made by.
+    meshing: Remeshing,
+}
+
+/// How a scene that adapts its mesh gets the next one.
+enum Remeshing {
+    /// As the geometry says.
+    Given,
+    /// With these sizes.
+    Sized(PathBuf),
+    /// Not at all: the last one stays.
+    Kept,
+}
+
+impl<'a> Run<'a> {
+    /// A run of a scene, or of what is left of it.
+    pub fn new(
+        request: Request<'a>,
+        output: Output,
+        observer: &'a mut dyn Observer,
+        identity: Identity,
+        former: Option<&Former>,
+    ) -> Self {
+        let mut summary = Summary {
+            kluft: env!("CARGO_PKG_VERSION"),
+            title: request.scene.title.clone(),
+            threads: rayon::current_num_threads(),
+            ..Summary::default()
+        };
+        let mut start = Instant::now();
+        if let Some(former) = former {
+            summary.seconds = former.progress.seconds.clone();
+            summary.peak_memory_bytes = former.progress.peak_memory_bytes;
+            let before = Duration::try_from_secs_f64(summary.seconds.total).unwrap_or_default();
+            start = start.checked_sub(before).unwrap_or(start);
+        }
+        let has_own_mesh = matches!(request.mesh, MeshInput::Draft(_));
+        Self {
+            request,
+            has_own_mesh,
+            output,
+            observer,
+            summary,
+            identity,
+            finished: Vec::new(),
+            kept: Vec::new(),
+            choice: Default::default(),
+            oracles: Vec::new(),
+            start,
+            took: Duration::ZERO,
+            meshing: Remeshing::Given,
+        }
+    }
+
+    /// Does the work of a stage: tells the observer and takes the time.
+    pub fn stage<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
+        self.observer.stage_begins(stage);
+        let start = Instant::now();
+        let result = work(self);
+        self.took = start.elapsed();
+        if let Some(seconds) = seconds_of(&mut self.summary.seconds, stage) {
+            *seconds += self.took.as_secs_f64();
+        }
+        self.observer.stage_ends(stage, self.took);
+        result
+    }
+
+    /// Tells what came out of the last stage, and how long it took.
+    fn note_timed(&mut self, kind: &str, text: &str) {
+        let text = format!("{text} ({:.2} s)", self.took.as_secs_f64());
+        self.observer.note(kind, &text);
+    }
+
+    /// From the scene to a checked problem.
+    ///
+    /// # Errors
+    /// Defects of geometry, mesh and scene, and a mesh that is not the one of the former run.
+    pub fn prepare(&mut self, former: Option<&Former>) -> Result<Problem, Interruption> {
+        let file = match &self.request.mesh {
+            MeshInput::OfScene => Some(self.mesh_file(former)?),
+            MeshInput::Draft(_) => None,
+        };
+        let binding = self.stage(Stage::Read, |run| {
+            let draft = run.draft(file.as_ref(), former)?;
+            run.bind(draft)
+        })?;
+        self.oracles = binding.oracles;
+        let mesh = &self.summary.mesh;
+        let size = format!(
+            "{} nodes, {} cells, {} fracture facets, at most {} sectors at a node",
+            mesh.nodes, mesh.cells, mesh.fracture_facets, mesh.max_sectors
+        );
+        self.note_timed("read", &size);
+        Ok(binding.problem)
+    }
+
+    /// The mesh as read; one in memory is taken.
+    fn draft(
+        &mut self,
+        file: Option<&MeshFile>,
+        former: Option<&Former>,
+    ) -> Result<Draft, Vec<Defect>> {
+        let Some(file) = file else {
+            return match std::mem::replace(&mut self.request.mesh, MeshInput::OfScene) {
+                MeshInput::Draft(draft) => Ok(*draft),
+                MeshInput::OfScene => Err(Vec::new()),
+            };
+        };
+        let draft = load_msh(&file.path, &self.output.path(""))?;
+        let fingerprint = checkpoint::fingerprint_of(&file.path);
+        self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
+        if former.is_some_and(|former| former.mesh != self.identity.mesh) {
+            let is_made = file.meshing.is_some();
+            return Err(vec![checkpoint::other_mesh(&file.path, is_made)]);
+        }
+        Ok(draft)
+    }
+
+    fn bind(&mut self, draft: Draft) -> Result<Binding, Vec<Defect>> {
+        let mut binding = self.request.scene.problem(draft)?;
+        self.summary.decisions.append(&mut binding.decisions);
+        let mesh = &binding.problem.mesh;
+        let counts = mesh.sectors.count.iter();
+        self.summary.mesh = MeshSummary {
+            nodes: counts.clone().filter(|&&count| count > 0).count(),
+            cells: mesh.cells.len(),
+            fracture_facets: mesh.facets.elements.len(),
+            max_sectors: counts.copied().max().unwrap_or(0),
+        };
+        Ok(binding)
+    }
+
+    /// The mesh file; gmsh makes it if it has to.
+    fn mesh_file(&mut self, former: Option<&Former>) -> Result<MeshFile, Vec<Defect>> {
+        let is_kept = matches!(self.meshing, Remeshing::Kept);
+        if is_kept || former.is_some_and(|former| former.mesh_is_kept) {
+            return Ok(MeshFile {
+                path: self.output.path("mesh.msh"),
+                meshing: None,
+            });
+        }
+        let sizes = match &self.meshing {
+            Remeshing::Sized(path) => Some(path.as_path()),
+            _ => None,
+        };
+        let scene = self.request.scene;
+        let file = prepare::mesh_file(scene, &self.output, sizes, self.observer)?;
+        if let (Some(took), MeshSource::Geometry { geometry, .. }) = (file.meshing, &scene.mesh) {
+            self.summary.seconds.mesh += took.as_secs_f64();
+            self.took = took;
+            self.note_timed("meshed", &geometry.display().to_string());
+        }
+        Ok(file)
+    }
+
+    /// Keeps the mesh for what follows.
+    pub fn keep_mesh(&mut self) {
+        self.meshing = Remeshing::Kept;
+    }
+
+    /// Makes the next mesh with the sizes of a file.
+    pub fn mesh_again_with(&mut self, sizes: PathBuf) {
+        self.meshing = Remeshing::Sized(sizes);
+        self.summary.decisions.clear();
+    }
+
+    /// Enriches the problem and assembles what stays the same for the whole run.
+    pub fn assemble<'p>(&mut self, problem: &'p Problem) -> Result<System<'p>, Interruption> {
+        let discretisation = self.stage(Stage::Enrich, |_| Discretisation::of(problem))?;
+        self.summary.unknowns = UnknownSummary {
+            total: discretisation.unknown_count(),
+            jump: 3 * discretisation.points.jump_count(),
+        };
+        let unknowns = &self.summary.unknowns;
+        let text = format!(
+            "{} unknowns, {} of them jumps",
+            unknowns.total, unknowns.jump
+        );
+        self.note_timed("enriched", &text);
+        let system = self.stage(Stage::Assemble, |_| {
+            System::assemble(problem, discretisation)
+        });
+        self.note_timed("assembled", "rock and loads, once for the run");
+        Ok(system)
+    }
+
+    /// Chooses the linear solver, the former run's if there was one, and refuses what would not fit in
+    /// memory.
+    pub fn plan(
+        &mut self,
+        system: &System<'_>,
+        former: Option<&Former>,
+    ) -> Result<Plan, Interruption> {
+        let asked = self.request.scene.solver;
+        let available = memory::available_bytes().unwrap_or(usize::MAX);
+        let limit = asked.memory_limit.map_or(available, |limit| limit as usize);
+        let before = former.and_then(|former| former.progress.choice.0.parse().ok());
+        let plan = self.stage(Stage::ChooseSolver, |_| {
+            let workload = Workload::of(system.problem);
+            let unknowns = (&system.discretisation).into();
+            Plan::of(unknowns, workload, before.or(asked.linear), limit)
+        });
+        let plan = solved(plan, system)?;
+        let prediction = plan.prediction();
+        self.summary.predicted_memory_bytes =
+            (memory::used_bytes() + prediction.memory_bytes) as u64;
+        if prediction.memory_bytes > limit {
+            return Err(failures::too_large(&plan, &asked, limit).into());
+        }
+        self.choice = match former {
+            Some(former) => former.progress.choice.clone(),
+            None => (plan.method.to_string(), decisions::of_plan(&plan, &asked)),
+        };
+        Ok(plan)
+    }
+
+    /// Prepares what the linear solver needs once a run.
+    pub fn set_up(&mut self, system: &System<'_>, plan: Plan) -> Result<Newton, Interruption> {
+        let name = plan.method.name();
+        let settings = newton_settings(&self.request.scene.solver);
+        let newton = self.stage(Stage::PrepareSolver, |_| {
+            Newton::planned(system, settings, plan)
+        });
+        self.note_timed("prepared", &format!("{name} solver, once for the run"));
+        solved(newton, system)
+    }
+
+    /// Writes the summary of what is finished so far.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_summary(&mut self) -> Result<(), Defect> {
+        self.summary.seconds.total = self.start.elapsed().as_secs_f64();
+        let peak = memory::peak_bytes() as u64;
+        self.summary.peak_memory_bytes = self.summary.peak_memory_bytes.max(peak);
+        if !self.output.is_kept() {
+            return Ok(());
+        }
+        self.summary.write(&self.output.path("summary.json"))
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// If the summary cannot be written.
+    pub fn finish(mut self, ending: Ending) -> Result<Outcome, Vec<Defect>> {
+        self.write_summary().map_err(|defect| vec![defect])?;
+        Ok(self.into_outcome(ending))
+    }
+
+    /// What came out of it.
+    pub fn into_outcome(self, ending: Ending) -> Outcome {
+        Outcome {
+            ending,
+            summary: self.summary,
+            steps: self.kept,
+        }
+    }
+}
+
+/// Where the time of a stage is added up; that of gmsh and of a load step is told by themselves.
+fn seconds_of(seconds: &mut Seconds, stage: Stage) -> Option<&mut f64> {
+    match stage {
+        Stage::Read => Some(&mut seconds.read),
+        Stage::Enrich => Some(&mut seconds.enrich),
+        Stage::Assemble => Some(&mut seconds.assemble),
+        Stage::ChooseSolver | Stage::PrepareSolver | Stage::RestoreSolver => {
+            Some(&mut seconds.factorise)
+        }
+        Stage::Estimate => Some(&mut seconds.estimate),
+        Stage::Write => Some(&mut seconds.write),
+        Stage::Mesh | Stage::Solve => None,
+    }
+}
+
+/// The failure of a linear solver in words.
+pub fn solved<T>(result: Result<T, LinearFailure>, system: &System<'_>) -> Result<T, Interruption> {
+    result.map_err(|failure| {
+        let why = failures::linear_failure(system.problem, system, &failure);
+        Interruption::NotConverged(why)
+    })
+}
+
+/// The settings of Newton's method that a scene asks for.
+pub fn newton_settings(asked: &SolverEntry) -> NewtonSettings {
+    let settings = NewtonSettings::default();
+    NewtonSettings {
+        path: asked.path_accuracy.unwrap_or(settings.path),
+        ..settings
+    }
+}

@@ -1,0 +1,259 @@
+//! The load steps of a run: each is solved, estimated, written, and can be resumed from.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use kluft_io::Grid;
+use kluft_solver::{Estimator, Newton, Plan, Problem, State, StepRecord, System, solution};
+
+use crate::accuracy::{self, Accuracy};
+use crate::checkpoint::{self, Progress};
+use crate::decisions;
+use crate::failures;
+use crate::grids::{fracture_grid, rock_grid};
+use crate::measures::{energy, measures};
+use crate::observer::{Stage, StepStart};
+use crate::outcome::StepResult;
+use crate::resume::Former;
+use crate::stages::{Interruption, Run, newton_settings, solved};
+use crate::summary::{self, StepSummary};
+
+/// A run that has a system and a solver.
+struct Prepared<'s, 'p> {
+    system: &'s System<'p>,
+    newton: Newton,
+    state: State,
+    /// Made with the first results, so that it takes no memory from the first solve.
+    estimator: Option<Estimator>,
+}
+
+impl Run<'_> {
+    /// Solves all load steps without writing anything: the number of unknowns and the estimated error at
+    /// the end.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn trial(&mut self, problem: &Problem) -> Result<(usize, Accuracy), Interruption> {
+        let system = self.assemble(problem)?;
+        let plan = self.plan(&system, None)?;
+        let mut prepared = Prepared {
+            newton: self.set_up(&system, plan)?,
+            state: system.initial_state(),
+            system: &system,
+            estimator: None,
+        };
+        for index in 0..problem.schedule.steps.len() {
+            self.solve_step(&mut prepared, index)?;
+        }
+        self.summary.steps.clear();
+        let solution = solution(&system, &prepared.state);
+        let unknowns = system.discretisation.unknown_count();
+        let estimator = Estimator::of(&system);
+        let accuracy = accuracy::of(&system, &mut prepared.newton, &estimator, &solution, true);
+        Ok((unknowns, accuracy))
+    }
+
+    /// From the problem to the results of all load steps that are left.
+    ///
+    /// # Errors
+    /// A load step that does not converge, a system that does not fit in memory, and files that
+    /// cannot be written.
+    pub fn solve(&mut self, problem: &Problem, former: Option<Former>) -> Result<(), Interruption> {
+        let system = self.assemble(problem)?;
+        let plan = self.plan(&system, former.as_ref())?;
+        self.decide(problem);
+        let mut prepared = match former {
+            None => self.begin(&system, plan)?,
+            Some(former) => self.go_on(&system, plan, former.progress)?,
+        };
+        for index in self.finished.len()..problem.schedule.steps.len() {
+            let record = self.solve_step(&mut prepared, index)?;
+            self.finished.push((&record).into());
+            self.take_results(&mut prepared)?;
+            self.write_summary()?;
+            self.write_checkpoint(problem, &prepared)?;
+        }
+        Ok(())
+    }
+
+    fn decide(&mut self, problem: &Problem) {
+        let settings = newton_settings(&self.request.scene.solver);
+        self.summary.decisions.push(self.choice.1.clone());
+        let of_problem = decisions::of_problem(problem, &settings);
+        self.summary.decisions.extend(of_problem);
+        for decision in &self.summary.decisions {
+            self.observer.note("decided", decision);
+        }
+    }
+
+    /// Prepares for the first load step.
+    fn begin<'s, 'p>(
+        &mut self,
+        system: &'s System<'p>,
+        plan: Plan,
+    ) -> Result<Prepared<'s, 'p>, Interruption> {
+        if self.output.is_kept() {
+            self.output.remove_former()?;
+        }
+        self.write_summary()?;
+        Ok(Prepared {
+            newton: self.set_up(system, plan)?,
+            state: system.initial_state(),
+            system,
+            estimator: None,
+        })
+    }
+
+    /// Prepares for the load step after the last one that a former run finished.
+    fn go_on<'s, 'p>(
+        &mut self,
+        system: &'s System<'p>,
+        plan: Plan,
+        former: Progress<'static>,
+    ) -> Result<Prepared<'s, 'p>, Interruption> {
+        let steps = &system.problem.schedule.steps;
+        let done = &steps[..former.steps.len().min(steps.len())];
+        let times = done.iter().map(|step| step.load.time);
+        self.output.go_on_after(times);
+        let summaries = done.iter().zip(&former.steps);
+        let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
+        self.summary.steps = summaries.collect();
+        self.summary.fractures = former.fractures;
+        self.summary.measures = former.measures;
+        self.summary.stress_error = former.stress_error;
+        self.finished = former.steps;
+        let mut newton = self.set_up(system, plan)?;
+        let bookmark = former.bookmark.filter(|bookmark| bookmark.fits(system));
+        let Some(bookmark) = bookmark else {
+            let path = self.output.path(checkpoint::NAME);
+            return Err(checkpoint::other_build(&path).into());
+        };
+        let state = self.stage(Stage::RestoreSolver, |_| newton.turn_to(system, bookmark));
+        let text = format!("after step {} of {}", self.finished.len(), steps.len());
+        self.observer.note("resumed", &text);
+        Ok(Prepared {
+            state: solved(state, system)?,
+            newton,
+            system,
+            estimator: None,
+        })
+    }
+
+    /// Solves a load step.
+    fn solve_step(
+        &mut self,
+        prepared: &mut Prepared<'_, '_>,
+        index: usize,
+    ) -> Result<StepRecord, Interruption> {
+        let system = prepared.system;
+        let schedule = &system.problem.schedule;
+        let step = &schedule.steps[index];
+        self.observer.step_begins(StepStart {
+            number: index + 1,
+            count: schedule.steps.len(),
+            what: &decisions::of_step(schedule, step),
+        });
+        let mut is_stopped = false;
+        let record = self.stage(Stage::Solve, |run| {
+            let Prepared { newton, state, .. } = prepared;
+            newton.step(system, state, &step.load, |number, iteration| {
+                is_stopped |= run.observer.iteration(number, iteration) == ControlFlow::Break(());
+            })
+        });
+        self.summary.seconds.factorise += record.factorise_seconds;
+        self.summary.seconds.solve += record.solve_seconds;
+        let summary = StepSummary::of(step, (&record).into());
+        self.summary.steps.push(summary);
+        if is_stopped {
+            return Err(Interruption::Stopped);
+        }
+        if !record.converged() {
+            let why = failures::not_converged(system.problem, system, index + 1, &record);
+            return Err(Interruption::NotConverged(why));
+        }
+        Ok(record)
+    }
+
+    /// Estimates the error of a load step, sums it up and writes its results.
+    fn take_results(&mut self, prepared: &mut Prepared<'_, '_>) -> Result<(), Interruption> {
+        let system = prepared.system;
+        let is_last = self.finished.len() == system.problem.schedule.steps.len();
+        let solution = solution(system, &prepared.state);
+        let Prepared {
+            newton, estimator, ..
+        } = prepared;
+        let accuracy = self.stage(Stage::Estimate, |_| {
+            let estimator = estimator.get_or_insert_with(|| Estimator::of(system));
+            accuracy::of(system, newton, estimator, &solution, is_last)
+        });
+        let interface = &system.discretisation.interface;
+        let nodes = solution.facet_nodes(system.problem, interface);
+        let mut fractures = summary::fractures(system.problem, interface, &solution, &nodes);
+        accuracy.note_in(&mut fractures);
+        self.summary.fractures = fractures;
+        self.summary.stress_error = accuracy.relative;
+        // Closed forms speak of the end of the loads.
+        let oracles = if is_last { &self.oracles[..] } else { &[] };
+        self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
+        self.summary.measures.push(energy(accuracy.energy));
+        self.summary.warnings = decisions::warnings(&self.summary.fractures);
+        let time = prepared.state.load.time;
+        self.stage(Stage::Write, |run| {
+            let rock = || rock_grid(system, &solution, &accuracy);
+            let fractures = || fracture_grid(system, &nodes, &accuracy);
+            if !run.request.keep_results {
+                return run.output.write_step(time, rock, fractures);
+            }
+            let (rock, fractures) = rayon::join(rock, fractures);
+            let written = run
+                .output
+                .write_step(time, || rock.clone(), || fractures.clone());
+            run.keep(rock, fractures);
+            written
+        })?;
+        Ok(())
+    }
+
+    /// Keeps the results of the load step that was solved last.
+    fn keep(&mut self, rock: Grid, fracture_grid: Grid) {
+        let Some(summary) = self.summary.steps.last() else {
+            return;
+        };
+        let result = StepResult {
+            summary: summary.clone(),
+            fractures: self.summary.fractures.clone(),
+            rock,
+            fracture_grid,
+        };
+        self.observer.step_ends(&result);
+        self.kept.push(result);
+    }
+
+    /// Lets the run be resumed from here.
+    fn write_checkpoint(
+        &mut self,
+        problem: &Problem,
+        prepared: &Prepared<'_, '_>,
+    ) -> Result<(), Interruption> {
+        if !self.output.is_kept() || self.request.origin.is_none() || self.has_own_mesh {
+            return Ok(());
+        }
+        let start = Instant::now();
+        let is_left = self.finished.len() < problem.schedule.steps.len();
+        let Prepared { newton, state, .. } = prepared;
+        let progress = Progress {
+            choice: self.choice.clone(),
+            steps: self.finished.clone(),
+            fractures: self.summary.fractures.clone(),
+            measures: self.summary.measures.clone(),
+            stress_error: self.summary.stress_error,
+            seconds: self.summary.seconds.clone(),
+            peak_memory_bytes: self.summary.peak_memory_bytes,
+            bookmark: is_left.then(|| newton.bookmark(state)),
+        };
+        let path = self.output.path(checkpoint::NAME);
+        let written = checkpoint::write(&path, &self.identity, &progress);
+        self.summary.seconds.write += start.elapsed().as_secs_f64();
+        Ok(written?)
+    }
+}

@@ -1,0 +1,240 @@
+//! The command line: what may be said, and what it means.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use kluft_network::{Domain, Grouping};
+
+use crate::inspect::InspectOptions;
+use crate::network::NetworkOptions;
+use crate::report::Verbosity;
+use crate::run::RunOptions;
+use crate::study::StudyOptions;
+
+/// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
+///
+/// The fractures are physical surfaces of the geometry. Their walls may open, slide and close, and
+/// under the exact logarithmic law they never overlap. Intersections, tips and cut boundaries need
+/// no help.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true, after_help = include_str!("help/examples.txt").trim_end())]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Mesh, enrich, solve and write a scene
+    #[command(after_help = include_str!("help/run.txt").trim_end())]
+    Run(RunArgs),
+    /// Make a geometry and a scene from a list or random sets of fractures
+    #[command(after_help = include_str!("help/network.txt").trim_end())]
+    Network(NetworkArgs),
+    /// Report on a scene or a mesh without solving
+    #[command(after_help = include_str!("help/inspect.txt").trim_end())]
+    Inspect(InspectArgs),
+    /// Run a scene with many meshes, orders, laws and solvers: what each yields, and what it costs
+    #[command(after_help = include_str!("help/study.txt").trim_end())]
+    Study(StudyArgs),
+}
+
+/// Arguments of `kluft study`.
+#[derive(Args)]
+pub struct StudyArgs {
+    /// The scene file (TOML)
+    pub scene: PathBuf,
+    /// Folder for the results [default: `study` beside the scene]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Largest error wanted, 1% or 0.01; stops at the first setting that reaches it
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    tolerance: Option<f64>,
+    /// Number of threads of each run [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print nothing but errors and the answer to --tolerance
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the report even when the output is not a terminal
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(percent) => (percent.trim_end(), 0.01),
+        None => (text, 1.0),
+    };
+    let share = number.parse::<f64>().ok().map(|number| number * unit);
+    let sensible = share.filter(|share| *share > 0.0 && *share < 1.0);
+    sensible.ok_or_else(|| "a share between 0 and 1 is wanted, e.g. 1% or 0.01".to_owned())
+}
+
+/// Arguments of `kluft run`.
+#[derive(Args)]
+pub struct RunArgs {
+    /// The scene file (TOML)
+    pub scene: PathBuf,
+    /// Folder for the results [default: `out` beside the scene]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Number of threads; results do not depend on it [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Go on after the last load step that an interrupted run of the same scene finished
+    #[arg(long)]
+    resume: bool,
+    /// End when the standard input is closed, as it is when a study dies that runs this
+    #[arg(long, hide = true)]
+    tied: bool,
+    /// Print nothing but errors
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the report even when the output is not a terminal, and gmsh's warnings
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+/// Arguments of `kluft network`.
+#[derive(Args)]
+pub struct NetworkArgs {
+    /// List (.csv) or description (.toml) of the fractures
+    pub input: PathBuf,
+    /// Folder for geometry, scene and statistics
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Name of the geometry, without .geo
+    #[arg(long, value_name = "NAME", default_value = "network", value_parser = file_name)]
+    name: String,
+    /// What gets a physical surface of its own
+    #[arg(long, value_enum, default_value = "fracture")]
+    group: Group,
+    /// The box of rock: two opposite corners [default: of the description, or around the list]
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = domain, allow_hyphen_values = true)]
+    domain: Option<Domain>,
+    /// Cell size away from fractures, m [default: of the description]
+    #[arg(long, value_name = "M", value_parser = length)]
+    h: Option<f64>,
+    /// Leave features that are too small for the mesh as they are
+    #[arg(long)]
+    keep_small: bool,
+    /// Print nothing but errors
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the report even when the output is not a terminal
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Group {
+    /// Each fracture
+    Fracture,
+    /// Each set
+    Set,
+}
+
+fn file_name(text: &str) -> Result<String, String> {
+    let is_plain = !text.is_empty() && !text.contains(['/', '\\', '\0']);
+    is_plain
+        .then(|| text.to_owned())
+        .ok_or_else(|| "a name without folders is wanted".to_owned())
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse::<f64>()
+        .ok()
+        .filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "a length greater than 0 is wanted".to_owned())
+}
+
+fn domain(text: &str) -> Result<Domain, String> {
+    let numbers: Result<Vec<f64>, _> = text
+        .split(',')
+        .map(|word| word.trim().parse::<f64>())
+        .collect();
+    let numbers = numbers
+        .ok()
+        .and_then(|numbers| <[f64; 6]>::try_from(numbers).ok());
+    let corners = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+    let [a, b, c, d, e, f] =
+        corners.ok_or_else(|| "six numbers are wanted, e.g. 0,0,0,10,10,10".to_owned())?;
+    if a >= d || b >= e || c >= f {
+        return Err("the second corner must be above the first in every coordinate".to_owned());
+    }
+    Ok(Domain::between([a, b, c], [d, e, f]))
+}
+
+fn verbosity(quiet: bool, verbose: bool) -> Verbosity {
+    match (quiet, verbose) {
+        (true, _) => Verbosity::Quiet,
+        (_, true) => Verbosity::Verbose,
+        _ => Verbosity::Terminal,
+    }
+}
+
+/// Arguments of `kluft inspect`.
+#[derive(Args)]
+pub struct InspectArgs {
+    /// The scene file (TOML), or a gmsh mesh (.msh)
+    pub input: PathBuf,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+    /// Folder for inspect.vtu and inspect.json [default: `out` beside the input]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl From<RunArgs> for RunOptions {
+    fn from(args: RunArgs) -> Self {
+        Self {
+            out: args.out,
+            threads: args.threads.map(usize::from),
+            verbosity: verbosity(args.quiet, args.verbose),
+            resume: args.resume,
+            is_tied: args.tied,
+        }
+    }
+}
+
+impl From<NetworkArgs> for NetworkOptions {
+    fn from(args: NetworkArgs) -> Self {
+        Self {
+            out: args.out,
+            name: args.name,
+            grouping: match args.group {
+                Group::Fracture => Grouping::Fracture,
+                Group::Set => Grouping::Set,
+            },
+            domain: args.domain,
+            h: args.h,
+            keep_small: args.keep_small,
+            verbosity: verbosity(args.quiet, args.verbose),
+        }
+    }
+}
+
+impl From<StudyArgs> for StudyOptions {
+    fn from(args: StudyArgs) -> Self {
+        Self {
+            out: args.out,
+            tolerance: args.tolerance,
+            threads: args.threads.map(usize::from),
+            verbosity: verbosity(args.quiet, args.verbose),
+        }
+    }
+}
+
+impl From<InspectArgs> for InspectOptions {
+    fn from(args: InspectArgs) -> Self {
+        Self {
+            out: args.out,
+            json: args.json,
+        }
+    }
+}
