@@ -310,9 +310,9 @@ def main():
     measure_linear(CUBES[options.sizes], results, prefix)
     measure_own_linear(CUBES[options.sizes], builds["kluft"], results, prefix)
     summary = report.Summary(results.records, builds)
-    report.write(summary, ROOT / "docs")
-    chart.draw(summary, ROOT / "docs/peers.svg")
-    say("wrote docs/peers.md, docs/peers.csv and docs/peers.svg")
+    report.write(summary, ROOT / "docs/performance")
+    chart.draw(summary, ROOT / "docs/performance/peers.svg")
+    say("wrote docs/performance/peers.md, docs/performance/peers.csv and docs/performance/peers.svg")
 
 
 if __name__ == "__main__":

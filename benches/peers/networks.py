@@ -3,7 +3,7 @@
     sh benches/peers/networks.sh [--up-to THOUSANDS]
 
 gmsh makes the meshes once, into target/networks (the finest of them takes some minutes, and refining the largest network
-8 GB); they are not measured. Writes docs/networks.md.
+8 GB); they are not measured. Writes docs/performance/networks.md.
 """
 
 import argparse
@@ -17,6 +17,7 @@ import sys
 from dataclasses import dataclass, replace
 
 from driver import HERE, ROOT, build, linear_commands, run, say
+from report import wrapped
 
 WORK = ROOT / "target/networks"
 GMSH = os.environ.get("KLUFT_GMSH") or "gmsh"
@@ -165,10 +166,11 @@ def growth(results):
 
 HEADER = """# Whole runs on networks of fractures
 
-Written by `sh benches/peers/networks.sh`: one load step from the mesh file to the written results, all fractures with the
-logarithmic law, two threads. Seconds are medians of the runs; "whole" is the process from start to end, meshing by gmsh
-left out. "Closed to" is the smallest aperture as a share of what it was. Memory is the peak of the process, predicted before the solver
-was set up and measured.
+Written by `sh benches/peers/networks.sh`: one load step from the mesh file to the written results,
+all fractures with the logarithmic law, two threads. Seconds are medians of the runs; "whole" is the
+process from start to end, meshing by gmsh left out. "Closed to" is the smallest aperture as a share
+of what it was. Memory is the peak of the process, predicted before the solver was set up and
+measured.
 
 | network | unknowns | of them jumps | closed to | whole (s) | read (s) | assemble (s) | set up (s) | solve (s) | estimate errors (s) | write (s) | Newton / linear iterations | predicted (GB) | measured (GB) | runs |
 | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
@@ -188,7 +190,7 @@ def write(results, linear):
             + f", to 1e-8, in {alone:.1f} s (median of {len(linear)}, measured in turn with the runs above; last {setup:.1f} s of set-up and "
             f"{solve:.1f} s of solution). The whole nonlinear run with a million unknowns takes {whole / alone:.2f} times that.\n"
         )
-    (ROOT / "docs/networks.md").write_text(lines)
+    (ROOT / "docs/performance/networks.md").write_text(wrapped(lines))
 
 
 def main():
@@ -211,7 +213,7 @@ def main():
             say(f"{case.name}, round {number + 1}: {runs[-1]['seconds']:.1f} s")
         results.append((case, runs))
         write(results, linear)
-    say("wrote docs/networks.md")
+    say("wrote docs/performance/networks.md")
 
 
 main()

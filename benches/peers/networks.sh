@@ -1,5 +1,5 @@
 #!/bin/sh
-# Measures whole runs on networks of fractures, up to five million unknowns, and writes docs/networks.md; see
+# Measures whole runs on networks of fractures, up to five million unknowns, and writes docs/performance/networks.md; see
 # benches/README.md.
 #
 #     sh benches/peers/networks.sh [--up-to THOUSANDS]

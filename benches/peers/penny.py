@@ -1,4 +1,4 @@
-"""Measures accuracy and time of Kluft and OpenGeoSys on a penny-shaped crack; writes docs/penny-peers.md and its chart.
+"""Measures accuracy and time of Kluft and OpenGeoSys on a penny-shaped crack; writes docs/performance/penny-peers.md and its chart.
 
 Everything lies in target/penny. Both programs run in turn on the same meshes, smallest first; what was measured is
 kept in results.json there. `--resume` goes on with a run that was stopped; `--report` writes the page without measuring.
@@ -161,8 +161,8 @@ def main():
         measure(records)
     tolerances = ", ".join(f"{100 * tolerance:g} %" for tolerance in TOLERANCES)
     limits = {"short": SHORT, "rounds": ROUNDS, "longest": LONGEST, "tolerances": tolerances, "note": options.note}
-    penny_report.write(records, ROOT / "docs", limits)
-    say("wrote docs/penny-peers.md and docs/penny-peers.svg")
+    penny_report.write(records, ROOT / "docs/performance", limits)
+    say("wrote docs/performance/penny-peers.md and docs/performance/penny-peers.svg")
 
 
 if __name__ == "__main__":

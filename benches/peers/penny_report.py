@@ -3,7 +3,7 @@
 import os
 
 import chart
-from report import NAMES, count, markdown, megabytes, processor, replace
+from report import NAMES, count, markdown, megabytes, processor, replace, wrapped
 
 KINDS = {
     "linear": ("4 nodes", "^", "-"),
@@ -19,8 +19,8 @@ COLOURS = {"opengeosys": chart.VERMILION, "kluft": chart.BLUE}
 
 TEXT = """# A penny-shaped crack: Kluft and OpenGeoSys
 
-Written by `sh benches/peers/penny.sh`, with one build of each program, on {processor}, {cores} cores, {memory:.0f} GB.
-Compare times within this page only. {note}
+Written by `sh benches/peers/penny.sh`, with one build of each program, on {processor}, {cores}
+cores, {memory:.0f} GB. Compare times within this page only. {note}
 
 {summary}
 
@@ -28,26 +28,31 @@ Compare times within this page only. {note}
 
 ## What is measured
 
-A crack of radius 1 m in the middle of a cube of side 20 m ([geometries/penny](../geometries/penny/penny.geo)), E = 25 GPa,
-nu = 0.25, under 2 MPa. Sneddon (1946), for an unbounded rock: centre opening 1.909859e-4 m, volume 4.0e-4 m^3,
-K_I 2.256758 MPa sqrt(m). Both programs pull top and bottom of the cube by 2 MPa and leave the crack free (OpenGeoSys, which
-knows no free crack, with a stiffness of 1e-9 E over the radius): the openings are those under pressure inside, which
-OpenGeoSys (process `SMALL_DEFORMATION_WITH_LIE`) does not have. The adaptive runs of Kluft have the pressure inside.
+A crack of radius 1 m in the middle of a cube of side 20 m
+([geometries/penny](../../geometries/penny/penny.geo)), E = 25 GPa, nu = 0.25, under 2 MPa. Sneddon
+(1946), for an unbounded rock: centre opening 1.909859e-4 m, volume 4.0e-4 m^3, K_I 2.256758 MPa
+sqrt(m). Both programs pull top and bottom of the cube by 2 MPa and leave the crack free
+(OpenGeoSys, which knows no free crack, with a stiffness of 1e-9 E over the radius): the openings
+are those under pressure inside, which OpenGeoSys (process `SMALL_DEFORMATION_WITH_LIE`) does not
+have. The adaptive runs of Kluft have the pressure inside.
 
-- Nodes and cells are the same for both programs, except for the adaptive runs: there Kluft meshes by itself until its estimate
-  of the error is below the tolerance (`adapt`, here {tolerances}).
-- OpenGeoSys leaves the rim of a crack open, so its jumps there are set to zero by conditions. It does not know quarter points
-  either: the script moves the nodes for it by hand. Kluft does both by itself; the rows of *10 nodes* have
-  `quarter_points = false`.
-- OpenGeoSys runs with the fastest of its solvers, as in [peers.md](peers.md), and integration order 2 (on the
-  coarsest mesh with quarter points order 3 took longer and was less accurate, and order 4 did not start).
-- Seconds are those of the whole process, without gmsh; for the adaptive runs those of all meshes. Runs below {short:g} s are
-  made {rounds} times, and the median is given. Runs above {longest} s are given up.
-- Errors are found in the same way for both, from the openings at the nodes of the facets: K_I from a line fitted to w^2 / d
-  over the distance d from the rim, of the facets' mean openings w with d from 0.05 to 0.4 m, taken at d = 0:
-  K_I = E' / 8 sqrt(2 pi w^2 / d), E' = E / (1 - nu^2). Means over facets cost accuracy: from exact openings this K_I is 3 % too
-  low on the coarsest mesh of 4 nodes, and 12 % on the coarsest of 10 nodes. In brackets the K_I that Kluft writes itself,
-  with its own fit.
+- Nodes and cells are the same for both programs, except for the adaptive runs: there Kluft meshes
+  by itself until its estimate of the error is below the tolerance (`adapt`, here {tolerances}).
+- OpenGeoSys leaves the rim of a crack open, so its jumps there are set to zero by conditions. It
+  does not know quarter points either: the script moves the nodes for it by hand. Kluft does both by
+  itself; the rows of *10 nodes* have `quarter_points = false`.
+- OpenGeoSys runs with the fastest of its solvers, as in [peers.md](peers.md), and integration order
+  2 (on the coarsest mesh with quarter points order 3 took longer and was less accurate, and order 4
+  did not start).
+- Seconds are those of the whole process, without gmsh; for the adaptive runs those of all meshes.
+  Runs below {short:g} s are made {rounds} times, and the median is given. Runs above {longest} s
+  are given up.
+- Errors are found in the same way for both, from the openings at the nodes of the facets: K_I from
+  a line fitted to w^2 / d over the distance d from the rim, of the facets' mean openings w with d
+  from 0.05 to 0.4 m, taken at d = 0: K_I = E' / 8 sqrt(2 pi w^2 / d), E' = E / (1 - nu^2). Means
+  over facets cost accuracy: from exact openings this K_I is 3 % too low on the coarsest mesh of 4
+  nodes, and 12 % on the coarsest of 10 nodes. In brackets the K_I that Kluft writes itself, with
+  its own fit.
 
 ## Figures
 
@@ -175,5 +180,5 @@ def write(records, folder, limits):
         table=table(records),
         **limits,
     )
-    replace(folder / "penny-peers.md", text)
+    replace(folder / "penny-peers.md", wrapped(text))
     draw(done, folder / "penny-peers.svg")

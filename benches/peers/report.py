@@ -1,9 +1,10 @@
-"""From the measurements that were kept to tables: docs/peers.md and docs/peers.csv."""
+"""From the measurements that were kept to tables: peers.md and peers.csv in docs/performance."""
 
 import csv
 import io
 import os
 import platform
+import textwrap
 from pathlib import Path
 from statistics import median
 
@@ -36,43 +37,47 @@ COLUMNS = {
 
 TEXT = """# Kluft and other programs
 
-Written by `sh benches/peers/run`; what is run, and how, is in [benches/README.md](../benches/README.md). Measured on
-{processor}, {cores} cores, {memory:.0f} GB: memory bandwidth {bandwidth:.1f} GB/s (two vectors read and one written),
-{flop_rate:.0f} Gflop/s (product of full matrices of order 4096), both with two threads. Every program had two
+Written by `sh benches/peers/run`; what is run, and how, is in
+[benches/README.md](../../benches/README.md). Measured on {processor}, {cores} cores, {memory:.0f}
+GB: memory bandwidth {bandwidth:.1f} GB/s (two vectors read and one written), {flop_rate:.0f}
+Gflop/s (product of full matrices of order 4096), both with two threads. Every program had two
 threads, or two processes.
 
 ![Time and memory against unknowns](peers.svg)
 
 ## Whole runs
 
-Reading the mesh, one load step, and writing the results; the same nodes and elements for both programs. Medians of
-the runs. Memory is the peak of the process. Unknowns count displacements at all nodes and jumps at all nodes of the
-fracture, held ones included.
+Reading the mesh, one load step, and writing the results; the same nodes and elements for both
+programs. Medians of the runs. Memory is the peak of the process. Unknowns count displacements at
+all nodes and jumps at all nodes of the fracture, held ones included.
 
 {runs}
 
-The problems are the same if the apertures agree. The difference is the largest one of the mean aperture of a facet,
-relative. OpenGeoSys integrates fractures at Gauss points and Kluft at nodes ([why](facet-quadrature.md)), which gives
-the same where the stress is uniform (`cut`) and another discretisation of the same problem where it is not (`disc`).
-The last column is an exact check there too: the load is reversed, so that the joint opens and its law is linear, and
+The problems are the same if the apertures agree. The difference is the largest one of the mean
+aperture of a facet, relative. OpenGeoSys integrates fractures at Gauss points and Kluft at nodes
+([why](../verification/facet-quadrature.md)), which gives the same where the stress is uniform
+(`cut`) and another discretisation of the same problem where it is not (`disc`). The last column is
+an exact check there too: the load is reversed, so that the joint opens and its law is linear, and
 both programs use Gauss points.
 
 {agreement}
 
-OpenGeoSys 6.5.9 (process `SMALL_DEFORMATION_WITH_LIE`), with the fastest of its solvers: conjugate gradients with a
-diagonal preconditioner, to 1e-10; Newton's method until the residual is 1e-8 of the first one.
+OpenGeoSys 6.5.9 (process `SMALL_DEFORMATION_WITH_LIE`), with the fastest of its solvers: conjugate
+gradients with a diagonal preconditioner, to 1e-10; Newton's method until the residual is 1e-8 of
+the first one.
 
 ## Linear systems
 
-A unit cube of six tetrahedra in every small cube, Young's modulus 1, Poisson's ratio 0.3, clamped at z = 0, under a
-random load: one matrix, one right-hand side. Set-up is everything that depends on the matrix alone: aggregation, or
-ordering and factorisation. Iterations until the residual is 1e-8 of the load. Memory is the peak of all processes
-with the matrix and all that surrounds it (about 0.1 GB a process is Python's).
+A unit cube of six tetrahedra in every small cube, Young's modulus 1, Poisson's ratio 0.3, clamped
+at z = 0, under a random load: one matrix, one right-hand side. Set-up is everything that depends on
+the matrix alone: aggregation, or ordering and factorisation. Iterations until the residual is 1e-8
+of the load. Memory is the peak of all processes with the matrix and all that surrounds it (about
+0.1 GB a process is Python's).
 
 {linear}
 
-PETSc 3.18 with GAMG (conjugate gradients, rigid motions as near null space, two processes), MUMPS by PETSc (two
-processes), CHOLMOD of SuiteSparse 5.12 with OpenBLAS, PARDISO of the MKL 2026.2.
+PETSc 3.18 with GAMG (conjugate gradients, rigid motions as near null space, two processes), MUMPS
+by PETSc (two processes), CHOLMOD of SuiteSparse 5.12 with OpenBLAS, PARDISO of the MKL 2026.2.
 """
 
 
@@ -241,6 +246,25 @@ def csv_row(row):
     return [f"{value:.6g}" if isinstance(value, float) else value for value in values]
 
 
+def wrapped(page):
+    """A page with its prose at most 100 columns wide; tables, headings and pictures stay as they are."""
+
+    def block(text):
+        if text.startswith(("|", "#", "!")):
+            return text
+        items = text.split("\n- ")
+        indent = "  " if text.startswith("- ") else ""
+        options = {"width": 100, "break_long_words": False, "break_on_hyphens": False}
+        return "\n- ".join(
+            textwrap.fill(item, initial_indent="  " if number else "", subsequent_indent=indent, **options).removeprefix(
+                "  " if number else ""
+            )
+            for number, item in enumerate(items)
+        )
+
+    return "\n\n".join(block(text) for text in page.rstrip("\n").split("\n\n")) + "\n"
+
+
 def replace(path, text):
     """Writes a file under another name first."""
     new = path.with_name(path.name + ".new")
@@ -261,5 +285,5 @@ def write(summary, folder):
         agreement=agreement_table(summary),
         linear=linear_table(summary),
     )
-    replace(folder / "peers.md", text)
+    replace(folder / "peers.md", wrapped(text))
     replace(folder / "peers.csv", csv_text(summary))
