@@ -6,11 +6,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, FacetPlace, NONE};
-use crate::defect::{Defect, sample};
 use crate::draft::{Draft, Elements};
 use crate::geometry::cell_volume;
 use crate::mesh::SurfaceRole;
 use crate::shape::Shape;
+use kluft_defect::{Defect, sample};
 
 /// A cell is flat when its volume is this small against the cube of its longest edge: there the
 /// sign of the volume is rounding.

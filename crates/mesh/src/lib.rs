@@ -18,7 +18,7 @@ mod adjacency;
 mod arrange;
 mod blocks;
 mod check;
-mod defect;
+
 mod disjoint_sets;
 mod draft;
 mod geometry;
@@ -32,10 +32,10 @@ mod shape;
 pub mod structured;
 mod survey;
 
-pub use defect::{Defect, nearest, sample};
 pub use disjoint_sets::DisjointSets;
 pub use draft::{Draft, Elements, Group, TaggedElements};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
+pub use kluft_defect::{Defect, nearest, sample};
 pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};
 pub use roles::Faces;
 pub use sectors::Sectors;

@@ -4,11 +4,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::adjacency::Adjacency;
-use crate::defect::Defect;
 use crate::draft::{Draft, Elements, Group};
 use crate::roles::Faces;
 use crate::sectors::{self, Sectors};
 use crate::{blocks, check, orient};
+use kluft_defect::Defect;
 
 /// What the scene makes of a physical surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

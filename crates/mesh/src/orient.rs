@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, NONE};
 use crate::check::{DraftFacet, Surfaces};
-use crate::defect::Defect;
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
 use crate::pairing::{Entry, bounds, visit_runs};
+use kluft_defect::Defect;
 
 /// The facet on the other side of an edge, or [`NONE`], and whether the first faces of both run
 /// along it the same way.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use kluft_mesh::Defect;
+use kluft_defect::Defect;
 
 use crate::list_row::{Row, place_of, polygon, suggestion};
 use crate::network::Given;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use csv::StringRecord;
 use glam::DVec3;
-use kluft_mesh::{Defect, nearest};
+use kluft_defect::{Defect, nearest};
 
 use crate::orientation::Orientation;
 use crate::polygon::{Outline, Polygon};

@@ -1,7 +1,7 @@
 //! From given fractures to a network that gmsh can mesh: clipped, mended, checked.
 
 use glam::DVec3;
-use kluft_mesh::Defect;
+use kluft_defect::Defect;
 
 use crate::clip::Domain;
 use crate::intersections::{Intersection, angle_between, intersection, may_meet};
