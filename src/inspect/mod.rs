@@ -19,7 +19,7 @@ use kluft_solver::{Discretisation, Problem, Workload};
 use crate::failure::Failure;
 use kluft_run::Output;
 use kluft_run::{folder_for, mesh_file};
-use kluft_scene::{Scene, bind, roles};
+use kluft_scene::{Scene, bind, in_terms_of_scene, roles};
 
 use findings::Inspection;
 
@@ -92,6 +92,7 @@ fn look(
     inspection.groups = groups::list(&draft, &inner, Some(&surface_roles), scene);
     let mesh = match Mesh::build_on(draft, faces, &surface_roles) {
         Ok(mesh) => mesh,
+        Err(defects) if scene.is_some() => return in_terms_of_scene(defects),
         Err(defects) => return defects,
     };
     let survey = Survey::of(&mesh);

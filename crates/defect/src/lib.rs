@@ -11,6 +11,9 @@ pub struct Defect {
     pub problem: String,
     /// What the user can do about it.
     pub remedy: String,
+    /// Names the kind of defect, where a front end can say the remedy better in its own language
+    /// than a library can.
+    pub code: Option<&'static str>,
 }
 
 impl Defect {
@@ -24,6 +27,16 @@ impl Defect {
             place: place.into(),
             problem: problem.into(),
             remedy: remedy.into(),
+            code: None,
+        }
+    }
+
+    /// The same defect with a code.
+    #[must_use]
+    pub fn with_code(self, code: &'static str) -> Self {
+        Self {
+            code: Some(code),
+            ..self
         }
     }
 }

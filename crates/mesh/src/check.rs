@@ -1,6 +1,6 @@
 //! Everything that may be wrong with a mesh.
 
-use std::collections::BTreeMap;
+use std::collections::HashSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -8,35 +8,17 @@ use rayon::prelude::*;
 use crate::adjacency::{Adjacency, FacetPlace, NONE};
 use crate::draft::{Draft, Elements};
 use crate::geometry::cell_volume;
-use crate::mesh::SurfaceRole;
+use crate::roles::SurfaceRole;
 use crate::shape::Shape;
+use crate::surfaces::{DraftFacet, Surfaces};
 use kluft_defect::{Defect, sample};
 
 /// A cell is flat when its volume is this small against the cube of its longest edge: there the
 /// sign of the volume is rounding.
 const FLAT: f64 = 1e-13;
 
-/// A fracture facet of the draft and the two cell faces it lies between.
-pub(crate) struct DraftFacet {
-    /// Index into [`Surfaces::fractures`].
-    pub(crate) fracture: u32,
-    /// The two cell faces, in no particular order.
-    pub(crate) faces: [u32; 2],
-    /// The number the facet has in the file.
-    pub(crate) tag: u64,
-}
-
-/// The surfaces of a draft, matched to faces of cells.
-pub(crate) struct Surfaces {
-    /// Groups that are fractures.
-    pub(crate) fractures: Vec<usize>,
-    /// Their facets.
-    pub(crate) facets: Vec<DraftFacet>,
-    /// Groups that are boundaries, with their cell faces.
-    pub(crate) boundaries: Vec<(usize, Vec<u32>)>,
-    /// How many facets a fracture (first) left to another (second) that holds them too.
-    pub(crate) shared: BTreeMap<(u32, u32), usize>,
-}
+/// The code of a condition on a surface inside the rock.
+pub const CONDITION_INSIDE: &str = "condition-inside";
 
 /// What can be wrong, and the remedy.
 type Kind = (&'static str, &'static str);
@@ -79,7 +61,7 @@ const NOT_ON_THE_ROCK: Kind = (
 );
 const ON_THE_INSIDE: Kind = (
     "the facet lies inside the rock: there are cells on both sides",
-    "conditions act on the outer surface; give a fracture a [fracture] entry instead",
+    "conditions act on the outer surface; make a surface inside the rock a fracture",
 );
 const LOADED_TWICE: Kind = (
     "the facet stands in the file twice and would be loaded twice",
@@ -195,14 +177,12 @@ pub(crate) fn surfaces(
     roles: &[SurfaceRole],
     adjacency: &Adjacency,
 ) -> (Surfaces, Vec<Defect>) {
-    let mut surfaces = Surfaces {
-        fractures: Vec::new(),
-        facets: Vec::new(),
-        boundaries: Vec::new(),
-        shared: BTreeMap::new(),
+    let mut matching = Matching {
+        draft,
+        surfaces: Surfaces::default(),
+        defects: Vec::new(),
+        taken: vec![NONE; draft.facets.elements.len()],
     };
-    let mut defects = Vec::new();
-    let mut taken = vec![NONE; draft.facets.elements.len()];
     let of_set = facets_of_sets(draft);
     for (group, role) in roles.iter().enumerate() {
         if draft.groups[group].dimension != 2 {
@@ -215,21 +195,12 @@ pub(crate) fn surfaces(
             place: adjacency.facets[facet as usize],
         });
         match role {
-            SurfaceRole::Fracture => {
-                fracture(
-                    draft,
-                    group,
-                    facets,
-                    &mut taken,
-                    &mut surfaces,
-                    &mut defects,
-                );
-            }
-            SurfaceRole::Boundary => boundary(draft, group, facets, &mut surfaces, &mut defects),
+            SurfaceRole::Fracture => matching.fracture(group, facets),
+            SurfaceRole::Boundary => matching.boundary(group, facets),
             SurfaceRole::Unused => {}
         }
     }
-    (surfaces, defects)
+    (matching.surfaces, matching.defects)
 }
 
 /// A facet of the draft and where it lies.
@@ -247,80 +218,89 @@ fn facets_of_sets(draft: &Draft) -> Vec<Vec<u32>> {
     of_set
 }
 
-/// A facet that two fractures share belongs to the first; one that a fracture lists twice is a
-/// defect. `taken` has the fracture that holds a facet, at the first facet with its corners.
-fn fracture(
-    draft: &Draft,
-    group: usize,
-    facets: impl Iterator<Item = Placed>,
-    taken: &mut [u32],
-    surfaces: &mut Surfaces,
-    defects: &mut Vec<Defect>,
-) {
-    let number = surfaces.fractures.len() as u32;
-    let already = surfaces.facets.len();
-    surfaces.fractures.push(group);
-    let (mut loose, mut outer, mut double) = (Vec::new(), Vec::new(), Vec::new());
-    for Placed { tag, place } in facets {
-        let owner = &mut taken[place.first as usize];
-        match place.faces {
-            [NONE, _] => loose.push(tag),
-            [_, NONE] => outer.push(tag),
-            _ if *owner == number => double.push(tag),
-            _ if *owner != NONE => {
-                *surfaces.shared.entry((number, *owner)).or_default() += 1;
-            }
-            faces => {
-                *owner = number;
-                surfaces.facets.push(DraftFacet {
-                    fracture: number,
-                    faces,
-                    tag,
-                });
-            }
-        }
-    }
-    let place = format!("fracture `{}`", draft.groups[group].name);
-    report(defects, &place, "facet", &loose, NOT_EMBEDDED);
-    report(defects, &place, "facet", &outer, ON_THE_OUTSIDE);
-    report(defects, &place, "facet", &double, TWICE);
-    let nothing = surfaces.facets.len() == already && loose.is_empty() && outer.is_empty();
-    empty(draft, group, nothing, defects);
+/// The surfaces matched so far, and what did not fit.
+struct Matching<'a> {
+    draft: &'a Draft,
+    surfaces: Surfaces,
+    defects: Vec<Defect>,
+    /// The fracture that holds a facet, at the first facet with its corners.
+    taken: Vec<u32>,
 }
 
-fn boundary(
-    draft: &Draft,
-    group: usize,
-    facets: impl Iterator<Item = Placed>,
-    surfaces: &mut Surfaces,
-    defects: &mut Vec<Defect>,
-) {
-    let (mut loose, mut inner, mut double) = (Vec::new(), Vec::new(), Vec::new());
-    let mut faces_seen = std::collections::HashSet::new();
-    let mut faces_kept = Vec::new();
-    for Placed { tag, place } in facets {
-        match place.faces {
-            [NONE, _] => loose.push(tag),
-            [face, NONE] if faces_seen.insert(face) => faces_kept.push(face),
-            [_, NONE] => double.push(tag),
-            _ => inner.push(tag),
+impl Matching<'_> {
+    /// Adds a fracture. A facet that two fractures share belongs to the first; one that a fracture
+    /// lists twice is a defect.
+    fn fracture(&mut self, group: usize, facets: impl Iterator<Item = Placed>) {
+        let surfaces = &mut self.surfaces;
+        let number = surfaces.fractures.len() as u32;
+        let already = surfaces.facets.len();
+        surfaces.fractures.push(group);
+        let (mut loose, mut outer, mut double) = (Vec::new(), Vec::new(), Vec::new());
+        for Placed { tag, place } in facets {
+            let owner = &mut self.taken[place.first as usize];
+            match place.faces {
+                [NONE, _] => loose.push(tag),
+                [_, NONE] => outer.push(tag),
+                _ if *owner == number => double.push(tag),
+                _ if *owner != NONE => {
+                    *surfaces.shared.entry((number, *owner)).or_default() += 1;
+                }
+                faces => {
+                    *owner = number;
+                    surfaces.facets.push(DraftFacet {
+                        fracture: number,
+                        faces,
+                        tag,
+                    });
+                }
+            }
+        }
+        let is_empty = surfaces.facets.len() == already && loose.is_empty() && outer.is_empty();
+        let place = format!("fracture `{}`", self.draft.groups[group].name);
+        let defects = &mut self.defects;
+        report(defects, &place, "facet", &loose, NOT_EMBEDDED);
+        report(defects, &place, "facet", &outer, ON_THE_OUTSIDE);
+        report(defects, &place, "facet", &double, TWICE);
+        if is_empty {
+            self.report_empty(group);
         }
     }
-    let place = format!("boundary `{}`", draft.groups[group].name);
-    report(defects, &place, "facet", &loose, NOT_ON_THE_ROCK);
-    report(defects, &place, "facet", &inner, ON_THE_INSIDE);
-    report(defects, &place, "facet", &double, LOADED_TWICE);
-    let nothing = faces_kept.is_empty() && loose.is_empty() && inner.is_empty();
-    empty(draft, group, nothing, defects);
-    surfaces.boundaries.push((group, faces_kept));
-}
 
-fn empty(draft: &Draft, group: usize, nothing: bool, defects: &mut Vec<Defect>) {
-    if nothing {
-        defects.push(Defect::new(
-            format!("physical surface `{}`", draft.groups[group].name),
+    /// Adds a boundary.
+    fn boundary(&mut self, group: usize, facets: impl Iterator<Item = Placed>) {
+        let (mut loose, mut inner, mut double) = (Vec::new(), Vec::new(), Vec::new());
+        let mut faces_seen = HashSet::new();
+        let mut faces_kept = Vec::new();
+        for Placed { tag, place } in facets {
+            match place.faces {
+                [NONE, _] => loose.push(tag),
+                [face, NONE] if faces_seen.insert(face) => faces_kept.push(face),
+                [_, NONE] => double.push(tag),
+                _ => inner.push(tag),
+            }
+        }
+        let is_empty = faces_kept.is_empty() && loose.is_empty() && inner.is_empty();
+        let place = format!("boundary `{}`", self.draft.groups[group].name);
+        let defects = &mut self.defects;
+        report(defects, &place, "facet", &loose, NOT_ON_THE_ROCK);
+        let before = defects.len();
+        report(defects, &place, "facet", &inner, ON_THE_INSIDE);
+        for defect in &mut defects[before..] {
+            defect.code = Some(CONDITION_INSIDE);
+        }
+        report(defects, &place, "facet", &double, LOADED_TWICE);
+        if is_empty {
+            self.report_empty(group);
+        }
+        self.surfaces.boundaries.push((group, faces_kept));
+    }
+
+    fn report_empty(&mut self, group: usize) {
+        self.defects.push(Defect::new(
+            format!("physical surface `{}`", self.draft.groups[group].name),
             "the group holds no facets of its own",
-            "check that its surfaces still exist after fragments were made, and that no other fracture holds the same facets",
+            "check that its surfaces still exist after fragments were made, and that no other \
+             fracture holds the same facets",
         ));
     }
 }

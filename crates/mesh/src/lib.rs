@@ -18,7 +18,6 @@ mod adjacency;
 mod arrange;
 mod blocks;
 mod check;
-
 mod disjoint_sets;
 mod draft;
 mod geometry;
@@ -30,14 +29,16 @@ mod roles;
 mod sectors;
 mod shape;
 pub mod structured;
+mod surfaces;
 mod survey;
 
+pub use check::CONDITION_INSIDE;
 pub use disjoint_sets::DisjointSets;
 pub use draft::{Draft, Elements, Group, TaggedElements};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
 pub use kluft_defect::{Defect, nearest, sample};
-pub use mesh::{Boundary, Facets, Mesh, SurfaceRole};
-pub use roles::Faces;
+pub use mesh::{Boundary, Facets, Mesh};
+pub use roles::{Faces, SurfaceRole};
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
 pub use survey::{

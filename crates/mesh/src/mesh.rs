@@ -5,21 +5,11 @@ use rayon::prelude::*;
 
 use crate::adjacency::Adjacency;
 use crate::draft::{Draft, Elements, Group};
-use crate::roles::Faces;
+use crate::roles::{Faces, SurfaceRole};
 use crate::sectors::{self, Sectors};
+use crate::surfaces::{DraftFacet, Surfaces};
 use crate::{blocks, check, orient};
 use kluft_defect::Defect;
-
-/// What the scene makes of a physical surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SurfaceRole {
-    /// A fracture: it lies inside the rock and its walls can move apart.
-    Fracture,
-    /// A part of the outer surface that carries a condition.
-    Boundary,
-    /// Not used: welded where it is inside, free where it is outside.
-    Unused,
-}
 
 /// Facets of all fractures. The `slots` say where a facet's nodes stand in the flat node list of
 /// the cells, and thereby (through [`Sectors::of_cell_node`]) in which sector each side lies.
@@ -194,7 +184,7 @@ fn collect(
     draft: &Draft,
     nodes: &[DVec3],
     adjacency: &Adjacency,
-    surfaces: &check::Surfaces,
+    surfaces: &Surfaces,
 ) -> (Facets, Vec<Boundary>, Vec<Defect>) {
     let (faces, found) = orient::fractures(draft, nodes, adjacency, surfaces);
     let facets = collect_facets(&draft.cells.elements, adjacency, surfaces, &faces);
@@ -210,7 +200,7 @@ fn divide(
     draft: &Draft,
     nodes: &[DVec3],
     adjacency: &Adjacency,
-    surfaces: &check::Surfaces,
+    surfaces: &Surfaces,
 ) -> (Vec<Defect>, (Vec<u32>, usize), Sectors) {
     let cells = &draft.cells.elements;
     let broken = check::cells(draft, nodes);
@@ -244,7 +234,7 @@ fn push_face(
 fn collect_facets(
     cells: &Elements,
     adjacency: &Adjacency,
-    surfaces: &check::Surfaces,
+    surfaces: &Surfaces,
     faces: &[(u32, u32)],
 ) -> Facets {
     const PER_TASK: usize = 4096;
@@ -285,7 +275,7 @@ fn room_for(count: usize) -> Facets {
 fn facets_between(
     cells: &Elements,
     adjacency: &Adjacency,
-    drafts: &[check::DraftFacet],
+    drafts: &[DraftFacet],
     faces: &[(u32, u32)],
 ) -> Facets {
     let mut facets = room_for(faces.len());
@@ -310,11 +300,7 @@ fn facets_between(
     facets
 }
 
-fn collect_boundaries(
-    draft: &Draft,
-    adjacency: &Adjacency,
-    surfaces: &check::Surfaces,
-) -> Vec<Boundary> {
+fn collect_boundaries(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Boundary> {
     let cells = &draft.cells.elements;
     let collect = |(group, faces): &(usize, Vec<u32>)| {
         let mut boundary = Boundary {

@@ -4,10 +4,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, NONE};
-use crate::check::{DraftFacet, Surfaces};
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
 use crate::pairing::{Entry, bounds, visit_runs};
+use crate::surfaces::{DraftFacet, Surfaces};
 use kluft_defect::Defect;
 
 /// The facet on the other side of an edge, or [`NONE`], and whether the first faces of both run

@@ -1,10 +1,21 @@
-//! What can be told of physical surfaces before roles are given to them.
+//! The roles of physical surfaces, and what can be told of surfaces before they have one.
 
 use crate::adjacency::{Adjacency, NONE};
 use crate::draft::Draft;
 
-/// How the faces of a draft's cells pair up, and at which of them its facets lie: found once, asked before roles are given and by
-/// [`crate::Mesh::build_on`] afterwards.
+/// What the scene makes of a physical surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SurfaceRole {
+    /// A fracture: it lies inside the rock and its walls can move apart.
+    Fracture,
+    /// A part of the outer surface that carries a condition.
+    Boundary,
+    /// Not used: welded where it is inside, free where it is outside.
+    Unused,
+}
+
+/// How the faces of a draft's cells pair up, and at which of them its facets lie: found once,
+/// asked before roles are given and by [`crate::Mesh::build_on`] afterwards.
 #[derive(Debug, Clone)]
 pub struct Faces {
     pub(crate) adjacency: Adjacency,

@@ -8,6 +8,7 @@ use lie_core::Rock;
 use crate::cases::{Bound, schedule};
 use crate::conditions::{FixedPointEntry, FractureEntry};
 use crate::oracle::Oracle;
+use crate::remedies::in_terms_of_scene;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
 
@@ -32,7 +33,7 @@ impl Scene {
             of_group,
             mut decisions,
         } = roles(self, &draft, &faces.inner_surfaces(&draft))?;
-        let mesh = Mesh::build_on(draft, faces, &of_group)?;
+        let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
         let mut binding = bind(self, mesh)?;
         decisions.append(&mut binding.decisions);
         Ok(Binding {

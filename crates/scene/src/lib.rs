@@ -13,6 +13,7 @@ mod load;
 mod oracle;
 mod read;
 pub mod reader;
+mod remedies;
 mod roles;
 mod scene;
 
@@ -23,5 +24,6 @@ pub use history::{LoadHistory, StepEnd, Timetable};
 pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};
 pub use read::{FACETS, check_conditions};
+pub use remedies::in_terms_of_scene;
 pub use roles::{Roles, roles};
 pub use scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
