@@ -45,7 +45,7 @@ const SYSTEMS: [(&str, f64, f64); 3] = [
 fn in_units(problem: &Problem, metre: f64, pascal: f64) -> Problem {
     let (length, stress) = (1.0 / metre, 1.0 / pascal);
     let mut other = problem.clone();
-    other.mesh.nodes.iter_mut().for_each(|x| *x *= length);
+    other.mesh.scale(length);
     other
         .rocks
         .iter_mut()

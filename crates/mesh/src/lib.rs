@@ -20,6 +20,8 @@ mod blocks;
 mod check;
 mod disjoint_sets;
 mod draft;
+mod facets;
+mod fracture_edges;
 mod geometry;
 mod mesh;
 mod orient;
@@ -35,13 +37,15 @@ mod survey;
 pub use check::CONDITION_INSIDE;
 pub use disjoint_sets::DisjointSets;
 pub use draft::{Draft, Elements, Group, TaggedElements};
+pub use facets::{Boundary, Facets};
+pub use fracture_edges::{FacetEdge, FractureEdges, FracturesAtNodes};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
 pub use kluft_defect::{Defect, nearest, sample};
-pub use mesh::{Boundary, Facets, Mesh};
+pub use mesh::{Mesh, MeshData};
 pub use roles::{Faces, SurfaceRole};
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
 pub use survey::{
-    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, FracturesAtNodes, MutePatch,
-    Orientation, Survey, cell_angles,
+    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, MutePatch, Orientation, Survey,
+    cell_angles,
 };

@@ -1,50 +1,37 @@
 //! The checked mesh.
 
+use std::ops::Deref;
+
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::adjacency::Adjacency;
 use crate::draft::{Draft, Elements, Group};
+use crate::facets::{self, Boundary, Facets};
 use crate::roles::{Faces, SurfaceRole};
 use crate::sectors::{self, Sectors};
-use crate::surfaces::{DraftFacet, Surfaces};
-use crate::{blocks, check, orient};
+use crate::surfaces::Surfaces;
+use crate::{blocks, check};
 use kluft_defect::Defect;
 
-/// Facets of all fractures. The `slots` say where a facet's nodes stand in the flat node list of
-/// the cells, and thereby (through [`Sectors::of_cell_node`]) in which sector each side lies.
-#[derive(Debug, Clone, Default)]
-pub struct Facets {
-    /// Shapes and nodes; the right-hand normal points from minus to plus.
-    pub elements: Elements,
-    /// Index into [`Mesh::fractures`].
-    pub fracture: Vec<u32>,
-    /// The cell on the minus side.
-    pub minus: Vec<u32>,
-    /// The cell on the plus side.
-    pub plus: Vec<u32>,
-    /// Slots of the facet nodes in the minus cell, parallel to `elements.nodes`.
-    pub minus_slots: Vec<u32>,
-    /// Slots of the facet nodes in the plus cell, parallel to `elements.nodes`.
-    pub plus_slots: Vec<u32>,
-}
-
-/// Facets of one named part of the outer surface.
-#[derive(Debug, Clone)]
-pub struct Boundary {
-    /// Name of the physical group.
-    pub name: String,
-    /// Shapes and nodes; the right-hand normal points out of the body.
-    pub elements: Elements,
-    /// The cell behind each facet.
-    pub cell: Vec<u32>,
-    /// Slots of the facet nodes in that cell, parallel to `elements.nodes`.
-    pub slots: Vec<u32>,
-}
-
 /// A checked, fractured mesh; see the crate documentation for what it promises.
+///
+/// [`Mesh::build`] is the only way to one, and its data can be read but not written, so that the
+/// promises hold wherever a mesh is met:
+///
+/// ```compile_fail
+/// fn flatten(mesh: &mut kluft_mesh::Mesh) {
+///     mesh.nodes[0].z = 0.0;
+/// }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
+    data: MeshData,
+}
+
+/// What a [`Mesh`] holds.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct MeshData {
     /// Where it came from, for messages.
     pub source: String,
     /// Coordinates of the nodes (m).
@@ -75,8 +62,18 @@ pub struct Mesh {
     pub block: Vec<u32>,
     /// Number of blocks.
     pub block_count: usize,
-    /// Whether cells at crack fronts are quarter-point elements, see [`Mesh::move_to_quarter_points`].
+    /// Whether cells at crack fronts are quarter-point elements, see
+    /// [`Mesh::move_to_quarter_points`].
     pub has_quarter_points: bool,
+}
+
+impl Deref for Mesh {
+    type Target = MeshData;
+
+    #[inline]
+    fn deref(&self) -> &MeshData {
+        &self.data
+    }
 }
 
 impl Mesh {
@@ -120,7 +117,7 @@ impl Mesh {
         // The fractures are mostly one thread's work, which leaves the others to the cells.
         let ((facets, boundaries, one_sided), (broken, (block, block_count), sectors)) =
             rayon::join(
-                || collect(&draft, &nodes, &adjacency, &surfaces),
+                || facets::collect(&draft, &nodes, &adjacency, &surfaces),
                 || divide(&draft, &nodes, &adjacency, &surfaces),
             );
         if !broken.is_empty() {
@@ -134,7 +131,7 @@ impl Mesh {
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
         let shared_facets = shared_facets.collect();
         let fractures = surfaces.fractures.iter();
-        Ok(Self {
+        let data = MeshData {
             fractures: fractures.map(|&g| draft.groups[g].name.clone()).collect(),
             nodes,
             shared_facets,
@@ -151,7 +148,25 @@ impl Mesh {
             cell_group_set: draft.cells.group_set,
             group_sets: draft.group_sets,
             groups: draft.groups,
-        })
+        };
+        Ok(Self { data })
+    }
+
+    /// Multiplies all coordinates by a factor, as another unit of length does.
+    ///
+    /// # Panics
+    /// If the factor is not positive and finite: no promise would hold.
+    pub fn scale(&mut self, factor: f64) {
+        assert!(factor > 0.0 && factor.is_finite(), "a factor of {factor}");
+        self.data.nodes.iter_mut().for_each(|x| *x *= factor);
+    }
+
+    /// Moves the middles of edges, faces and cells; none of what is promised depends on them.
+    pub(crate) fn move_middles(&mut self, moves: &[Option<DVec3>]) {
+        for (node, by) in self.data.nodes.iter_mut().zip(moves) {
+            *node += by.unwrap_or(DVec3::ZERO);
+        }
+        self.data.has_quarter_points |= moves.iter().any(Option::is_some);
     }
 
     /// Coordinates of the corners of an element of this mesh (m).
@@ -166,6 +181,11 @@ impl Mesh {
             .collect()
     }
 
+    /// Length of the straight edge between two nodes (m).
+    pub fn edge_length(&self, [a, b]: [u32; 2]) -> f64 {
+        self.nodes[a as usize].distance(self.nodes[b as usize])
+    }
+
     /// Lowest and highest coordinates of the nodes that are in cells (m).
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let used = self
@@ -177,22 +197,6 @@ impl Mesh {
             (low.min(x), high.max(x))
         })
     }
-}
-
-/// The facets of fractures and boundaries, and defects of the fractures.
-fn collect(
-    draft: &Draft,
-    nodes: &[DVec3],
-    adjacency: &Adjacency,
-    surfaces: &Surfaces,
-) -> (Facets, Vec<Boundary>, Vec<Defect>) {
-    let (faces, found) = orient::fractures(draft, nodes, adjacency, surfaces);
-    let facets = collect_facets(&draft.cells.elements, adjacency, surfaces, &faces);
-    (
-        facets,
-        collect_boundaries(draft, adjacency, surfaces),
-        found,
-    )
 }
 
 /// Defects of the cells, their blocks, the sectors of the nodes.
@@ -210,116 +214,4 @@ fn divide(
         || sectors::find(cells, nodes.len(), adjacency, fractured),
     );
     (broken, blocks, sectors)
-}
-
-/// Appends the cell face `face` to `elements` and its slots to `slots`.
-fn push_face(
-    cells: &Elements,
-    adjacency: &Adjacency,
-    face: u32,
-    elements: &mut Elements,
-    slots: &mut Vec<u32>,
-) {
-    let first = slots.len();
-    slots.extend(adjacency.slots(cells, face).map(|slot| slot as u32));
-    // No face has more nodes than a quadratic quadrangle.
-    let mut nodes = [0; 9];
-    let own = &slots[first..];
-    for (node, &slot) in nodes.iter_mut().zip(own) {
-        *node = cells.nodes[slot as usize];
-    }
-    elements.push(adjacency.shape_of(cells, face).shape, &nodes[..own.len()]);
-}
-
-fn collect_facets(
-    cells: &Elements,
-    adjacency: &Adjacency,
-    surfaces: &Surfaces,
-    faces: &[(u32, u32)],
-) -> Facets {
-    const PER_TASK: usize = 4096;
-    let tasks = surfaces.facets.par_chunks(PER_TASK);
-    let parts: Vec<Facets> = tasks
-        .zip(faces.par_chunks(PER_TASK))
-        .map(|(facets, faces)| facets_between(cells, adjacency, facets, faces))
-        .collect();
-    let mut whole = room_for(faces.len());
-    for part in parts {
-        whole.elements.extend(&part.elements);
-        whole.fracture.extend(part.fracture);
-        whole.minus.extend(part.minus);
-        whole.plus.extend(part.plus);
-        whole.minus_slots.extend(part.minus_slots);
-        whole.plus_slots.extend(part.plus_slots);
-    }
-    whole
-}
-
-/// No facets, and room for so many triangles.
-fn room_for(count: usize) -> Facets {
-    let mut elements = Elements::new();
-    elements.shapes.reserve(count);
-    elements.offsets.reserve(count);
-    elements.nodes.reserve(3 * count);
-    Facets {
-        elements,
-        fracture: Vec::with_capacity(count),
-        minus: Vec::with_capacity(count),
-        plus: Vec::with_capacity(count),
-        minus_slots: Vec::with_capacity(3 * count),
-        plus_slots: Vec::with_capacity(3 * count),
-    }
-}
-
-/// The facets between these pairs of minus and plus faces.
-fn facets_between(
-    cells: &Elements,
-    adjacency: &Adjacency,
-    drafts: &[DraftFacet],
-    faces: &[(u32, u32)],
-) -> Facets {
-    let mut facets = room_for(faces.len());
-    for (draft, &(minus, plus)) in drafts.iter().zip(faces) {
-        push_face(
-            cells,
-            adjacency,
-            minus,
-            &mut facets.elements,
-            &mut facets.minus_slots,
-        );
-        for slot in adjacency.slots(cells, minus) {
-            let node = cells.nodes[slot];
-            let mut twins = adjacency.slots(cells, plus);
-            let twin = twins.find(|&slot| cells.nodes[slot] == node);
-            facets.plus_slots.extend(twin.map(|slot| slot as u32));
-        }
-        facets.fracture.push(draft.fracture);
-        facets.minus.push(adjacency.cell_of(minus));
-        facets.plus.push(adjacency.cell_of(plus));
-    }
-    facets
-}
-
-fn collect_boundaries(draft: &Draft, adjacency: &Adjacency, surfaces: &Surfaces) -> Vec<Boundary> {
-    let cells = &draft.cells.elements;
-    let collect = |(group, faces): &(usize, Vec<u32>)| {
-        let mut boundary = Boundary {
-            name: draft.groups[*group].name.clone(),
-            elements: Elements::new(),
-            cell: Vec::new(),
-            slots: Vec::new(),
-        };
-        for &face in faces {
-            boundary.cell.push(adjacency.cell_of(face));
-            push_face(
-                cells,
-                adjacency,
-                face,
-                &mut boundary.elements,
-                &mut boundary.slots,
-            );
-        }
-        boundary
-    };
-    surfaces.boundaries.iter().map(collect).collect()
 }

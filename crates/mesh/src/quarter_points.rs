@@ -38,10 +38,7 @@ impl Mesh {
             }
         }
         self.drag_middles(&mut moves);
-        for (node, by) in self.nodes.iter_mut().zip(moves) {
-            *node += by.unwrap_or(DVec3::ZERO);
-        }
-        self.has_quarter_points |= count > 0;
+        self.move_middles(&moves);
         count
     }
 

@@ -36,7 +36,7 @@ pub enum Support {
 /// What acts on one part of the outer surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition {
-    /// Index into [`Mesh::boundaries`].
+    /// Index into [`kluft_mesh::MeshData::boundaries`].
     pub boundary: usize,
     /// Its load, if any.
     pub load: Option<SurfaceLoad>,
@@ -97,7 +97,7 @@ pub struct Problem {
     pub rocks: Vec<Rock>,
     /// Index into `rocks` for each cell.
     pub rock_of_cell: Vec<u32>,
-    /// One entry for each of [`Mesh::fractures`].
+    /// One entry for each of [`kluft_mesh::MeshData::fractures`].
     pub fractures: Vec<Fracture>,
     /// Conditions on the outer surface.
     pub conditions: Vec<Condition>,

@@ -13,9 +13,9 @@ pub struct BlockSurvey {
     pub volume: f64,
     /// Lowest and highest coordinates (m).
     pub bounds: (DVec3, DVec3),
-    /// Whether it has a facet on each of [`Mesh::boundaries`].
+    /// Whether it has a facet on each of [`crate::MeshData::boundaries`].
     pub on_boundary: Vec<bool>,
-    /// Whether it has a facet of each of [`Mesh::fractures`].
+    /// Whether it has a facet of each of [`crate::MeshData::fractures`].
     pub on_fracture: Vec<bool>,
 }
 

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::edges::{FacetEdge, FacetEdges, length};
-use super::{FacetGeometry, FracturesAtNodes};
+use super::fractures::FacetGeometry;
+use crate::fracture_edges::{FacetEdge, FractureEdges, FracturesAtNodes};
 use crate::mesh::Mesh;
 
 /// Two fractures that share nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// Indices into [`Mesh::fractures`], ascending.
+    /// Indices into [`crate::MeshData::fractures`], ascending.
     pub fractures: [u32; 2],
     /// Number of nodes that they share.
     pub nodes: usize,
@@ -32,7 +32,7 @@ pub struct Contact {
 pub(super) fn find(
     mesh: &Mesh,
     geometry: &FacetGeometry,
-    edges: &FacetEdges,
+    edges: &FractureEdges,
     at_nodes: &FracturesAtNodes,
 ) -> Vec<Contact> {
     let mut contacts: BTreeMap<[u32; 2], Contact> = BTreeMap::new();
@@ -48,7 +48,7 @@ pub(super) fn find(
             }
         }
     }
-    for run in edges.runs() {
+    for run in edges.meetings() {
         let groups: Vec<&[FacetEdge]> = run.chunk_by(|a, b| a.fracture == b.fracture).collect();
         for (i, first) in groups.iter().enumerate() {
             for second in &groups[i + 1..] {
@@ -82,7 +82,7 @@ impl Contact {
         first: &[FacetEdge],
         second: &[FacetEdge],
     ) {
-        let long = length(mesh, first[0].nodes);
+        let long = mesh.edge_length(first[0].nodes);
         let kind = match (first.len(), second.len()) {
             (1, 1) => &mut self.rim_length,
             (1, _) => &mut self.ending_length[0],

@@ -2,16 +2,16 @@
 
 use glam::DVec3;
 
-use super::edges::FacetEdges;
-use super::{FacetGeometry, FractureSurvey};
+use super::fractures::{FacetGeometry, FractureSurvey};
 use crate::disjoint_sets::DisjointSets;
+use crate::fracture_edges::FractureEdges;
 use crate::mesh::Mesh;
 
 /// Facets that hang together and at none of whose nodes the two sides can move apart: the mesh is
 /// too coarse for them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MutePatch {
-    /// Index into [`Mesh::fractures`].
+    /// Index into [`crate::MeshData::fractures`].
     pub fracture: u32,
     /// Number of facets.
     pub facets: usize,
@@ -33,13 +33,13 @@ pub(super) struct Mute {
 pub(super) fn find(
     mesh: &Mesh,
     geometry: &FacetGeometry,
-    edges: &FacetEdges,
+    edges: &FractureEdges,
     fractures: &mut [FractureSurvey],
 ) -> Mute {
     let count = mesh.facets.fracture.len();
     let mute: Vec<bool> = (0..count).map(|facet| is_mute(mesh, facet)).collect();
     let (mut pieces, mut patches) = (DisjointSets::new(count), DisjointSets::new(count));
-    for run in edges.runs() {
+    for run in edges.meetings() {
         for own in run.chunk_by(|a, b| a.fracture == b.fracture) {
             let mut last_mute = None;
             for edge in own {

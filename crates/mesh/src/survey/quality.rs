@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::FracturesAtNodes;
+use crate::fracture_edges::FracturesAtNodes;
 use crate::mesh::Mesh;
 use crate::shape::Shape;
 

@@ -1,27 +1,40 @@
-//! Edges of facets: which facets meet there, and whether the outer surface runs along.
+//! Where fractures meet, end in the rock and come out of it: the facets at every edge, the
+//! fractures at every node.
 
-use super::{FractureSurvey, FracturesAtNodes};
 use crate::adjacency::NONE;
 use crate::mesh::Mesh;
 
 /// An edge between two nodes as one facet has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct FacetEdge {
+pub struct FacetEdge {
     /// Its nodes, the lower one first.
-    pub(super) nodes: [u32; 2],
-    pub(super) fracture: u32,
-    pub(super) facet: u32,
+    pub nodes: [u32; 2],
+    /// The fracture of the facet: index into [`crate::MeshData::fractures`].
+    pub fracture: u32,
+    /// The facet: index into the elements of [`crate::MeshData::facets`].
+    pub facet: u32,
 }
 
-/// All edges of all facets, sorted, so that those of the same nodes stand together.
-pub(super) struct FacetEdges {
+/// The edges between the corners of all fracture facets, and what meets there.
+///
+/// | facets at an edge, by fracture | the edge is |
+/// |---|---|
+/// | 1 | where the fracture ends: in the rock, or on the outer surface ([`Self::is_outer`]) |
+/// | 2 | inside the fracture |
+/// | 1 and 1 | the common rim of two fractures: an L |
+/// | 1 and 2 | where one fracture ends on another: a T |
+/// | 2 and 2 | where two fractures cross: an X |
+#[derive(Debug, Clone)]
+pub struct FractureEdges {
+    /// Sorted, so that those of the same nodes stand together.
     edges: Vec<FacetEdge>,
     /// Edges of the outer surface between nodes on fractures, sorted.
     outer: Vec<[u32; 2]>,
 }
 
-impl FacetEdges {
-    pub(super) fn of(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Self {
+impl FractureEdges {
+    /// Finds the edges of a mesh, of which `at_nodes` tells the fractures at nodes.
+    pub fn of(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Self {
         let facets = &mesh.facets;
         let mut edges = Vec::with_capacity(4 * facets.fracture.len());
         for (facet, &fracture) in facets.fracture.iter().enumerate() {
@@ -40,44 +53,57 @@ impl FacetEdges {
         }
     }
 
-    /// The facets at one edge after the other, by fracture.
-    pub(super) fn runs(&self) -> impl Iterator<Item = &[FacetEdge]> {
+    /// The facets at one edge after the other, in ascending order of nodes; those of one edge by
+    /// fracture.
+    pub fn meetings(&self) -> impl Iterator<Item = &[FacetEdge]> {
         self.edges.chunk_by(|a, b| a.nodes == b.nodes)
     }
 
-    fn is_outer(&self, nodes: [u32; 2]) -> bool {
+    /// Whether the outer surface runs along an edge between nodes on fractures, the lower node first.
+    pub fn is_outer(&self, nodes: [u32; 2]) -> bool {
         self.outer.binary_search(&nodes).is_ok()
-    }
-
-    /// Adds tips, traces and branchings to the fractures; returns the number of tip edges of each
-    /// facet.
-    pub(super) fn add_to(&self, mesh: &Mesh, fractures: &mut [FractureSurvey]) -> Vec<u8> {
-        let mut tips = vec![0; mesh.facets.fracture.len()];
-        for run in self.runs() {
-            let (is_outer, long) = (self.is_outer(run[0].nodes), length(mesh, run[0].nodes));
-            for own in run.chunk_by(|a, b| a.fracture == b.fracture) {
-                let entry = &mut fractures[own[0].fracture as usize];
-                entry.closed &= own.len() > 1;
-                if is_outer {
-                    entry.trace_edges += 1;
-                    entry.trace_length += long;
-                } else if run.len() == 1 {
-                    entry.tip_edges += 1;
-                    entry.tip_length += long;
-                    tips[own[0].facet as usize] += 1;
-                }
-                if own.len() > 2 {
-                    entry.branching_length += long;
-                }
-            }
-        }
-        tips
     }
 }
 
-/// Length of the straight edge between two nodes (m).
-pub(super) fn length(mesh: &Mesh, [a, b]: [u32; 2]) -> f64 {
-    mesh.nodes[a as usize].distance(mesh.nodes[b as usize])
+/// The fractures at each node, ascending.
+#[derive(Debug, Clone)]
+pub struct FracturesAtNodes {
+    offset: Vec<u32>,
+    fractures: Vec<u32>,
+}
+
+impl FracturesAtNodes {
+    /// Finds the fractures at the nodes of a mesh.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        let mut pairs = Vec::with_capacity(mesh.facets.elements.nodes.len());
+        for (facet, &fracture) in mesh.facets.fracture.iter().enumerate() {
+            let own = mesh.facets.elements.nodes_of(facet);
+            pairs.extend(own.iter().map(|&node| (node, fracture)));
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut offset = vec![0_u32; mesh.nodes.len() + 1];
+        for &(node, _) in &pairs {
+            offset[node as usize + 1] += 1;
+        }
+        for node in 0..mesh.nodes.len() {
+            offset[node + 1] += offset[node];
+        }
+        Self {
+            offset,
+            fractures: pairs.into_iter().map(|(_, fracture)| fracture).collect(),
+        }
+    }
+
+    /// Fractures at a node: indices into [`crate::MeshData::fractures`], ascending.
+    pub fn of(&self, node: usize) -> &[u32] {
+        &self.fractures[self.offset[node] as usize..self.offset[node + 1] as usize]
+    }
+
+    /// Whether a fracture goes through a node or ends there.
+    pub fn any(&self, node: u32) -> bool {
+        self.offset[node as usize] < self.offset[node as usize + 1]
+    }
 }
 
 fn ring_edges(ring: &[u32]) -> impl Iterator<Item = [u32; 2]> {
