@@ -30,7 +30,7 @@ pub struct Inspection {
     /// Fractures that meet, by pair.
     pub contacts: Vec<ContactFinding>,
     /// Patches of fractures without a jump of their own.
-    pub mute_patches: Vec<PatchFinding>,
+    pub unresolved_patches: Vec<PatchFinding>,
     /// Parts of the rock that fractures cut apart.
     pub blocks: Vec<BlockFinding>,
     /// Quality of the cells.
@@ -97,7 +97,7 @@ pub struct FractureFinding {
     /// Whether the surface has no rim.
     pub closed: bool,
     /// Number of separate surfaces.
-    pub pieces: usize,
+    pub components: usize,
     /// Lowest and highest coordinates (m).
     pub bounds: [Place; 2],
     /// Edges where it ends in the rock.
@@ -113,7 +113,7 @@ pub struct FractureFinding {
     /// Its nodes by number of sectors: 3, 4, 5, 6, 7, `8+`.
     pub junction_nodes: SectorCounts,
     /// Its facets without a jump.
-    pub mute_facets: usize,
+    pub unresolved_facets: usize,
     /// The worst cell that touches it.
     pub worst_cell: Option<CellFinding>,
 }
@@ -189,7 +189,7 @@ pub struct PatchFinding {
     pub area: f64,
     /// Its middle (m).
     pub at: Place,
-    /// Whether it is a whole piece of the fracture and not a corner of one.
+    /// Whether it is a whole component of the fracture and not a corner of one.
     pub whole: bool,
 }
 

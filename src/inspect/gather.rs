@@ -23,8 +23,8 @@ pub fn topology(mesh: &Mesh, survey: &Survey, inspection: &mut Inspection) {
         .map(|index| fracture(mesh, survey, index))
         .collect();
     inspection.contacts = survey.contacts.iter().map(|c| contact(mesh, c)).collect();
-    let patches = survey.mute_patches.iter();
-    inspection.mute_patches = patches
+    let patches = survey.unresolved_patches.iter();
+    inspection.unresolved_patches = patches
         .map(|patch| PatchFinding {
             fracture: mesh.fractures[patch.fracture as usize].clone(),
             facets: patch.facets,
@@ -40,7 +40,7 @@ pub fn topology(mesh: &Mesh, survey: &Survey, inspection: &mut Inspection) {
 
 fn fracture(mesh: &Mesh, survey: &Survey, index: usize) -> FractureFinding {
     let found = &survey.fractures[index];
-    let patches = survey.mute_patches.iter();
+    let patches = survey.unresolved_patches.iter();
     let own = patches.filter(|patch| patch.fracture as usize == index);
     let open = |value: f64| (!found.closed).then_some(value);
     FractureFinding {
@@ -51,7 +51,7 @@ fn fracture(mesh: &Mesh, survey: &Survey, index: usize) -> FractureFinding {
         dip_direction: open(found.orientation.dip_direction),
         deviation: open(found.orientation.deviation),
         closed: found.closed,
-        pieces: found.pieces,
+        components: found.components,
         bounds: box_of(found.bounds),
         tip_edges: found.tip_edges,
         tip_length: found.tip_length,
@@ -59,7 +59,7 @@ fn fracture(mesh: &Mesh, survey: &Survey, index: usize) -> FractureFinding {
         trace_length: found.trace_length,
         branching_length: found.branching_length,
         junction_nodes: found.junction_nodes.into(),
-        mute_facets: own.map(|patch| patch.facets).sum(),
+        unresolved_facets: own.map(|patch| patch.facets).sum(),
         worst_cell: survey.quality.worst_of_fracture[index].map(|worst| cell(mesh, survey, worst)),
     }
 }
@@ -152,7 +152,11 @@ fn cell(mesh: &Mesh, survey: &Survey, index: u32) -> CellFinding {
 
 fn warn(inspection: &mut Inspection) {
     let mut warnings = Vec::new();
-    for patch in inspection.mute_patches.iter().filter(|patch| patch.whole) {
+    for patch in inspection
+        .unresolved_patches
+        .iter()
+        .filter(|patch| patch.whole)
+    {
         let [x, y, z] = patch.at;
         warnings.push(format!(
             "fracture `{}`: a patch of {} facets at ({x:.4}, {y:.4}, {z:.4}) has no jump, so it stays welded: mesh it finer",

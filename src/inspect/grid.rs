@@ -59,7 +59,7 @@ fn fields(mesh: &Mesh, survey: &Survey, cells: &[u32]) -> Vec<Field> {
         ),
         real_field("normal", normals.chain(flat).map(|n| n.to_array())),
         integer_field(
-            "mute_patch",
+            "unresolved_patch",
             patches
                 .map(|patch| patch.map_or(-1, |patch| patch as i32))
                 .chain(none()),

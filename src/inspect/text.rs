@@ -108,14 +108,14 @@ fn fractures(out: &mut String, inspection: &Inspection) {
 
 fn fracture_lines(out: &mut String, fracture: &FractureFinding) {
     let surface = if fracture.closed { "closed" } else { "open" };
-    let pieces = match fracture.pieces {
+    let components = match fracture.components {
         1 => String::new(),
-        count => format!(" in {count} pieces"),
+        count => format!(" in {count} components"),
     };
     line(
         out,
         &format!(
-            "  {:.6} m2, {} facets, {surface} surface{pieces}",
+            "  {:.6} m2, {} facets, {surface} surface{components}",
             fracture.area, fracture.facets
         ),
     );
@@ -150,12 +150,12 @@ fn fracture_lines(out: &mut String, fracture: &FractureFinding) {
             &format!("  junctions: {}", sectors(&fracture.junction_nodes)),
         );
     }
-    if fracture.mute_facets > 0 {
+    if fracture.unresolved_facets > 0 {
         line(
             out,
             &format!(
                 "  {} facets without a jump of their own",
-                fracture.mute_facets
+                fracture.unresolved_facets
             ),
         );
     }
@@ -210,15 +210,15 @@ fn contacts(out: &mut String, inspection: &Inspection) {
 }
 
 fn patches(out: &mut String, inspection: &Inspection) {
-    if inspection.mute_patches.is_empty() {
+    if inspection.unresolved_patches.is_empty() {
         return;
     }
     line(out, "\npatches with no jump of their own");
-    list(out, &inspection.mute_patches, |patch| {
+    list(out, &inspection.unresolved_patches, |patch| {
         let what = if patch.whole {
-            "a whole piece"
+            "a whole component"
         } else {
-            "part of a piece"
+            "part of a component"
         };
         format!(
             "  {}: {} facets, {:.4e} m2 at {}, {what}",

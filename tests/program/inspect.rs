@@ -71,7 +71,7 @@ fn the_json_has_its_keys() {
         "groups",
         "fractures",
         "contacts",
-        "mute_patches",
+        "unresolved_patches",
         "blocks",
         "cells",
         "unknowns",
@@ -98,7 +98,7 @@ fn the_json_has_its_keys() {
             "{key}"
         );
     }
-    for key in ["warnings", "defects", "mute_patches"] {
+    for key in ["warnings", "defects", "unresolved_patches"] {
         assert!(report[key].is_array(), "{key}");
     }
     assert_eq!(report["title"], "A joint ending on another, both closing");
@@ -257,7 +257,7 @@ fn the_findings_open_in_vtk() {
     for (field, range) in [
         ("fracture", [-1.0, 1.0]),
         ("block_minus", [0.0, 2.0]),
-        ("mute_patch", [-1.0, -1.0]),
+        ("unresolved_patch", [-1.0, -1.0]),
     ] {
         let data = &found["cell_data"][field];
         assert_eq!(

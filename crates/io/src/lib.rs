@@ -2,12 +2,14 @@
 
 mod atomic;
 pub mod gmsh;
+mod load;
 pub mod msh;
 mod pvd;
 mod vtu;
 
 pub use atomic::write_atomically;
 pub use gmsh::{Meshing, mesh_geometry, write_size_field};
-pub use msh::{load_msh, parse_msh, read_msh};
+pub use load::load_msh;
+pub use msh::{parse_msh, read_msh};
 pub use pvd::write_pvd;
 pub use vtu::{Field, Grid, Values, write_vtu};

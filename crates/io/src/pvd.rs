@@ -36,7 +36,8 @@ fn write_collection(out: &mut BufWriter<File>, entries: &[(f64, String)]) -> io:
     writeln!(out, "</VTKFile>")
 }
 
-/// Escapes what ends or bends a quoted attribute; a bare line break or tab would be read as a space.
+/// Escapes what ends or bends a quoted attribute; a bare line break or tab would be read as a
+/// space.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

@@ -75,21 +75,22 @@ impl Values {
 /// When the lengths of the parts of `grid` do not fit together: an error of the caller.
 pub fn write_vtu(path: &Path, grid: Grid) -> Result<(), Defect> {
     check_lengths(&grid);
-    let grid = match grid.shapes.is_empty() {
-        true => Grid {
+    let grid = if grid.shapes.is_empty() {
+        Grid {
             offsets: vec![0],
             ..Grid::default()
-        },
-        false => grid,
+        }
+    } else {
+        grid
     };
-    let piece = Piece::of(grid).map_err(|error| {
+    let encoded = EncodedGrid::of(grid).map_err(|error| {
         Defect::new(
             path.display().to_string(),
             format!("cannot be encoded: {error}"),
             "report this as an error of the program, with the scene",
         )
     })?;
-    write_atomically(path, |out| piece.write(out))
+    write_atomically(path, |out| encoded.write(out))
 }
 
 fn check_lengths(grid: &Grid) {
@@ -136,7 +137,7 @@ fn check_fields(fields: &[Field], count: usize) {
 }
 
 /// A grid with its arrays encoded.
-struct Piece {
+struct EncodedGrid {
     points: usize,
     cells: usize,
     point_data: Vec<DataArray>,
@@ -145,7 +146,7 @@ struct Piece {
     topology: [DataArray; 3],
 }
 
-impl Piece {
+impl EncodedGrid {
     /// Encodes the arrays in parallel: vtkio does a whole file on one thread.
     fn of(grid: Grid) -> Result<Self, Error> {
         let (points, cells) = (grid.points.len(), grid.shapes.len());

@@ -153,7 +153,7 @@ impl Pairing<'_> {
             visit_runs(
                 count,
                 self.node_count,
-                |i| self.reach(i),
+                |i| self.key_range(i),
                 |i, out| self.emit(i, out),
                 |found, run| self.settle(found, run),
             )
@@ -161,7 +161,7 @@ impl Pairing<'_> {
             visit_runs(
                 count,
                 self.node_count,
-                |i| self.reach(i),
+                |i| self.key_range(i),
                 |i, out| self.emit(i, out),
                 |found, run| self.split(found, run),
             )
@@ -228,7 +228,7 @@ impl Pairing<'_> {
     }
 
     /// The lowest corner that is the lowest of a face, and one that is not below the others.
-    fn reach(&self, element: usize) -> (u32, u32) {
+    fn key_range(&self, element: usize) -> (u32, u32) {
         let Some(facet) = element.checked_sub(self.cells.len()) else {
             let nodes = self.cells.nodes_of(element);
             let shape = self.cells.shapes[element];

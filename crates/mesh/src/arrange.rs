@@ -1,7 +1,7 @@
 //! Nodes and cells in an order that keeps neighbours together.
 //!
-//! gmsh numbers nodes and cells as it finds them: cells that share a face lie half a file apart. Every
-//! loop over a large mesh then waits for memory. Along a space-filling curve it does not.
+//! gmsh numbers nodes and cells as it finds them: cells that share a face lie half a file apart.
+//! Every loop over a large mesh then waits for memory. Along a space-filling curve it does not.
 
 use rayon::prelude::*;
 

@@ -112,9 +112,10 @@ pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
     defects
 }
 
-/// Whether a glance shows that the cell is a tetrahedron of positive volume and not flat. Its longest
-/// edge `l` is at most twice the longest `e` of those from one corner, so `V^2 > (2e)^6 f^2` is more
-/// than `V > l^3 f`, and takes neither roots nor quotients. The factor leaves room for rounding.
+/// Whether a glance shows that the cell is a tetrahedron of positive volume and not flat. Its
+/// longest edge `l` is at most twice the longest `e` of those from one corner, so
+/// `V^2 > (2e)^6 f^2` is more than `V > l^3 f`, and takes neither roots nor quotients. The factor
+/// leaves room for rounding.
 fn is_surely_sound(cells: &Elements, nodes: &[DVec3], cell: usize) -> bool {
     const LIMIT: f64 = 100.0 * FLAT * FLAT;
     let (Shape::Tet4, Some(corners)) = (cells.shapes[cell], cells.nodes_of(cell).first_chunk())

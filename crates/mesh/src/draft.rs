@@ -130,8 +130,8 @@ impl Elements {
     }
 }
 
-/// Cuts a list parallel to the nodes of elements with these offsets: so many elements at a time, and
-/// their share of the list.
+/// Cuts a list parallel to the nodes of elements with these offsets: so many elements at a time,
+/// and their share of the list.
 pub(crate) fn split<'a, T>(
     offsets: &[u32],
     at_a_time: usize,

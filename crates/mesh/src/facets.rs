@@ -10,7 +10,8 @@ use crate::orient;
 use crate::surfaces::{DraftFacet, Surfaces};
 
 /// Facets of all fractures. The `slots` say where a facet's nodes stand in the flat node list of
-/// the cells, and thereby (through [`crate::Sectors::of_cell_node`]) in which sector each side lies.
+/// the cells, and thereby (through [`crate::Sectors::of_cell_node`]) in which sector each side
+/// lies.
 #[derive(Debug, Clone, Default)]
 pub struct Facets {
     /// Shapes and nodes; the right-hand normal points from minus to plus.

@@ -59,7 +59,8 @@ impl FractureEdges {
         self.edges.chunk_by(|a, b| a.nodes == b.nodes)
     }
 
-    /// Whether the outer surface runs along an edge between nodes on fractures, the lower node first.
+    /// Whether the outer surface runs along an edge between nodes on fractures, the lower node
+    /// first.
     pub fn is_outer(&self, nodes: [u32; 2]) -> bool {
         self.outer.binary_search(&nodes).is_ok()
     }

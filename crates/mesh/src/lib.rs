@@ -46,6 +46,6 @@ pub use roles::{Faces, SurfaceRole};
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
 pub use survey::{
-    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, MutePatch, Orientation, Survey,
-    cell_angles,
+    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, Orientation, Survey,
+    UnresolvedPatch, cell_angles,
 };

@@ -120,7 +120,7 @@ fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
             });
         }
     };
-    let reach = |facet: usize| {
+    let key_range = |facet: usize| {
         let corners = &rings[facet].corners[..rings[facet].count];
         bounds(corners)
     };
@@ -130,7 +130,7 @@ fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
         }
     };
     let mut links = vec![[(NONE, false); 4]; surfaces.facets.len()];
-    for [a, b] in visit_runs(surfaces.facets.len(), node_count, reach, emit, visit)
+    for [a, b] in visit_runs(surfaces.facets.len(), node_count, key_range, emit, visit)
         .into_iter()
         .flatten()
     {

@@ -1,9 +1,9 @@
 //! Finds what has the same key among millions of items, in a time linear in their number.
 //!
 //! Items are dealt out by the first number of their key, a node, into parts that fit a processor's
-//! cache, and there into buckets, within which they are compared one by one. Where the elements lie in the
-//! order of their nodes, most items of a part come from a few stretches of elements: these are not
-//! dealt out but asked for again. Every part is the work of one task.
+//! cache, and there into buckets, within which they are compared one by one. Where the elements lie
+//! in the order of their nodes, most items of a part come from a few stretches of elements: these
+//! are not dealt out but asked for again. Every part is the work of one task.
 
 use std::ops::Range;
 
@@ -33,12 +33,13 @@ impl Entry {
 
 /// Visits every run of two or more entries with one key, in ascending order of their items, and
 /// returns what each task has made of its runs. `emit` appends the entries of one of `count`
-/// elements, their keys beginning with a number below `end`; `reach` gives the lowest of these numbers
-/// and one that none of them exceeds. Which run a task visits, and when, depends on the keys alone.
+/// elements, their keys beginning with a number below `end`; `key_range` gives the lowest of these
+/// numbers and one that none of them exceeds. Which run a task visits, and when, depends on the
+/// keys alone.
 pub(crate) fn visit_runs<A: Default + Send>(
     count: usize,
     end: usize,
-    reach: impl Fn(usize) -> (u32, u32) + Sync,
+    key_range: impl Fn(usize) -> (u32, u32) + Sync,
     emit: impl Fn(usize, &mut Vec<Entry>) + Sync,
     visit: impl Fn(&mut A, &[Entry]) + Sync,
 ) -> Vec<A> {
@@ -46,7 +47,7 @@ pub(crate) fn visit_runs<A: Default + Send>(
     let deal = |entries: &mut Vec<Entry>, task: usize| {
         let first = task * ELEMENTS_PER_TASK;
         let elements = first..count.min(first + ELEMENTS_PER_TASK);
-        Dealt::in_order(parts, elements.clone(), &reach, &emit, entries)
+        Dealt::in_order(parts, elements.clone(), &key_range, &emit, entries)
             .unwrap_or_else(|| Dealt::all(parts, elements, &emit, entries))
     };
     let tasks = (0..count.div_ceil(ELEMENTS_PER_TASK)).into_par_iter();
@@ -128,8 +129,8 @@ impl Parts {
 struct Dealt {
     /// First of the elements that each part has to ask for again, and of those behind.
     own: Vec<usize>,
-    /// The entries of all other elements, and those that do not belong to the part of their element;
-    /// those of one part side by side.
+    /// The entries of all other elements, and those that do not belong to the part of their
+    /// element; those of one part side by side.
     entries: Vec<Entry>,
     start: Vec<u32>,
 }
@@ -139,14 +140,14 @@ impl Dealt {
     fn in_order(
         parts: Parts,
         elements: Range<usize>,
-        reach: impl Fn(usize) -> (u32, u32),
+        key_range: impl Fn(usize) -> (u32, u32),
         emit: impl Fn(usize, &mut Vec<Entry>),
         entries: &mut Vec<Entry>,
     ) -> Option<Self> {
         let mut own = Vec::with_capacity(parts.count + 1);
         entries.clear();
         for element in elements.clone() {
-            let (home, last) = reach(element);
+            let (home, last) = key_range(element);
             let (home, last) = (parts.of_number(home), parts.of_number(last));
             if home + 1 < own.len() {
                 return None;
@@ -313,7 +314,7 @@ mod tests {
             }
         };
         // Element 2 and others lie in two parts; the elements do not all ascend.
-        let reach = |element: usize| {
+        let key_range = |element: usize| {
             let firsts = [element, (element + 1) % COUNT].map(|i| i as u32 / 3);
             let low = if element % 50 == 2 {
                 0
@@ -325,7 +326,7 @@ mod tests {
         let visit = |found: &mut Vec<Vec<u32>>, run: &[Entry]| {
             found.push(run.iter().map(|entry| entry.item).collect());
         };
-        let mut runs = visit_runs(COUNT, COUNT, reach, emit, visit).concat();
+        let mut runs = visit_runs(COUNT, COUNT, key_range, emit, visit).concat();
         runs.sort_by_key(Vec::len);
         assert_eq!(runs.len(), COUNT);
         let longest = runs.pop().expect("runs");

@@ -1,9 +1,10 @@
-//! Quarter-point elements: second-order cells at crack fronts, whose displacements follow the square root of
-//! the distance.
+//! Quarter-point elements: second-order cells at crack fronts, whose displacements follow the
+//! square root of the distance.
 //!
-//! Where the middle of an edge lies at a quarter of its length from the front, the distance along it is
-//! `r = s^2 l` for the reference coordinate `s`, so that quadratic displacements are `c_0 + c_1 sqrt(r) + c_2 r` (R. D. Henshell and
-//! K. G. Shaw, Int. J. Numer. Meth. Engng 9, 1975; R. S. Barsoum, ibid. 10, 1976).
+//! Where the middle of an edge lies at a quarter of its length from the front, the distance along
+//! it is `r = s^2 l` for the reference coordinate `s`, so that quadratic displacements are
+//! `c_0 + c_1 sqrt(r) + c_2 r` (R. D. Henshell and K. G. Shaw, Int. J. Numer. Meth. Engng 9, 1975;
+//! R. S. Barsoum, ibid. 10, 1976).
 
 use glam::DVec3;
 
@@ -11,8 +12,9 @@ use crate::mesh::Mesh;
 use crate::shape::Shape;
 
 impl Mesh {
-    /// Moves the middles of all edges that leave a crack front to a quarter of their length, and the middles of
-    /// faces and cells along; returns how many edges there are. Linear cells have none.
+    /// Moves the middles of all edges that leave a crack front to a quarter of their length, and
+    /// the middles of faces and cells along; returns how many edges there are. Linear cells have
+    /// none.
     pub fn move_to_quarter_points(&mut self) -> usize {
         let is_front = self.front_nodes();
         let place = |node: u32| self.nodes[node as usize];
@@ -61,8 +63,8 @@ impl Mesh {
         (0..self.cells.len()).map(touches).collect()
     }
 
-    /// Moves the middles of faces and cells as their edges say: by half the sum over the edges of a quadrangle,
-    /// by a quarter of it in a hexahedron, because corners stay.
+    /// Moves the middles of faces and cells as their edges say: by half the sum over the edges of a
+    /// quadrangle, by a quarter of it in a hexahedron, because corners stay.
     fn drag_middles(&self, moves: &mut [Option<DVec3>]) {
         let mut drag = |middle: u32, edges: &[u32], share: f64| {
             let sum: DVec3 = edges.iter().filter_map(|&edge| moves[edge as usize]).sum();

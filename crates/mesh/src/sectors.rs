@@ -107,7 +107,8 @@ impl Around<'_> {
         crossing
     }
 
-    /// Makes each slot of the cell a sector of its own, if its node is on a fracture; false if none is.
+    /// Makes each slot of the cell a sector of its own, if its node is on a fracture; false if none
+    /// is.
     fn single_out(&self, cell: usize, sets: &mut Stretch) -> bool {
         let mut any = false;
         for slot in self.cells.range(cell) {
@@ -119,7 +120,8 @@ impl Around<'_> {
         any
     }
 
-    /// Where the cell has the node of a slot of `face`, its neighbour's face, if it is on a fracture.
+    /// Where the cell has the node of a slot of `face`, its neighbour's face, if it is on a
+    /// fracture.
     fn twin(&self, slot: usize, cell: usize, face: u32) -> Option<u32> {
         let node = self.cells.nodes[slot];
         if !self.on_fracture[node as usize] {

@@ -110,8 +110,8 @@ impl Shape {
         self.node_count() > self.corner_count()
     }
 
-    /// The edges, as pairs of corners, in the order of the nodes between them: those of quadratic shapes
-    /// follow the corners.
+    /// The edges, as pairs of corners, in the order of the nodes between them: those of quadratic
+    /// shapes follow the corners.
     pub fn edges(self) -> &'static [[u8; 2]] {
         match self.corner_count() {
             3 => &[[0, 1], [1, 2], [2, 0]],

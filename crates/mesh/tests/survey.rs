@@ -38,9 +38,9 @@ fn a_half_plane_has_one_tip_and_three_sides_on_the_surface() {
             "{shape:?}"
         );
         assert!(near(found.area, 0.5), "{shape:?}");
-        assert_eq!((found.pieces, found.closed), (1, false), "{shape:?}");
+        assert_eq!((found.components, found.closed), (1, false), "{shape:?}");
         assert_eq!(found.junction_nodes, [0; 6], "{shape:?}");
-        assert!(survey.contacts.is_empty() && survey.mute_patches.is_empty());
+        assert!(survey.contacts.is_empty() && survey.unresolved_patches.is_empty());
         let tips: usize = survey
             .tip_edges_of_facet
             .iter()
@@ -136,13 +136,13 @@ fn dip_and_dip_direction_are_a_geologists() {
 }
 
 #[test]
-fn a_single_facet_inside_is_mute() {
+fn a_single_facet_inside_is_unresolved() {
     let corners = [[0.5, 0.5, 0.5], [0.75, 0.5, 0.5], [0.75, 0.75, 0.5]];
     let one: Contains<'_> = &|x| corners.contains(&x);
     let big: Contains<'_> = &|x| x[2] == 0.25;
     let (_, survey) = survey_of(Shape::Tet4, &[one, big]);
-    let [patch] = &survey.mute_patches[..] else {
-        panic!("{:?}", survey.mute_patches);
+    let [patch] = &survey.unresolved_patches[..] else {
+        panic!("{:?}", survey.unresolved_patches);
     };
     assert_eq!((patch.fracture, patch.facets, patch.whole), (0, 1, true));
     assert!(near(patch.area, 1.0 / 32.0));
@@ -152,15 +152,19 @@ fn a_single_facet_inside_is_mute() {
 }
 
 #[test]
-fn a_facet_in_a_corner_of_a_fracture_is_mute_but_not_the_whole() {
+fn a_facet_in_a_corner_of_a_fracture_is_unresolved_but_not_the_whole() {
     let square: Contains<'_> =
         &|x| x[2] == 0.5 && (0.25..=0.75).contains(&x[0]) && (0.25..=0.75).contains(&x[1]);
     let (_, survey) = survey_of(Shape::Tet4, &[square]);
-    let facets: usize = survey.mute_patches.iter().map(|patch| patch.facets).sum();
+    let facets: usize = survey
+        .unresolved_patches
+        .iter()
+        .map(|patch| patch.facets)
+        .sum();
     assert_eq!(facets, 2, "the Kuhn cut leaves two triangles in corners");
-    assert!(survey.mute_patches.iter().all(|patch| !patch.whole));
+    assert!(survey.unresolved_patches.iter().all(|patch| !patch.whole));
     let (_, hexahedra) = survey_of(Shape::Hex8, &[square]);
-    assert!(hexahedra.mute_patches.is_empty());
+    assert!(hexahedra.unresolved_patches.is_empty());
 }
 
 #[test]
@@ -175,7 +179,7 @@ fn the_surface_of_a_cube_is_closed_and_cuts_a_block_free() {
         assert!(found.closed, "{shape:?}");
         assert!(near(found.area, 6.0 * 0.25), "{shape:?}");
         assert_eq!(
-            (found.tip_edges, found.trace_edges, found.pieces),
+            (found.tip_edges, found.trace_edges, found.components),
             (0, 0, 1)
         );
         assert_eq!(survey.blocks.len(), 2, "{shape:?}");

@@ -424,7 +424,8 @@ mod tests {
 
     #[test]
     fn mended_corners_stay_in_their_plane_and_in_the_domain() {
-        // The roof meets the wall's plane beyond the face `front`, within reach of the wall's corner.
+        // The roof meets the wall's plane beyond the face `front`, within reach of the wall's
+        // corner.
         let roof = fracture(
             "roof",
             &[

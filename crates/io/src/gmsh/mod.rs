@@ -22,7 +22,8 @@ pub use size_field::write_size_field;
 pub struct Meshing<'a> {
     /// The `.geo` file.
     pub geometry: &'a Path,
-    /// Values for `DefineConstant` names of the geometry, or for options such as `Mesh.Algorithm3D`.
+    /// Values for `DefineConstant` names of the geometry, or for options such as
+    /// `Mesh.Algorithm3D`.
     pub parameters: &'a [(String, f64)],
     /// Order of the elements: 1 or 2.
     pub order: u32,

@@ -3,7 +3,8 @@
 
 use kluft_mesh::Defect;
 
-/// One defect for each parameter that would have no effect. Names with a dot are gmsh's own options.
+/// One defect for each parameter that would have no effect. Names with a dot are gmsh's own
+/// options.
 pub(super) fn check(place: &str, script: &str, parameters: &[(String, f64)]) -> Vec<Defect> {
     let script = Script::parse(script);
     let check_one = |(name, value): &(String, f64)| {

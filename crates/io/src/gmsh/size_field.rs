@@ -1,4 +1,5 @@
-//! Cell sizes for gmsh: a view of sizes on a former mesh, and a script that meshes a geometry by it.
+//! Cell sizes for gmsh: a view of sizes on a former mesh, and a script that meshes a geometry by
+//! it.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -8,7 +9,8 @@ use kluft_mesh::{Defect, Mesh, Shape};
 
 use crate::atomic::write_atomically;
 
-/// Writes `sizes` (m), one for each node, as a view that gmsh interpolates on the cells of the mesh.
+/// Writes `sizes` (m), one for each node, as a view that gmsh interpolates on the cells of the
+/// mesh.
 ///
 /// # Errors
 /// If the file cannot be written.

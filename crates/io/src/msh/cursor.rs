@@ -11,11 +11,11 @@ use super::source::{Encoding, Source, is_space};
 const LONGEST_NUMBER: usize = 64;
 
 /// Items that are read at a time: enough to be worth a task, few enough to stay in the cache.
-const ITEMS_PER_PIECE: usize = 8192;
+const ITEMS_PER_RANGE: usize = 8192;
 
 /// Some items of a block that stand one behind the other.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Piece {
+pub(super) struct ItemRange {
     pub(super) count: usize,
     /// Where they stand in the file.
     pub(super) bytes: Range<usize>,
@@ -98,34 +98,34 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Steps over `items` items of so many unsigned numbers each and cuts them into pieces.
-    pub(super) fn pieces(
+    /// Steps over `items` items of so many unsigned numbers each and cuts them into ranges.
+    pub(super) fn ranges(
         &mut self,
         what: &str,
         items: usize,
         numbers: usize,
-    ) -> Result<Vec<Piece>, Defect> {
+    ) -> Result<Vec<ItemRange>, Defect> {
         let mut bytes = self.at..self.at;
         if self.encoding != Encoding::Text {
             self.skip_sizes(what, items * numbers)?;
         }
-        let mut pieces = Vec::with_capacity(items.div_ceil(ITEMS_PER_PIECE));
+        let mut ranges = Vec::with_capacity(items.div_ceil(ITEMS_PER_RANGE));
         let mut left = items;
         while left > 0 {
-            let count = left.min(ITEMS_PER_PIECE);
+            let count = left.min(ITEMS_PER_RANGE);
             if self.encoding == Encoding::Text {
                 self.skip_sizes(what, count * numbers)?;
                 bytes = bytes.end..self.at;
             } else {
                 bytes = bytes.end..bytes.end + count * numbers * size_of::<u64>();
             }
-            pieces.push(Piece {
+            ranges.push(ItemRange {
                 count,
                 bytes: bytes.clone(),
             });
             left -= count;
         }
-        Ok(pieces)
+        Ok(ranges)
     }
 
     /// Checks that nothing but white space is left.

@@ -6,11 +6,11 @@ use kluft_mesh::{Defect, Draft, Elements, Shape, TaggedElements, sample};
 use mshio::ElementType;
 use rayon::prelude::*;
 
-use super::cursor::Piece;
+use super::cursor::ItemRange;
 use super::elements::Block;
 use super::entities::{EntityKey, entity_name};
 use super::groups::Groups;
-use super::guard::{Survey, keep};
+use super::guard::{FileSurvey, keep};
 use super::source::Encoding;
 use super::tags::TagIndex;
 use super::{mshio_calls, nodes};
@@ -39,7 +39,7 @@ fn shape_of(kind: ElementType) -> Option<Shape> {
 }
 
 /// Builds the draft, or lists everything that stands against it.
-pub(super) fn build(survey: Survey) -> Result<Draft, Vec<Defect>> {
+pub(super) fn build(survey: FileSurvey) -> Result<Draft, Vec<Defect>> {
     let groups = Groups::new(survey.names.clone(), &survey.entities);
     let mut defects = nodes::defects(survey.source, &survey.nodes);
     defects.extend(too_large(&survey));
@@ -66,7 +66,7 @@ pub(super) fn build(survey: Survey) -> Result<Draft, Vec<Defect>> {
     }
 }
 
-fn coordinates(survey: &Survey) -> Result<Vec<[f64; 3]>, Defect> {
+fn coordinates(survey: &FileSurvey) -> Result<Vec<[f64; 3]>, Defect> {
     let parsed = mshio_calls::nodes(survey.source, survey.encoding, survey.nodes_body)?;
     let nodes = parsed.node_blocks.iter().flat_map(|block| &block.nodes);
     let nodes: Vec<[f64; 3]> = nodes.map(|node| [node.x, node.y, node.z]).collect();
@@ -76,7 +76,7 @@ fn coordinates(survey: &Survey) -> Result<Vec<[f64; 3]>, Defect> {
     Ok(nodes)
 }
 
-fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Result<(), Defect> {
+fn fill_elements(survey: &FileSurvey, mut groups: Groups, draft: &mut Draft) -> Result<(), Defect> {
     let index = TagIndex::new(&survey.nodes.tags);
     make_room(survey, &mut groups, draft);
     let found: Vec<Result<Dangling, Defect>> = readings(survey, draft)
@@ -95,7 +95,7 @@ fn fill_elements(survey: &Survey, mut groups: Groups, draft: &mut Draft) -> Resu
 }
 
 /// Shapes and groups of all elements; nodes and tags remain 0.
-fn make_room(survey: &Survey, groups: &mut Groups, draft: &mut Draft) {
+fn make_room(survey: &FileSurvey, groups: &mut Groups, draft: &mut Draft) {
     let (mut cells, mut facets) = (Vec::new(), Vec::new());
     for block in &survey.blocks {
         let cells = (&mut cells, &mut draft.cells.group_set);
@@ -121,16 +121,16 @@ fn target_of<T>(block: &Block, cells: T, facets: T) -> Option<(T, Shape)> {
     }
 }
 
-/// A piece of a block, and where its elements go.
+/// A range of a block, and where its elements go.
 struct Reading<'a> {
     kind: ElementType,
-    piece: &'a Piece,
+    range: &'a ItemRange,
     tags: &'a mut [u64],
     nodes: &'a mut [u32],
 }
 
 /// Everything there is to read, in the order of the file.
-fn readings<'a>(survey: &'a Survey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
+fn readings<'a>(survey: &'a FileSurvey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
     let room = |of: &'a mut TaggedElements| (&mut of.tags[..], &mut of.elements.nodes[..]);
     let (mut cells, mut facets) = (room(&mut draft.cells), room(&mut draft.facets));
     let mut readings = Vec::new();
@@ -138,14 +138,14 @@ fn readings<'a>(survey: &'a Survey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
         let Some((rest, shape)) = target_of(block, &mut cells, &mut facets) else {
             continue;
         };
-        for piece in &block.pieces {
+        for range in &block.ranges {
             let (tags, nodes) = std::mem::take(rest);
-            let (tags, tags_left) = tags.split_at_mut(piece.count);
-            let (nodes, nodes_left) = nodes.split_at_mut(piece.count * shape.node_count());
+            let (tags, tags_left) = tags.split_at_mut(range.count);
+            let (nodes, nodes_left) = nodes.split_at_mut(range.count * shape.node_count());
             *rest = (tags_left, nodes_left);
             readings.push(Reading {
                 kind: block.kind,
-                piece,
+                range,
                 tags,
                 nodes,
             });
@@ -155,7 +155,7 @@ fn readings<'a>(survey: &'a Survey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
 }
 
 impl Reading<'_> {
-    fn run(self, survey: &Survey, index: &TagIndex) -> Result<Dangling, Defect> {
+    fn run(self, survey: &FileSurvey, index: &TagIndex) -> Result<Dangling, Defect> {
         match survey.encoding {
             Encoding::Text => self.text(survey, index),
             Encoding::LittleEndian => self.binary(survey, index, u64::from_le_bytes),
@@ -163,8 +163,8 @@ impl Reading<'_> {
         }
     }
 
-    fn text(self, survey: &Survey, index: &TagIndex) -> Result<Dangling, Defect> {
-        let elements = mshio_calls::elements(survey.source, self.kind, self.piece)?;
+    fn text(self, survey: &FileSurvey, index: &TagIndex) -> Result<Dangling, Defect> {
+        let elements = mshio_calls::elements(survey.source, self.kind, self.range)?;
         let elements = elements.iter();
         Ok(self.fill(
             index,
@@ -176,15 +176,15 @@ impl Reading<'_> {
     /// its vector for each element takes far longer than the numbers.
     fn binary(
         self,
-        survey: &Survey,
+        survey: &FileSurvey,
         index: &TagIndex,
         number: impl Fn([u8; 8]) -> u64,
     ) -> Result<Dangling, Defect> {
-        let (numbers, rest) = survey.source.bytes[self.piece.bytes.clone()].as_chunks();
+        let (numbers, rest) = survey.source.bytes[self.range.bytes.clone()].as_chunks();
         if !rest.is_empty() || numbers.len() != self.tags.len() + self.nodes.len() {
             return Err(disagreement(survey, "element nodes"));
         }
-        let width = numbers.len() / self.piece.count;
+        let width = numbers.len() / self.range.count;
         let rows = numbers.chunks_exact(width);
         Ok(self.fill(
             index,
@@ -199,7 +199,7 @@ impl Reading<'_> {
         elements: impl Iterator<Item = (u64, N)>,
     ) -> Dangling {
         let mut dangling = Dangling::default();
-        let width = self.nodes.len() / self.piece.count;
+        let width = self.nodes.len() / self.range.count;
         let places = self.tags.iter_mut().zip(self.nodes.chunks_exact_mut(width));
         for ((element, node_tags), (tag, nodes)) in elements.zip(places) {
             *tag = element;
@@ -244,7 +244,7 @@ impl Dangling {
 }
 
 /// Node indices and the flat lists of element nodes are 32 bits wide.
-fn too_large(survey: &Survey) -> Option<Defect> {
+fn too_large(survey: &FileSurvey) -> Option<Defect> {
     const LIMIT: usize = u32::MAX as usize;
     let width = |block: &Block| shape_of(block.kind).map_or(0, Shape::node_count);
     let element_nodes: usize = survey.blocks.iter().map(|b| b.count * width(b)).sum();
@@ -257,7 +257,7 @@ fn too_large(survey: &Survey) -> Option<Defect> {
 }
 
 /// Elements of an entity that is not listed would silently lose their groups.
-fn unknown_entities(survey: &Survey) -> Option<Defect> {
+fn unknown_entities(survey: &FileSurvey) -> Option<Defect> {
     let listed = |key: &EntityKey| survey.entities.contains_key(key);
     let has_any = |dimension| survey.entities.keys().any(|key| key.0 == dimension);
     let (surfaces, volumes) = (has_any(2), has_any(3));
@@ -279,7 +279,7 @@ fn unknown_entities(survey: &Survey) -> Option<Defect> {
 }
 
 /// One defect for each element type of dimension 2 or 3 that has no shape here.
-fn unsupported_elements(survey: &Survey, groups: &Groups) -> Vec<Defect> {
+fn unsupported_elements(survey: &FileSurvey, groups: &Groups) -> Vec<Defect> {
     let mut by_kind: BTreeMap<i32, Vec<&Block>> = BTreeMap::new();
     let solid = |block: &&Block| block.entity.0 >= 2 && block.count > 0;
     let fits =
@@ -298,7 +298,7 @@ fn unsupported_elements(survey: &Survey, groups: &Groups) -> Vec<Defect> {
         .collect()
 }
 
-fn unsupported(survey: &Survey, groups: &Groups, blocks: &[&Block]) -> Defect {
+fn unsupported(survey: &FileSurvey, groups: &Groups, blocks: &[&Block]) -> Defect {
     const SHOWN: usize = 5;
     let mut places: Vec<String> = blocks
         .iter()
@@ -314,11 +314,12 @@ fn unsupported(survey: &Survey, groups: &Groups, blocks: &[&Block]) -> Defect {
             "{count} elements are of gmsh type {} ({kind:?}), which cannot be used here",
             kind as i32
         ),
-        "mesh with linear tetrahedra: Mesh.ElementOrder = 1, no Recombine",
+        "mesh with tetrahedra, hexahedra, prisms or pyramids of first or second order: \
+         Mesh.ElementOrder = 1 or 2",
     )
 }
 
-fn disagreement(survey: &Survey, what: &str) -> Defect {
+fn disagreement(survey: &FileSurvey, what: &str) -> Defect {
     survey.source.defect(
         format!("there is another number of {what} than the file says"),
         "open the file in gmsh and save it again as MSH 4.1",

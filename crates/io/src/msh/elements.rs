@@ -4,7 +4,7 @@ use kluft_mesh::Defect;
 use mshio::ElementType;
 use num_traits::FromPrimitive;
 
-use super::cursor::{Cursor, Piece};
+use super::cursor::{Cursor, ItemRange};
 use super::entities::EntityKey;
 use super::nodes::check_header;
 
@@ -15,7 +15,7 @@ pub(super) struct Block {
     pub(super) kind: ElementType,
     pub(super) count: usize,
     /// Where its elements stand: a tag and the tags of the nodes each.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) ranges: Vec<ItemRange>,
 }
 
 /// Walks the section to its end.
@@ -48,13 +48,13 @@ fn walk_block(cursor: &mut Cursor) -> Result<Block, Defect> {
         return Err(unknown_type(cursor, number));
     };
     let count = cursor.count("number of elements in a block", 1 + nodes as u64)?;
-    let pieces = cursor.pieces("node tag of an element", count, 1 + nodes)?;
+    let ranges = cursor.ranges("node tag of an element", count, 1 + nodes)?;
     let entity = (dimension, tag);
     Ok(Block {
         entity,
         kind,
         count,
-        pieces,
+        ranges,
     })
 }
 
@@ -71,7 +71,10 @@ fn type_of(number: i32) -> Option<(ElementType, usize)> {
 fn unknown_type(cursor: &Cursor, number: i32) -> Defect {
     Defect {
         problem: format!("elements of gmsh type {number} cannot be read"),
-        remedy: "mesh with tetrahedra: no polygons, polyhedra or cut elements".to_owned(),
+        remedy:
+            "mesh with tetrahedra, hexahedra, prisms or pyramids: no polygons, polyhedra or cut \
+                 elements"
+                .to_owned(),
         ..cursor.defect("")
     }
 }

@@ -15,7 +15,7 @@ use super::sections::{Section, optional, required, split};
 use super::source::{Encoding, Source};
 
 /// What the walk has found. All counts agree with the bytes of the file.
-pub(super) struct Survey<'a> {
+pub(super) struct FileSurvey<'a> {
     pub(super) source: Source<'a>,
     pub(super) encoding: Encoding,
     pub(super) names: Vec<Group>,
@@ -26,7 +26,7 @@ pub(super) struct Survey<'a> {
     pub(super) nodes_body: &'a [u8],
 }
 
-impl Survey<'_> {
+impl FileSurvey<'_> {
     /// Whether mshio reads the coordinates as they stand.
     pub(super) fn nodes_are_readable(&self) -> bool {
         !self.nodes.parametric && self.nodes.not_finite.is_empty()
@@ -34,7 +34,10 @@ impl Survey<'_> {
 }
 
 /// Walks the sections that matter. A section that is damaged gives one defect.
-pub(super) fn survey(source: Source<'_>, encoding: Encoding) -> Result<Survey<'_>, Vec<Defect>> {
+pub(super) fn survey(
+    source: Source<'_>,
+    encoding: Encoding,
+) -> Result<FileSurvey<'_>, Vec<Defect>> {
     let sections = split(source).map_err(|defect| vec![defect])?;
     let mut defects = Vec::new();
     let names = keep(&mut defects, physical_names(source, &sections));
@@ -49,7 +52,7 @@ pub(super) fn survey(source: Source<'_>, encoding: Encoding) -> Result<Survey<'_
         return Err(defects);
     };
     let body = |at: Option<&Section>| at.map_or(&[][..], |at| &source.bytes[at.body.clone()]);
-    Ok(Survey {
+    Ok(FileSurvey {
         source,
         encoding,
         names,

@@ -1,6 +1,5 @@
 //! Reads gmsh's `.msh` files, of version 4.1 with the crate `mshio` behind a guard.
 
-mod convert;
 mod cursor;
 mod draft;
 mod elements;
@@ -24,8 +23,6 @@ use rayon::prelude::*;
 
 use header::Format;
 use source::Source;
-
-pub use convert::load_msh;
 
 /// Reads an MSH 4.1 file, text or binary; coordinates are taken as metres.
 ///
@@ -53,6 +50,15 @@ pub fn parse_msh(bytes: &[u8], source: &str) -> Result<Draft, Vec<Defect>> {
     }
 }
 
+/// The version of an MSH file if it is before 4.1; `name` names the file in messages.
+pub(crate) fn older_version(bytes: &[u8], name: &str) -> Result<Option<f64>, Defect> {
+    let format = header::read(Source { name, bytes })?;
+    Ok(match format {
+        Format::Current(_) => None,
+        Format::Older(version) => Some(version),
+    })
+}
+
 /// Whether an MSH 4.1 file holds elements of dimension 3.
 pub(crate) fn holds_cells(path: &Path) -> Result<bool, Defect> {
     let bytes = bytes_of(path)?;
@@ -74,7 +80,8 @@ fn older(source: Source, version: f64) -> Defect {
     )
 }
 
-fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
+/// The bytes of a file.
+pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
     read_bytes(path).map_err(|error| {
         let problem = format!("cannot be read: {error}");
         Defect::new(

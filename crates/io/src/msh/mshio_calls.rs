@@ -1,11 +1,11 @@
 //! The two calls of mshio. Each gets what the guard has walked, behind a clean header: the section
-//! of nodes, or a piece of a block of elements in a text file, many of which can be read at the same
-//! time.
+//! of nodes, or a range of a block of elements in a text file, many of which can be read at the
+//! same time.
 
 use kluft_mesh::Defect;
 use mshio::{Element, ElementType, MshData, MshParserError, Nodes};
 
-use super::cursor::Piece;
+use super::cursor::ItemRange;
 use super::source::{Encoding, Source};
 
 /// Parses the body of `$Nodes`.
@@ -23,29 +23,29 @@ pub(super) fn nodes(
 pub(super) fn elements(
     source: Source,
     kind: ElementType,
-    piece: &Piece,
+    range: &ItemRange,
 ) -> Result<Vec<Element<u64>>, Defect> {
-    let body = lone_block(source, kind, piece);
+    let body = lone_block(source, kind, range);
     let data = parse(source, Encoding::Text, "Elements", &body)?;
     let blocks = data.elements.map(|section| section.element_blocks);
     match blocks.unwrap_or_default().pop() {
-        Some(block) if block.elements.len() == piece.count => Ok(block.elements),
+        Some(block) if block.elements.len() == range.count => Ok(block.elements),
         _ => Err(refused(source, "Elements", "another number of elements")),
     }
 }
 
-/// The body of a section with this piece for its only block. Only the type and the number of the
+/// The body of a section with this range for its only block. Only the type and the number of the
 /// elements matter.
-fn lone_block(source: Source, kind: ElementType, piece: &Piece) -> Vec<u8> {
+fn lone_block(source: Source, kind: ElementType, range: &ItemRange) -> Vec<u8> {
     let kind = match kind {
         // mshio takes the 18-node prism for one of 28 nodes; this is another type of 18 nodes.
         ElementType::Pri18 => ElementType::Tri18,
         kind => kind,
     };
-    let (kind, count) = (kind as i32, piece.count);
+    let (kind, count) = (kind as i32, range.count);
     // Blocks, elements, lowest and highest tag: with the true tags, mshio would index sparse ones.
     let mut body = format!("1 {count} 1 {count} 3 1 {kind} {count} ").into_bytes();
-    body.extend_from_slice(&source.bytes[piece.bytes.clone()]);
+    body.extend_from_slice(&source.bytes[range.bytes.clone()]);
     body
 }
 

@@ -19,7 +19,7 @@ pub struct FractureSurvey {
     /// Lowest and highest coordinates (m).
     pub bounds: (DVec3, DVec3),
     /// Number of surfaces that do not share an edge.
-    pub pieces: usize,
+    pub components: usize,
     /// Whether no edge belongs to one facet only: a sphere, not a disc.
     pub closed: bool,
     /// Number of edges where the fracture ends in the rock.
@@ -43,7 +43,7 @@ impl FractureSurvey {
             area: 0.0,
             orientation: Orientation::default(),
             bounds: (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            pieces: 0,
+            components: 0,
             closed: true,
             tip_edges: 0,
             tip_length: 0.0,

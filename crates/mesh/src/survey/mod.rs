@@ -16,7 +16,7 @@ pub use blocks::BlockSurvey;
 pub use contacts::Contact;
 pub use fractures::FractureSurvey;
 pub use orientation::Orientation;
-pub use patches::MutePatch;
+pub use patches::UnresolvedPatch;
 pub use quality::{CellAngles, CellQuality, cell_angles};
 
 /// The whole mesh.
@@ -27,8 +27,8 @@ pub struct Survey {
     /// Fractures that share nodes, by pair.
     pub contacts: Vec<Contact>,
     /// Parts of fractures without a jump of their own.
-    pub mute_patches: Vec<MutePatch>,
-    /// Entry of `mute_patches` for each facet that belongs to one.
+    pub unresolved_patches: Vec<UnresolvedPatch>,
+    /// Entry of `unresolved_patches` for each facet that belongs to one.
     pub patch_of_facet: Vec<Option<u32>>,
     /// Number of edges of each facet where its fracture ends in the rock.
     pub tip_edges_of_facet: Vec<u8>,
@@ -53,11 +53,11 @@ impl Survey {
         add_facets(mesh, &facets, &mut fractures);
         add_nodes(mesh, &at_nodes, &mut fractures);
         let tip_edges_of_facet = tips::add(mesh, &edges, &mut fractures);
-        let mute = patches::find(mesh, &facets, &edges, &mut fractures);
+        let unresolved = patches::find(mesh, &facets, &edges, &mut fractures);
         Self {
             contacts: contacts::find(mesh, &facets, &edges, &at_nodes),
-            mute_patches: mute.patches,
-            patch_of_facet: mute.patch_of_facet,
+            unresolved_patches: unresolved.patches,
+            patch_of_facet: unresolved.patch_of_facet,
             tip_edges_of_facet,
             blocks: blocks::survey(mesh, &quality.volumes),
             fractures,

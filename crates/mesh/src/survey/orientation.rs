@@ -48,9 +48,10 @@ fn of_tensor(tensor: DMat3) -> Orientation {
         _ => axis,
     };
     let level = up.truncate();
-    let dip_direction = match level.length() > 1e-9 {
-        true => level.x.atan2(level.y).to_degrees().rem_euclid(360.0),
-        false => 0.0,
+    let dip_direction = if level.length() > 1e-9 {
+        level.x.atan2(level.y).to_degrees().rem_euclid(360.0)
+    } else {
+        0.0
     };
     Orientation {
         normal: up,

@@ -1,4 +1,4 @@
-//! Pieces of fractures, and patches of facets without a jump.
+//! Components of fractures, and patches of facets without a jump.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 /// Facets that hang together and at none of whose nodes the two sides can move apart: the mesh is
 /// too coarse for them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MutePatch {
+pub struct UnresolvedPatch {
     /// Index into [`crate::MeshData::fractures`].
     pub fracture: u32,
     /// Number of facets.
@@ -19,50 +19,50 @@ pub struct MutePatch {
     pub area: f64,
     /// Middle of the patch, by area (m).
     pub centre: DVec3,
-    /// Whether it is a whole piece of the fracture, and not a corner of one that moves.
+    /// Whether it is a whole component of the fracture, and not a corner of one that moves.
     pub whole: bool,
 }
 
 /// All patches, and the patch of each facet.
-pub(super) struct Mute {
-    pub(super) patches: Vec<MutePatch>,
+pub(super) struct UnresolvedPatches {
+    pub(super) patches: Vec<UnresolvedPatch>,
     pub(super) patch_of_facet: Vec<Option<u32>>,
 }
 
-/// Finds the patches and counts the pieces of the fractures.
+/// Finds the patches and counts the components of the fractures.
 pub(super) fn find(
     mesh: &Mesh,
     geometry: &FacetGeometry,
     edges: &FractureEdges,
     fractures: &mut [FractureSurvey],
-) -> Mute {
+) -> UnresolvedPatches {
     let count = mesh.facets.fracture.len();
-    let mute: Vec<bool> = (0..count).map(|facet| is_mute(mesh, facet)).collect();
-    let (mut pieces, mut patches) = (DisjointSets::new(count), DisjointSets::new(count));
+    let unresolved: Vec<bool> = (0..count).map(|facet| is_unresolved(mesh, facet)).collect();
+    let (mut components, mut patches) = (DisjointSets::new(count), DisjointSets::new(count));
     for run in edges.meetings() {
         for own in run.chunk_by(|a, b| a.fracture == b.fracture) {
-            let mut last_mute = None;
+            let mut last_unresolved = None;
             for edge in own {
-                pieces.join(own[0].facet, edge.facet);
-                if mute[edge.facet as usize] {
-                    patches.join(*last_mute.get_or_insert(edge.facet), edge.facet);
+                components.join(own[0].facet, edge.facet);
+                if unresolved[edge.facet as usize] {
+                    patches.join(*last_unresolved.get_or_insert(edge.facet), edge.facet);
                 }
             }
         }
     }
     let mut moves = vec![false; count];
     for facet in 0..count as u32 {
-        let piece = pieces.root(facet);
-        if piece == facet {
-            fractures[mesh.facets.fracture[facet as usize] as usize].pieces += 1;
+        let component = components.root(facet);
+        if component == facet {
+            fractures[mesh.facets.fracture[facet as usize] as usize].components += 1;
         }
-        moves[piece as usize] |= !mute[facet as usize];
+        moves[component as usize] |= !unresolved[facet as usize];
     }
-    let whole = |facet: u32| !moves[pieces.root(facet) as usize];
-    collect(mesh, geometry, &mute, &mut patches, whole)
+    let whole = |facet: u32| !moves[components.root(facet) as usize];
+    collect(mesh, geometry, &unresolved, &mut patches, whole)
 }
 
-fn is_mute(mesh: &Mesh, facet: usize) -> bool {
+fn is_unresolved(mesh: &Mesh, facet: usize) -> bool {
     let range = mesh.facets.elements.range(facet);
     let (plus, minus) = (
         &mesh.facets.plus_slots[range.clone()],
@@ -77,17 +77,17 @@ fn is_mute(mesh: &Mesh, facet: usize) -> bool {
 fn collect(
     mesh: &Mesh,
     geometry: &FacetGeometry,
-    mute: &[bool],
+    unresolved: &[bool],
     sets: &mut DisjointSets,
     mut whole: impl FnMut(u32) -> bool,
-) -> Mute {
-    let mut patches: Vec<MutePatch> = Vec::new();
-    let mut patch_of_facet: Vec<Option<u32>> = vec![None; mute.len()];
-    for facet in (0..mute.len()).filter(|&facet| mute[facet]) {
+) -> UnresolvedPatches {
+    let mut patches: Vec<UnresolvedPatch> = Vec::new();
+    let mut patch_of_facet: Vec<Option<u32>> = vec![None; unresolved.len()];
+    for facet in (0..unresolved.len()).filter(|&facet| unresolved[facet]) {
         let root = sets.root(facet as u32) as usize;
         if root == facet {
             patch_of_facet[facet] = Some(patches.len() as u32);
-            patches.push(MutePatch {
+            patches.push(UnresolvedPatch {
                 fracture: mesh.facets.fracture[facet],
                 facets: 0,
                 area: 0.0,
@@ -108,7 +108,7 @@ fn collect(
     for patch in &mut patches {
         patch.centre /= patch.area;
     }
-    Mute {
+    UnresolvedPatches {
         patches,
         patch_of_facet,
     }

@@ -1,24 +1,22 @@
-//! Older `.msh` files, by way of gmsh.
+//! Reads `.msh` files of any version, older ones by way of gmsh.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use kluft_mesh::{Defect, Draft, Elements, TaggedElements};
 
-use super::header::{self, Format};
-use super::source::Source;
-use super::{bytes_of, parse_msh};
 use crate::gmsh::convert_mesh;
+use crate::msh::{bytes_of, older_version, parse_msh};
 
 /// Cells from which on a mesh outgrows the caches, so that it pays to arrange it.
 const LARGE: usize = 20_000;
 
 /// Reads an MSH file of any version; gmsh converts those before 4.1 to a file in `scratch_dir`,
-/// which is removed again. Large meshes are arranged ([`Draft::arrange`]); small ones keep the order
-/// of the file.
+/// which is removed again. Large meshes are arranged ([`Draft::arrange`]); small ones keep the
+/// order of the file.
 ///
 /// # Errors
-/// As [`super::read_msh`], and what gmsh says against the file.
+/// As [`crate::read_msh`], and what gmsh says against the file.
 pub fn load_msh(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
     let (mut draft, bytes) = load(path, scratch_dir)?;
     if draft.cells.elements.len() >= LARGE {
@@ -32,22 +30,16 @@ pub fn load_msh(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
 fn load(path: &Path, scratch_dir: &Path) -> Result<(Draft, Vec<u8>), Vec<Defect>> {
     let name = path.display().to_string();
     let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
-    let source = Source {
-        name: &name,
-        bytes: &bytes,
+    let Some(version) = older_version(&bytes, &name).map_err(|defect| vec![defect])? else {
+        return parse_msh(&bytes, &name).map(|draft| (draft, bytes));
     };
-    match header::read(source).map_err(|defect| vec![defect])? {
-        Format::Current(_) => parse_msh(&bytes, &name).map(|draft| (draft, bytes)),
-        Format::Older(version) => {
-            drop(bytes);
-            let mut draft = load_older(path, scratch_dir)?;
-            if version < 4.0 {
-                drop_repeated(&mut draft.cells);
-                drop_repeated(&mut draft.facets);
-            }
-            Ok((draft, Vec::new()))
-        }
+    drop(bytes);
+    let mut draft = load_older(path, scratch_dir)?;
+    if version < 4.0 {
+        drop_repeated(&mut draft.cells);
+        drop_repeated(&mut draft.facets);
     }
+    Ok((draft, Vec::new()))
 }
 
 fn load_older(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {
