@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use kluft_mesh::Defect;
 use kluft_network::{
-    Domain, Given, Orientation, Outline, Polygon, SIDES, Sizes, check_name, read_list,
+    CellSizes, Domain, InputFracture, Orientation, Outline, Polygon, SIDES, check_name, read_list,
     repeated_names,
 };
 
@@ -25,9 +25,9 @@ pub(super) struct Wish {
 pub(super) struct Input {
     pub(super) title: String,
     pub(super) domain: Domain,
-    pub(super) sizes: Sizes,
+    pub(super) sizes: CellSizes,
     pub(super) sets: Vec<Set>,
-    pub(super) given: Vec<Given>,
+    pub(super) given: Vec<InputFracture>,
     /// Sections for the scene, as the input has them.
     pub(super) passages: Passages,
     /// What was assumed because nobody said it, one line each.
@@ -124,9 +124,9 @@ pub(super) fn read_text(file: &Path, remedy: &str) -> Result<String, Vec<Defect>
 }
 
 /// A box around all fractures, a quarter of their extent larger on each side.
-fn around(given: &[Given], assumptions: &mut Vec<String>) -> Option<Domain> {
+fn around(given: &[InputFracture], assumptions: &mut Vec<String>) -> Option<Domain> {
     let start = given.first()?.polygon.bounds();
-    let widen = |(low, high): (DVec3, DVec3), fracture: &Given| {
+    let widen = |(low, high): (DVec3, DVec3), fracture: &InputFracture| {
         let (a, b) = fracture.polygon.bounds();
         (low.min(a), high.max(b))
     };
@@ -149,16 +149,16 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.0e}").parse().unwrap_or(value)
 }
 
-fn sizes(h: f64, h_fracture: Option<f64>, h_intersection: Option<f64>, wish: &Wish) -> Sizes {
+fn sizes(h: f64, h_fracture: Option<f64>, h_intersection: Option<f64>, wish: &Wish) -> CellSizes {
     let h_fracture = h_fracture.unwrap_or(h / 2.0).min(h);
-    Sizes {
+    CellSizes {
         h,
         h_fracture,
         h_intersection: h_intersection.unwrap_or(h_fracture).min(h_fracture),
         growth: 0.5,
         small: 0.2,
         small_angle: 10.0,
-        mend: !wish.keep_small,
+        snap: !wish.keep_small,
     }
 }
 
@@ -228,7 +228,7 @@ fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain>
     wished.or(domain.filter(|_| is_box))
 }
 
-fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<Sizes> {
+fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
     if wish.h.is_none() {
         root.require("mesh", "a section: [mesh]");
     }
@@ -246,7 +246,7 @@ fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<Sizes> {
         section.number("small", Accept::NotNegative),
     );
     let small_angle = section.number("small_angle", Accept::NotNegative);
-    let mend = section.flag("mend").unwrap_or(true);
+    let snap = section.flag("mend").unwrap_or(true);
     for (key, fine, coarse) in [
         ("h_fracture", h_fracture, h),
         ("h_intersection", h_intersection, h_fracture.or(h)),
@@ -264,11 +264,11 @@ fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<Sizes> {
     }
     section.finish();
     let plain = sizes(wish.h.or(h)?, h_fracture, h_intersection, wish);
-    Some(Sizes {
+    Some(CellSizes {
         growth: growth.unwrap_or(plain.growth),
         small: small.unwrap_or(plain.small),
         small_angle: small_angle.unwrap_or(plain.small_angle),
-        mend: plain.mend && mend,
+        snap: plain.snap && snap,
         ..plain
     })
 }
@@ -340,7 +340,7 @@ pub(super) fn read_sides(section: &Section<'_, '_>) -> usize {
     sides as usize
 }
 
-fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<Given> {
+fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<InputFracture> {
     section.require("name", "\"fault-1\"");
     section.require("set", "\"NAME\"");
     let name = section.text("name").map(str::to_owned);
@@ -362,7 +362,7 @@ fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<Given> {
     let polygon = read_polygon(&section);
     let place = section.place();
     section.finish();
-    Some(Given {
+    Some(InputFracture {
         name: name?,
         set: set?,
         place,

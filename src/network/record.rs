@@ -1,7 +1,8 @@
 //! `network.json`: what was asked, what came of it, and what became of every fracture.
 
 use kluft_network::{
-    Amount, Domain, Feature, FeatureKind, Fisher, Fracture, Moments, Network, Orientation, moments,
+    Amount, Domain, Feature, FeatureKind, Fisher, Moments, Network, NetworkFracture, Orientation,
+    moments,
 };
 use serde::Serialize;
 
@@ -170,7 +171,7 @@ fn domain_record(domain: &Domain) -> DomainRecord {
     }
 }
 
-fn fracture_record(fracture: &Fracture) -> FractureRecord {
+fn fracture_record(fracture: &NetworkFracture) -> FractureRecord {
     let Orientation { dip, dip_direction } = Orientation::of_normal(fracture.polygon.normal());
     FractureRecord {
         name: fracture.name.clone(),
@@ -186,7 +187,7 @@ fn fracture_record(fracture: &Fracture) -> FractureRecord {
 }
 
 fn left_out(network: &Network) -> Vec<LeftOutRecord> {
-    let all = network.left_out.iter();
+    let all = network.rejected.iter();
     all.map(|one| LeftOutRecord {
         name: one.name.clone(),
         set: one.set.clone(),
@@ -232,7 +233,7 @@ fn feature_text(feature: &Feature) -> String {
 }
 
 fn set_record(network: &Network, set: &Set) -> SetRecord {
-    let own: Vec<&Fracture> = network
+    let own: Vec<&NetworkFracture> = network
         .fractures
         .iter()
         .filter(|f| f.set == set.name)
@@ -285,7 +286,7 @@ fn set_record(network: &Network, set: &Set) -> SetRecord {
     }
 }
 
-fn upward(fracture: &Fracture) -> glam::DVec3 {
+fn upward(fracture: &NetworkFracture) -> glam::DVec3 {
     let normal = fracture.polygon.normal();
     if normal.z < 0.0 { -normal } else { normal }
 }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use kluft_mesh::Defect;
 use kluft_network::{
-    Amount, Domain, Drawn, Fisher, Given, Shape, SizeLaw, StochasticSet, check_name, read_list,
+    Amount, Domain, DrawnFracture, Fisher, FractureShape, InputFracture, SizeLaw, StochasticSet,
+    check_name, read_list,
 };
 
 use super::input::{one_of, read_orientation, read_seed, read_sides, read_text};
@@ -31,7 +32,7 @@ pub(super) struct Set {
     /// Its material as keys and values; none if the input has no word on it.
     pub(super) material: Option<Passage>,
     /// The random part of it, as asked and as drawn.
-    pub(super) drawn: Option<(StochasticSet, Vec<Drawn>)>,
+    pub(super) drawn: Option<(StochasticSet, Vec<DrawnFracture>)>,
 }
 
 impl Set {
@@ -45,7 +46,7 @@ impl Set {
     }
 }
 
-type SetAndFractures = Option<(Set, Vec<Given>)>;
+type SetAndFractures = Option<(Set, Vec<InputFracture>)>;
 
 /// Reads a set and draws its fractures; defects of the list it names are the error.
 pub(super) fn read_set(
@@ -104,12 +105,12 @@ pub(super) fn read_set(
 }
 
 /// The drawn fractures that reach the domain, numbered.
-fn named(drawn: &[Drawn], set: &str, place: &str) -> Vec<Given> {
-    let inside: Vec<&Drawn> = drawn.iter().filter(|one| one.area_inside > 0.0).collect();
+fn named(drawn: &[DrawnFracture], set: &str, place: &str) -> Vec<InputFracture> {
+    let inside: Vec<&DrawnFracture> = drawn.iter().filter(|one| one.area_inside > 0.0).collect();
     let digits = inside.len().to_string().len();
     let numbered = inside.into_iter().zip(1..);
     numbered
-        .map(|(one, number)| Given {
+        .map(|(one, number)| InputFracture {
             name: format!("{set}-{number:0digits$}"),
             set: set.to_owned(),
             place: place.to_owned(),
@@ -197,19 +198,19 @@ fn bounded(section: &Section<'_, '_>, law: &SizeLaw) -> bool {
     min < max
 }
 
-fn read_shape(section: &Section<'_, '_>) -> Option<Shape> {
+fn read_shape(section: &Section<'_, '_>) -> Option<FractureShape> {
     if !section.has("shape") {
-        return Some(Shape::Disc {
+        return Some(FractureShape::Disc {
             sides: read_sides(section),
         });
     }
     match one_of(section, "shape", &["disc", "rectangle"])? {
-        "disc" => Some(Shape::Disc {
+        "disc" => Some(FractureShape::Disc {
             sides: read_sides(section),
         }),
         _ => {
             let aspect = section.number("aspect", Accept::Positive).unwrap_or(1.0);
-            Some(Shape::Rectangle { aspect })
+            Some(FractureShape::Rectangle { aspect })
         }
     }
 }

@@ -42,6 +42,11 @@ impl Domain {
         self.low.distance(self.high)
     }
 
+    /// Lengths that rounding may leave (m).
+    pub(crate) fn tolerance(&self) -> f64 {
+        1e-9 * self.diagonal()
+    }
+
     /// Coordinate of a face (m), along its axis.
     pub fn face(&self, face: usize) -> f64 {
         let (_, axis, upper) = FACES[face];
@@ -62,6 +67,29 @@ impl Domain {
         drop_doubles(&mut corners, apart);
         let clipped = Polygon::new(corners, polygon.normal())?;
         (clipped.area() > apart * self.diagonal()).then_some(clipped)
+    }
+
+    /// What is in the domain of a polygon, or why nothing is; a rest less than `gap` (m) across is
+    /// nothing.
+    pub(crate) fn clip_large(&self, polygon: &Polygon, gap: f64) -> Result<Polygon, String> {
+        let Some(clipped) = self.clip(polygon) else {
+            return Err("outside the domain".into());
+        };
+        if let Some(face) = self.face_under(&clipped, 1e3 * self.tolerance()) {
+            let reason =
+                format!("it lies on the face `{face}` of the domain, with rock on one side only");
+            return Err(reason);
+        }
+        let (low, high) = clipped.bounds();
+        if low.distance(high) < gap || clipped.area() < gap * gap {
+            return Err(format!(
+                "only {:.3e} m2 of it, {:.3e} m across, are inside the domain: too small for the \
+                 cells",
+                clipped.area(),
+                low.distance(high)
+            ));
+        }
+        Ok(clipped)
     }
 
     /// The face that all corners lie on, if there is one, within `tolerance` (m).

@@ -2,14 +2,17 @@
 //!
 //! Fragments have other numbers than what they were cut from, and gmsh's script language does not
 //! say which came from where. So the script finds the pieces of each fracture again by geometry,
-//! and refuses to mesh unless they make up the fracture's area.
+//! and refuses to mesh unless they make up the fracture's area. `network.geo` is the script; here
+//! stands what is different from network to network.
 
 use std::fmt::{self, Display, Write};
 
 use glam::DVec3;
 
 use crate::clip::FACES;
-use crate::network::{Network, tolerance};
+use crate::geo_template::fill;
+use crate::intersections::Intersection;
+use crate::network::Network;
 
 /// What gets a physical surface of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,86 +25,44 @@ pub enum Grouping {
 
 /// The geometry of a network, with `title` in its first line.
 pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
+    let shared = long_intersections(network);
+    let holds = |condition: &str| match condition {
+        "fractures" => !network.fractures.is_empty(),
+        "no fractures" => network.fractures.is_empty(),
+        "intersections" => !shared.is_empty(),
+        "no intersections" => shared.is_empty(),
+        _ => true,
+    };
+    let (sizes, domain) = (&network.sizes, &network.domain);
+    let value = |name: &str| match name {
+        "title" => title.replace(char::is_control, " "),
+        "h" => format!("{:?}", sizes.h),
+        "h_fracture" => format!("{:?}", sizes.h_fracture),
+        "h_intersection" => format!("{:?}", sizes.h_intersection),
+        "growth" => format!("{:?}", sizes.growth),
+        "low" => List(&domain.low.to_array()).to_string(),
+        "high" => List(&domain.high.to_array()).to_string(),
+        "eps" => format!("{:?}", 1e3 * domain.tolerance()),
+        "count" => network.fractures.len().to_string(),
+        "corners" => text_of(|out| corners(out, network)),
+        "segments" => text_of(|out| segments(out, &shared)),
+        "groups" => text_of(|out| groups(out, network, grouping)),
+        _ => String::new(),
+    };
+    fill(include_str!("network.geo"), holds, value)
+}
+
+/// What is written, without the end of its last line.
+fn text_of(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
-    let _ = write_all(&mut out, network, grouping, title);
+    let _ = write(&mut out);
+    out.truncate(out.trim_end_matches('\n').len());
     out
 }
 
-fn write_all(out: &mut String, network: &Network, grouping: Grouping, title: &str) -> fmt::Result {
-    head(out, network, title)?;
-    corners(out, network)?;
-    out.push_str(if network.fractures.is_empty() {
-        NO_FRACTURES
-    } else {
-        DRAW_AND_FIND
-    });
-    segments(out, network)?;
-    out.push_str(OUTER_FACES);
-    groups(out, network, grouping)?;
-    out.push_str(if network.fractures.is_empty() {
-        ""
-    } else {
-        SIZES_ON_FRACTURES
-    });
-    out.push_str(SIZES);
-    Ok(())
-}
-
-fn head(out: &mut String, network: &Network, title: &str) -> fmt::Result {
-    let (sizes, domain) = (&network.sizes, &network.domain);
-    let title: String = title
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    writeln!(out, "// {title}")?;
-    writeln!(out, "SetFactory(\"OpenCASCADE\");\n\nDefineConstant[")?;
-    for (name, value, meaning, end) in [
-        ("h", sizes.h, "cell size away from fractures, m", ","),
-        (
-            "h_fracture",
-            sizes.h_fracture,
-            "cell size on fractures, m",
-            ",",
-        ),
-        (
-            "h_intersection",
-            sizes.h_intersection,
-            "cell size where fractures meet, m",
-            ",",
-        ),
-        (
-            "growth",
-            sizes.growth,
-            "of the cell size, per metre away from them",
-            "",
-        ),
-    ] {
-        writeln!(
-            out,
-            "  {name} = {{{value:?}, Name \"{name}\"}}{end}  // {meaning}"
-        )?;
-    }
-    let (low, high) = (domain.low, domain.high);
-    writeln!(
-        out,
-        "];\n\nlow() = {};\nhigh() = {};",
-        List(&low.to_array()),
-        List(&high.to_array())
-    )?;
-    writeln!(out, "eps = {:?};\n", 1e3 * tolerance(domain))?;
-    writeln!(out, "{BOX}\ncount = {};", network.fractures.len())
-}
-
-const BOX: &str =
-    "Box(1) = {low(0), low(1), low(2), high(0) - low(0), high(1) - low(1), high(2) - low(2)};";
-
 /// Corners of all fractures in one list for each axis.
 fn corners(out: &mut String, network: &Network) -> fmt::Result {
-    writeln!(
-        out,
-        "\n// Corners of the fractures; those of fracture i are number first(i) to first(i + 1) - 1."
-    )?;
     let mut first = vec![0];
     for fracture in &network.fractures {
         let corners = fracture.polygon.corners();
@@ -132,94 +93,15 @@ fn corners(out: &mut String, network: &Network) -> fmt::Result {
     writeln!(out, "area() = {};", List(&areas))
 }
 
-const NO_FRACTURES: &str = "sampling() = {};\n";
-
-const DRAW_AND_FIND: &str = r#"
-For i In {0 : count - 1}
-  corners() = {};
-  For k In {first(i) : first(i + 1) - 1}
-    p = newp;
-    Point(p) = {x(k), y(k), z(k)};
-    corners() += p;
-  EndFor
-  edges() = {};
-  For k In {0 : #corners() - 1}
-    c = newc;
-    Line(c) = {corners(k), corners((k + 1) % #corners())};
-    edges() += c;
-  EndFor
-  l = newll;
-  Curve Loop(l) = edges();
-  s = news;
-  Plane Surface(s) = {l};
-  fractures() += s;
-EndFor
-
-// Make the mesh conform to all fractures, and to the lines and points where they meet.
-BooleanFragments{ Volume{1}; Delete; }{ Surface{fractures()}; Delete; }
-
-// The pieces of fracture i are the surfaces with all corners in its plane and their centre within
-// its outline. Long pieces are sampled more densely for the cell size below.
-For level In {0 : 3}
-  sampled~{level}() = {};
-EndFor
-For i In {0 : count - 1}
-  k = first(i);
-  x0 = x(k); x1 = x(k);
-  y0 = y(k); y1 = y(k);
-  z0 = z(k); z1 = z(k);
-  For k In {first(i) : first(i + 1) - 1}
-    x0 = (x(k) < x0) ? x(k) : x0; x1 = (x(k) > x1) ? x(k) : x1;
-    y0 = (y(k) < y0) ? y(k) : y0; y1 = (y(k) > y1) ? y(k) : y1;
-    z0 = (z(k) < z0) ? z(k) : z0; z1 = (z(k) > z1) ? z(k) : z1;
-  EndFor
-  near() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
-  piece~{i}() = {};
-  found(i) = 0;
-  For j In {0 : #near() - 1}
-    k = first(i);
-    off = 0;
-    long = 0;
-    ends() = PointsOf{ Surface{near(j)}; };
-    a() = Point{ends(0)};
-    For e In {0 : #ends() - 1}
-      b() = Point{ends(e)};
-      far = Fabs((b(0) - x(k)) * nx(i) + (b(1) - y(k)) * ny(i) + (b(2) - z(k)) * nz(i));
-      off = (far > off) ? far : off;
-      far = Sqrt((b(0) - a(0))^2 + (b(1) - a(1))^2 + (b(2) - a(2))^2);
-      long = (far > long) ? far : long;
-    EndFor
-    If (off < eps)
-      a() = CenterOfMass Surface{near(j)};
-      outside = 0;
-      For k In {first(i) : first(i + 1) - 1}
-        m = (k + 1 < first(i + 1)) ? k + 1 : first(i);
-        ex = x(m) - x(k); ey = y(m) - y(k); ez = z(m) - z(k);
-        px = a(0) - x(k); py = a(1) - y(k); pz = a(2) - z(k);
-        turn = (ey * pz - ez * py) * nx(i) + (ez * px - ex * pz) * ny(i) + (ex * py - ey * px) * nz(i);
-        outside += (turn < 0) ? 1 : 0;
-      EndFor
-      If (outside == 0)
-        piece~{i}() += near(j);
-        m = Mass Surface{near(j)};
-        found(i) += m;
-        level = (long < 4 * h_fracture) ? 0 : (long < 16 * h_fracture) ? 1 : (long < 64 * h_fracture) ? 2 : 3;
-        sampled~{level}() += near(j);
-      EndIf
-    EndIf
-  EndFor
-EndFor
-"#;
-
-/// The segments where fractures meet, for the cell size there.
-fn segments(out: &mut String, network: &Network) -> fmt::Result {
-    let least = tolerance(&network.domain);
+/// The segments where fractures meet, without points of contact.
+fn long_intersections(network: &Network) -> Vec<&Intersection> {
+    let least = network.domain.tolerance();
     let all = network.intersections.iter().map(|(_, shared)| shared);
-    let shared: Vec<_> = all.filter(|shared| shared.length() > least).collect();
-    if shared.is_empty() {
-        return writeln!(out, "\nlines() = {{}};");
-    }
-    writeln!(out, "\n// Ends of the segments where fractures meet.")?;
+    all.filter(|shared| shared.length() > least).collect()
+}
+
+/// Ends of segments in one list for each axis.
+fn segments(out: &mut String, shared: &[&Intersection]) -> fmt::Result {
     for (axis, [from, to]) in [["ax", "bx"], ["ay", "by"], ["az", "bz"]]
         .into_iter()
         .enumerate()
@@ -233,46 +115,10 @@ fn segments(out: &mut String, network: &Network) -> fmt::Result {
             List(&ends)
         )?;
     }
-    out.push_str(FIND_LINES);
     Ok(())
 }
 
-const FIND_LINES: &str = r#"lines() = {};
-For i In {0 : #ax() - 1}
-  x0 = (ax(i) < bx(i)) ? ax(i) : bx(i); x1 = ax(i) + bx(i) - x0;
-  y0 = (ay(i) < by(i)) ? ay(i) : by(i); y1 = ay(i) + by(i) - y0;
-  z0 = (az(i) < bz(i)) ? az(i) : bz(i); z1 = az(i) + bz(i) - z0;
-  near() = Curve In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
-  ex = bx(i) - ax(i); ey = by(i) - ay(i); ez = bz(i) - az(i);
-  length = Sqrt(ex^2 + ey^2 + ez^2);
-  For j In {0 : #near() - 1}
-    ends() = PointsOf{ Curve{near(j)}; };
-    off = 0;
-    For e In {0 : #ends() - 1}
-      b() = Point{ends(e)};
-      px = b(0) - ax(i); py = b(1) - ay(i); pz = b(2) - az(i);
-      off += Sqrt((ey * pz - ez * py)^2 + (ez * px - ex * pz)^2 + (ex * py - ey * px)^2) / length;
-    EndFor
-    If (off < eps)
-      lines() += near(j);
-    EndIf
-  EndFor
-EndFor
-"#;
-
-const OUTER_FACES: &str = r#"
-x0 = low(0); y0 = low(1); z0 = low(2);
-x1 = high(0); y1 = high(1); z1 = high(2);
-left() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x0 + eps, y1 + eps, z1 + eps};
-right() = Surface In BoundingBox {x1 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
-front() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y0 + eps, z1 + eps};
-back() = Surface In BoundingBox {x0 - eps, y1 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
-bottom() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z0 + eps};
-top() = Surface In BoundingBox {x0 - eps, y0 - eps, z1 - eps, x1 + eps, y1 + eps, z1 + eps};
-
-Physical Volume("rock") = Volume{:};
-"#;
-
+/// The physical surfaces, and what refuses to mesh where pieces of a fracture are missing.
 fn groups(out: &mut String, network: &Network, grouping: Grouping) -> fmt::Result {
     for (face, ..) in FACES {
         writeln!(out, "Physical Surface(\"{face}\") = {face}();")?;
@@ -323,49 +169,6 @@ pub(crate) fn set_names(network: &Network) -> Vec<&str> {
     names
 }
 
-const SIZES_ON_FRACTURES: &str = r#"
-// The cell size grows with the distance from fractures and from where they meet.
-fields() = {};
-For level In {0 : 3}
-  If (#sampled~{level}() > 0)
-    f = newf;
-    Field[f] = Distance;
-    Field[f].SurfacesList = {sampled~{level}()};
-    Field[f].NumPointsPerCurve = 2 * 4^(level + 1);
-    g = newf;
-    Field[g] = Threshold;
-    Field[g].InField = f;
-    Field[g].SizeMin = h_fracture;
-    Field[g].SizeMax = h;
-    Field[g].DistMin = h_fracture / 2;
-    Field[g].DistMax = h_fracture / 2 + Fabs(h - h_fracture) / growth;
-    fields() += g;
-  EndIf
-EndFor
-If (#lines() > 0)
-  f = newf;
-  Field[f] = Distance;
-  Field[f].CurvesList = {lines()};
-  Field[f].NumPointsPerCurve = 50;
-  g = newf;
-  Field[g] = Threshold;
-  Field[g].InField = f;
-  Field[g].SizeMin = h_intersection;
-  Field[g].SizeMax = h;
-  Field[g].DistMin = h_intersection / 2;
-  Field[g].DistMax = h_intersection / 2 + Fabs(h - h_intersection) / growth;
-  fields() += g;
-EndIf
-f = newf;
-Field[f] = Min;
-Field[f].FieldsList = {fields()};
-Background Field = f;
-Mesh.MeshSizeExtendFromBoundary = 0;
-Mesh.MeshSizeFromPoints = 0;
-"#;
-
-const SIZES: &str = "Mesh.MeshSizeMax = h;\n";
-
 /// Numbers in braces, each with all its digits.
 struct List<'a>(&'a [f64]);
 
@@ -380,7 +183,7 @@ impl Display for List<'_> {
 mod tests {
     use super::*;
     use crate::clip::Domain;
-    use crate::network::{Given, Sizes};
+    use crate::fracture::{CellSizes, InputFracture};
     use crate::{Orientation, Outline, Polygon};
 
     fn network() -> Network {
@@ -388,14 +191,14 @@ mod tests {
             low: DVec3::ZERO,
             high: DVec3::ONE,
         };
-        let sizes = Sizes {
+        let sizes = CellSizes {
             h: 0.25,
             h_fracture: 0.125,
             h_intersection: 0.1,
             growth: 0.5,
             small: 0.2,
             small_angle: 10.0,
-            mend: true,
+            snap: true,
         };
         let given = |name: &str, set: &str, dip: f64| {
             let outline = Outline::Rectangle {
@@ -407,7 +210,7 @@ mod tests {
                 dip,
                 dip_direction: 90.0,
             };
-            Given {
+            InputFracture {
                 name: name.into(),
                 set: set.into(),
                 place: String::new(),

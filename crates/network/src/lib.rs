@@ -1,11 +1,13 @@
 //! Networks of planar fractures: lists and random sets in, gmsh geometry and statistics out.
 //!
-//! A fracture is a convex planar polygon. Whatever is done to one (clipping, mending ends that
+//! A fracture is a convex planar polygon. Whatever is done to one (clipping, snapping ends that
 //! nearly touch) happens within its plane, so planes never change. All lengths are in metres.
 
 mod clip;
 mod fisher;
+mod fracture;
 mod geo;
+mod geo_template;
 mod intersections;
 mod list;
 mod list_row;
@@ -13,23 +15,26 @@ mod network;
 mod orientation;
 mod polygon;
 mod random;
+#[cfg(test)]
+mod samples;
 mod size;
 mod small_features;
+mod snap;
 mod statistics;
 mod stochastic;
-mod treat;
 
 pub use clip::{Domain, FACES};
 pub use fisher::Fisher;
+pub use fracture::{CellSizes, InputFracture, NetworkFracture, Rejected};
 pub use geo::{Grouping, write_geo};
 pub use intersections::{Intersection, distance, intersection};
 pub use list::{read_list, repeated_names};
 pub use list_row::SIDES;
-pub use network::{Fracture, Given, LeftOut, Network, Sizes};
+pub use network::Network;
 pub use orientation::Orientation;
 pub use polygon::{Outline, Polygon, check_name};
 pub use random::Stream;
 pub use size::SizeLaw;
 pub use small_features::{Feature, FeatureKind, small_features};
 pub use statistics::{Moments, moments};
-pub use stochastic::{Amount, Drawn, Shape, StochasticSet};
+pub use stochastic::{Amount, DrawnFracture, FractureShape, StochasticSet};

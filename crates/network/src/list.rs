@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use kluft_defect::Defect;
 
+use crate::fracture::InputFracture;
 use crate::list_row::{Row, place_of, polygon, suggestion};
-use crate::network::Given;
 use crate::polygon::check_name;
 
 const COLUMNS: [&str; 17] = [
@@ -34,7 +34,12 @@ const COLUMNS: [&str; 17] = [
 ///
 /// # Errors
 /// Every defect with its line and column, and a remedy.
-pub fn read_list(text: &str, file: &str, set: &str, only: bool) -> Result<Vec<Given>, Vec<Defect>> {
+pub fn read_list(
+    text: &str,
+    file: &str,
+    set: &str,
+    only: bool,
+) -> Result<Vec<InputFracture>, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut fractures = Vec::new();
     let mut reader = ReaderBuilder::new()
@@ -110,7 +115,7 @@ fn columns(
 }
 
 /// Reports every fracture whose name another one before it has.
-pub fn repeated_names(fractures: &[Given], defects: &mut Vec<Defect>) {
+pub fn repeated_names(fractures: &[InputFracture], defects: &mut Vec<Defect>) {
     let mut first: HashMap<&str, &str> = HashMap::new();
     for fracture in fractures {
         if let Some(other) = first.insert(&fracture.name, &fracture.place) {
@@ -124,7 +129,7 @@ pub fn repeated_names(fractures: &[Given], defects: &mut Vec<Defect>) {
     }
 }
 
-fn fracture(row: &mut Row<'_>, number: usize, set: &str, only: bool) -> Option<Given> {
+fn fracture(row: &mut Row<'_>, number: usize, set: &str, only: bool) -> Option<InputFracture> {
     let named_set = row.text("set").unwrap_or(set).to_owned();
     if only && named_set != set {
         let remedy = format!("leave the column out, or write {set}");
@@ -142,7 +147,7 @@ fn fracture(row: &mut Row<'_>, number: usize, set: &str, only: bool) -> Option<G
             row.refuse(column, &problem, &remedy);
         }
     }
-    Some(Given {
+    Some(InputFracture {
         name,
         set: named_set,
         place: row.place.clone(),

@@ -1,80 +1,14 @@
-//! From given fractures to a network that gmsh can mesh: clipped, mended, checked.
+//! From given fractures to a network that gmsh can mesh: clipped, snapped, checked.
 
 use glam::DVec3;
 use kluft_defect::Defect;
 
 use crate::clip::Domain;
-use crate::intersections::{Intersection, angle_between, intersection, may_meet};
+use crate::fracture::{CellSizes, InputFracture, NetworkFracture, Rejected, close_pairs};
+use crate::intersections::{Intersection, angle_between, intersection};
 use crate::polygon::Polygon;
 use crate::small_features::{Feature, small_features};
-use crate::treat::treat;
-
-/// A fracture as a list or a set gives it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Given {
-    /// Its name, no other fracture's.
-    pub name: String,
-    /// The set it belongs to.
-    pub set: String,
-    /// File and line, or the set that drew it.
-    pub place: String,
-    /// The whole of it.
-    pub polygon: Polygon,
-}
-
-/// A fracture of the network.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fracture {
-    /// Its name.
-    pub name: String,
-    /// The set it belongs to.
-    pub set: String,
-    /// File and line, or the set that drew it.
-    pub place: String,
-    /// Area as given (m^2).
-    pub area_given: f64,
-    /// What is in the geometry.
-    pub polygon: Polygon,
-    /// What was changed besides clipping, one line a change.
-    pub changes: Vec<String>,
-}
-
-/// A given fracture that is not in the network.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LeftOut {
-    /// Its name.
-    pub name: String,
-    /// The set it belongs to.
-    pub set: String,
-    /// Why.
-    pub reason: String,
-}
-
-/// Cell sizes, and what is too small for them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sizes {
-    /// Cell size away from fractures (m).
-    pub h: f64,
-    /// Cell size on fractures (m).
-    pub h_fracture: f64,
-    /// Cell size on intersections of fractures (m).
-    pub h_intersection: f64,
-    /// Growth of the cell size per length away from fractures.
-    pub growth: f64,
-    /// Lengths below this part of the local cell size are too small.
-    pub small: f64,
-    /// Angles below this are too small (degrees).
-    pub small_angle: f64,
-    /// Whether features that are too small are mended where that is possible.
-    pub mend: bool,
-}
-
-impl Sizes {
-    /// Distances below this are too small (m).
-    pub fn gap(&self) -> f64 {
-        self.small * self.h_fracture
-    }
-}
+use crate::snap::snap;
 
 /// OpenCASCADE takes points closer than 1e-7 m for one, whatever the size of the domain (m).
 const FINEST: f64 = 1e-5;
@@ -85,11 +19,11 @@ pub struct Network {
     /// The rock.
     pub domain: Domain,
     /// Cell sizes.
-    pub sizes: Sizes,
+    pub sizes: CellSizes,
     /// The fractures.
-    pub fractures: Vec<Fracture>,
+    pub fractures: Vec<NetworkFracture>,
     /// What was given and is not among them.
-    pub left_out: Vec<LeftOut>,
+    pub rejected: Vec<Rejected>,
     /// What pairs of fractures share: indices, ascending, and the segment.
     pub intersections: Vec<([usize; 2], Intersection)>,
     /// What is too small for the mesh and stays.
@@ -97,25 +31,29 @@ pub struct Network {
 }
 
 impl Network {
-    /// Clips the fractures to the domain, mends ends that nearly touch and lists what remains too
+    /// Clips the fractures to the domain, snaps ends that nearly touch and lists what remains too
     /// small for the mesh.
     ///
     /// # Errors
     /// Fractures that overlap in one plane, by name; cells too fine for gmsh.
-    pub fn build(domain: Domain, sizes: Sizes, given: Vec<Given>) -> Result<Self, Vec<Defect>> {
+    pub fn build(
+        domain: Domain,
+        sizes: CellSizes,
+        given: Vec<InputFracture>,
+    ) -> Result<Self, Vec<Defect>> {
         if sizes.h_intersection < FINEST {
             let problem = format!("cells of {:e} m are asked for", sizes.h_intersection);
             let remedy = "gmsh takes points closer than 1e-7 m for one: give lengths in metres, cells above 1e-5";
             return Err(vec![Defect::new("the network", problem, remedy)]);
         }
-        let (mut fractures, left_out) = clip_all(&domain, &sizes, given);
+        let (mut fractures, rejected) = clip_all(&domain, &sizes, given);
         let defects = overlaps(&domain, &fractures);
         if !defects.is_empty() {
             return Err(defects);
         }
-        if sizes.mend {
-            treat(&domain, &sizes, &mut fractures);
-            // Ends that were mended may have grown onto a neighbour in the same plane.
+        if sizes.snap {
+            snap(&domain, &sizes, &mut fractures);
+            // Ends that have moved may have grown onto a neighbour in the same plane.
             let defects = overlaps(&domain, &fractures);
             if !defects.is_empty() {
                 return Err(defects);
@@ -127,23 +65,22 @@ impl Network {
             domain,
             sizes,
             fractures,
-            left_out,
+            rejected,
             intersections,
             features,
         })
     }
 }
 
-/// Lengths that rounding may leave (m).
-pub(crate) fn tolerance(domain: &Domain) -> f64 {
-    1e-9 * domain.diagonal()
-}
-
-fn clip_all(domain: &Domain, sizes: &Sizes, given: Vec<Given>) -> (Vec<Fracture>, Vec<LeftOut>) {
-    let (mut fractures, mut left_out) = (Vec::new(), Vec::new());
+fn clip_all(
+    domain: &Domain,
+    sizes: &CellSizes,
+    given: Vec<InputFracture>,
+) -> (Vec<NetworkFracture>, Vec<Rejected>) {
+    let (mut fractures, mut rejected) = (Vec::new(), Vec::new());
     for given in given {
-        match clip_one(domain, sizes.gap(), &given.polygon) {
-            Ok(polygon) => fractures.push(Fracture {
+        match domain.clip_large(&given.polygon, sizes.gap()) {
+            Ok(polygon) => fractures.push(NetworkFracture {
                 name: given.name,
                 set: given.set,
                 place: given.place,
@@ -151,58 +88,21 @@ fn clip_all(domain: &Domain, sizes: &Sizes, given: Vec<Given>) -> (Vec<Fracture>
                 polygon,
                 changes: Vec::new(),
             }),
-            Err(reason) => left_out.push(LeftOut {
+            Err(reason) => rejected.push(Rejected {
                 name: given.name,
                 set: given.set,
                 reason,
             }),
         }
     }
-    (fractures, left_out)
+    (fractures, rejected)
 }
 
-/// What is in the domain of a polygon, or why nothing is; a rest less than `gap` (m) across is
-/// nothing.
-pub(crate) fn clip_one(domain: &Domain, gap: f64, polygon: &Polygon) -> Result<Polygon, String> {
-    let Some(clipped) = domain.clip(polygon) else {
-        return Err("outside the domain".into());
-    };
-    if let Some(face) = domain.face_under(&clipped, 1e3 * tolerance(domain)) {
-        let reason =
-            format!("it lies on the face `{face}` of the domain, with rock on one side only");
-        return Err(reason);
-    }
-    let (low, high) = clipped.bounds();
-    if low.distance(high) < gap || clipped.area() < gap * gap {
-        return Err(format!(
-            "only {:.3e} m2 of it, {:.3e} m across, are inside the domain: too small for the cells",
-            clipped.area(),
-            low.distance(high)
-        ));
-    }
-    Ok(clipped)
-}
-
-/// Pairs of fractures whose bounds come closer than `gap` (m), in ascending order.
-pub(crate) fn close_pairs(fractures: &[Fracture], gap: f64) -> Vec<[usize; 2]> {
-    let bounds: Vec<(DVec3, DVec3)> = fractures.iter().map(|f| f.polygon.bounds()).collect();
-    let mut order: Vec<usize> = (0..fractures.len()).collect();
-    order.sort_by(|&a, &b| bounds[a].0.x.total_cmp(&bounds[b].0.x));
-    let mut pairs = Vec::new();
-    for (rank, &a) in order.iter().enumerate() {
-        let behind = order[rank + 1..].iter();
-        for &b in behind.take_while(|&&b| bounds[b].0.x <= bounds[a].1.x + gap) {
-            if may_meet(bounds[a], bounds[b], gap) {
-                pairs.push([a.min(b), a.max(b)]);
-            }
-        }
-    }
-    pairs.sort_unstable();
-    pairs
-}
-
-fn intersections(domain: &Domain, fractures: &[Fracture]) -> Vec<([usize; 2], Intersection)> {
-    let tolerance = tolerance(domain);
+fn intersections(
+    domain: &Domain,
+    fractures: &[NetworkFracture],
+) -> Vec<([usize; 2], Intersection)> {
+    let tolerance = domain.tolerance();
     let pairs = close_pairs(fractures, tolerance).into_iter();
     pairs
         .filter_map(|[a, b]| {
@@ -213,7 +113,7 @@ fn intersections(domain: &Domain, fractures: &[Fracture]) -> Vec<([usize; 2], In
 }
 
 /// Fractures that lie on top of each other: no mesh can tell whose a facet is.
-fn overlaps(domain: &Domain, fractures: &[Fracture]) -> Vec<Defect> {
+fn overlaps(domain: &Domain, fractures: &[NetworkFracture]) -> Vec<Defect> {
     let flat = 1e-5 * domain.diagonal();
     let overlapping = close_pairs(fractures, flat)
         .into_iter()
@@ -271,34 +171,11 @@ fn half(polygon: &Polygon, point: DVec3, inwards: DVec3) -> Option<Polygon> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::{DOMAIN, SIZES, input};
 
-    const DOMAIN: Domain = Domain {
-        low: DVec3::ZERO,
-        high: DVec3::splat(10.0),
-    };
-    const SIZES: Sizes = Sizes {
-        h: 1.0,
-        h_fracture: 1.0,
-        h_intersection: 1.0,
-        growth: 0.5,
-        small: 0.2,
-        small_angle: 10.0,
-        mend: true,
-    };
-
-    fn given(name: &str, corners: &[[f64; 3]]) -> Given {
-        let corners: Vec<DVec3> = corners.iter().map(|&corner| corner.into()).collect();
-        Given {
-            name: name.into(),
-            set: "set".into(),
-            place: format!("list.csv:{name}"),
-            polygon: Polygon::through(&corners).expect("a polygon"),
-        }
-    }
-
-    fn level(name: &str, [x, y, z]: [f64; 3], side: f64) -> Given {
+    fn level(name: &str, [x, y, z]: [f64; 3], side: f64) -> InputFracture {
         let (a, b) = (x + side, y + side);
-        given(name, &[[x, y, z], [a, y, z], [a, b, z], [x, b, z]])
+        input(name, &[[x, y, z], [a, y, z], [a, b, z], [x, b, z]])
     }
 
     #[test]
@@ -315,7 +192,7 @@ mod tests {
         assert_eq!(names, ["in", "cut"]);
         assert!((network.fractures[1].polygon.area() - 2.0).abs() < 1e-12);
         let reasons: Vec<&str> = network
-            .left_out
+            .rejected
             .iter()
             .map(|one| one.reason.as_str())
             .collect();
@@ -340,7 +217,7 @@ mod tests {
 
     #[test]
     fn cells_below_the_tolerance_of_the_kernel_are_refused() {
-        let sizes = Sizes {
+        let sizes = CellSizes {
             h_intersection: 1e-6,
             ..SIZES
         };

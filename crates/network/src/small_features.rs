@@ -4,8 +4,8 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::clip::{Domain, FACES};
+use crate::fracture::{CellSizes, NetworkFracture, close_pairs};
 use crate::intersections::{Intersection, angle_between, distance, nearest_of_segments};
-use crate::network::{Fracture, Sizes, close_pairs, tolerance};
 
 /// What kind of small feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -41,116 +41,154 @@ pub struct Feature {
 /// Lists everything too small for the cell sizes.
 pub fn small_features(
     domain: &Domain,
-    sizes: &Sizes,
-    fractures: &[Fracture],
+    sizes: &CellSizes,
+    fractures: &[NetworkFracture],
     intersections: &[([usize; 2], Intersection)],
 ) -> Vec<Feature> {
-    let mut found = Vec::new();
-    of_intersections(domain, sizes, fractures, intersections, &mut found);
-    gaps(sizes, fractures, intersections, &mut found);
-    for (index, fracture) in fractures.iter().enumerate() {
-        at_faces(domain, sizes, fracture, &mut found);
-        close_lines(domain, sizes, fractures, index, intersections, &mut found);
+    let mut search = Search {
+        domain,
+        sizes,
+        fractures,
+        intersections,
+        found: Vec::new(),
+    };
+    search.of_intersections();
+    search.gaps();
+    for index in 0..fractures.len() {
+        search.at_faces(&fractures[index]);
+        search.close_lines(index);
     }
-    found
+    search.found
 }
 
-fn names(fractures: &[Fracture], indices: &[usize]) -> Vec<String> {
-    indices
-        .iter()
-        .map(|&index| fractures[index].name.clone())
-        .collect()
+/// A network, and what has been found so far.
+struct Search<'a> {
+    domain: &'a Domain,
+    sizes: &'a CellSizes,
+    fractures: &'a [NetworkFracture],
+    intersections: &'a [([usize; 2], Intersection)],
+    found: Vec<Feature>,
 }
 
-fn of_intersections(
-    domain: &Domain,
-    sizes: &Sizes,
-    fractures: &[Fracture],
-    intersections: &[([usize; 2], Intersection)],
-    found: &mut Vec<Feature>,
-) {
-    let enough = sizes.small * sizes.h_intersection;
-    for (pair, shared) in intersections {
-        let mut report = |kind: FeatureKind, size: f64, enough: f64| {
-            found.push(Feature {
-                kind,
-                names: names(fractures, pair),
-                size,
-                enough,
-                at: (shared.from + shared.to) / 2.0,
-            });
-        };
-        // A point of contact needs no cell of its own.
-        if shared.length() > tolerance(domain) && shared.length() < enough {
-            report(FeatureKind::ShortIntersection, shared.length(), enough);
-        }
-        if shared.angle < sizes.small_angle {
-            report(FeatureKind::SmallAngle, shared.angle, sizes.small_angle);
-        }
+impl Search<'_> {
+    fn names(&self, indices: &[usize]) -> Vec<String> {
+        let names = indices.iter().map(|&index| &self.fractures[index].name);
+        names.cloned().collect()
     }
-}
 
-fn gaps(
-    sizes: &Sizes,
-    fractures: &[Fracture],
-    intersections: &[([usize; 2], Intersection)],
-    found: &mut Vec<Feature>,
-) {
-    let enough = sizes.gap();
-    for pair in close_pairs(fractures, enough) {
-        if intersections
-            .binary_search_by_key(&pair, |(pair, _)| *pair)
-            .is_ok()
-        {
-            continue;
-        }
-        let [a, b] = pair.map(|index| &fractures[index].polygon);
-        let (size, at) = distance(a, b);
-        // Polygons of one plane that share an edge have no intersection, and no gap either.
-        if size < enough && (size > 1e-9 * enough || angle_between(a, b) > 1e-3) {
-            let names = names(fractures, &pair);
-            found.push(Feature {
-                kind: FeatureKind::Gap,
-                names,
-                size,
-                enough,
-                at,
-            });
+    fn of_intersections(&mut self) {
+        let (least, small_angle) = (self.domain.tolerance(), self.sizes.small_angle);
+        let enough = self.sizes.small * self.sizes.h_intersection;
+        for (pair, shared) in self.intersections {
+            let names = self.names(pair);
+            let mut report = |kind: FeatureKind, size: f64, enough: f64| {
+                self.found.push(Feature {
+                    kind,
+                    names: names.clone(),
+                    size,
+                    enough,
+                    at: (shared.from + shared.to) / 2.0,
+                });
+            };
+            // A point of contact needs no cell of its own.
+            if shared.length() > least && shared.length() < enough {
+                report(FeatureKind::ShortIntersection, shared.length(), enough);
+            }
+            if shared.angle < small_angle {
+                report(FeatureKind::SmallAngle, shared.angle, small_angle);
+            }
         }
     }
-}
 
-fn at_faces(domain: &Domain, sizes: &Sizes, fracture: &Fracture, found: &mut Vec<Feature>) {
-    let polygon = &fracture.polygon;
-    let tolerance = tolerance(domain);
-    for (face, (name, axis, _)) in FACES.iter().enumerate() {
-        let away = |corner: &DVec3| (corner[*axis] - domain.face(face)).abs();
-        let mut report = |kind: FeatureKind, size: f64, enough: f64, at: DVec3| {
-            let names = vec![fracture.name.clone(), (*name).to_owned()];
-            found.push(Feature {
-                kind,
-                names,
-                size,
-                enough,
-                at,
-            });
-        };
-        let mut near: Vec<DVec3> = polygon.corners().to_vec();
-        near.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        let touching = near
-            .iter()
-            .filter(|corner| away(corner) <= tolerance)
-            .count();
-        let angle = polygon.normal()[*axis].abs().min(1.0).acos().to_degrees();
-        if touching > 0 && angle < sizes.small_angle {
-            report(FeatureKind::SmallAngle, angle, sizes.small_angle, near[0]);
+    fn gaps(&mut self) {
+        let enough = self.sizes.gap();
+        for pair in close_pairs(self.fractures, enough) {
+            let meeting = self
+                .intersections
+                .binary_search_by_key(&pair, |(pair, _)| *pair);
+            if meeting.is_ok() {
+                continue;
+            }
+            let [a, b] = pair.map(|index| &self.fractures[index].polygon);
+            let (size, at) = distance(a, b);
+            // Polygons of one plane that share an edge have no intersection, and no gap either.
+            if size < enough && (size > 1e-9 * enough || angle_between(a, b) > 1e-3) {
+                self.found.push(Feature {
+                    kind: FeatureKind::Gap,
+                    names: self.names(&pair),
+                    size,
+                    enough,
+                    at,
+                });
+            }
         }
-        if let Some(corner) = near
-            .get(touching)
-            .filter(|corner| away(corner) < sizes.gap())
-        {
-            report(FeatureKind::GapToFace, away(corner), sizes.gap(), *corner);
+    }
+
+    fn at_faces(&mut self, fracture: &NetworkFracture) {
+        let polygon = &fracture.polygon;
+        let (gap, small_angle) = (self.sizes.gap(), self.sizes.small_angle);
+        for (face, (name, axis, _)) in FACES.iter().enumerate() {
+            let level = self.domain.face(face);
+            let away = |corner: &DVec3| (corner[*axis] - level).abs();
+            let mut report = |kind: FeatureKind, size: f64, enough: f64, at: DVec3| {
+                self.found.push(Feature {
+                    kind,
+                    names: vec![fracture.name.clone(), (*name).to_owned()],
+                    size,
+                    enough,
+                    at,
+                });
+            };
+            let mut near: Vec<DVec3> = polygon.corners().to_vec();
+            near.sort_by(|a, b| away(a).total_cmp(&away(b)));
+            let touching = near
+                .iter()
+                .filter(|corner| away(corner) <= self.domain.tolerance())
+                .count();
+            let angle = polygon.normal()[*axis].abs().min(1.0).acos().to_degrees();
+            if touching > 0 && angle < small_angle {
+                report(FeatureKind::SmallAngle, angle, small_angle, near[0]);
+            }
+            if let Some(corner) = near.get(touching).filter(|corner| away(corner) < gap) {
+                report(FeatureKind::GapToFace, away(corner), gap, *corner);
+            }
         }
+    }
+
+    fn close_lines(&mut self, own: usize) {
+        let sizes = self.sizes;
+        let enough = sizes.small * sizes.h_intersection.min(sizes.h_fracture);
+        let traces = self.traces(own);
+        for (rank, a) in traces.iter().enumerate() {
+            let others = traces[rank + 1..].iter();
+            for b in others.filter(|b| a.other.is_some() || b.other.is_some()) {
+                let [p, q] = nearest_of_segments(a.ends, b.ends);
+                let size = p.distance(q);
+                if size > self.domain.tolerance() && size < enough {
+                    let involved = [Some(own), a.other, b.other];
+                    let involved: Vec<usize> = involved.into_iter().flatten().collect();
+                    self.found.push(Feature {
+                        kind: FeatureKind::CloseLines,
+                        names: self.names(&involved),
+                        size,
+                        enough,
+                        at: (p + q) / 2.0,
+                    });
+                }
+            }
+        }
+    }
+
+    fn traces(&self, own: usize) -> Vec<Trace> {
+        let edges = self.fractures[own].polygon.edges();
+        let edges = edges.map(|ends| Trace { ends, other: None });
+        let shared = self.intersections.iter();
+        let own_pairs = shared.filter(|(pair, _)| pair.contains(&own));
+        let shared = own_pairs.map(|([a, b], shared)| Trace {
+            ends: [shared.from, shared.to],
+            other: Some(if *a == own { *b } else { *a }),
+        });
+        edges.chain(shared).collect()
     }
 }
 
@@ -160,98 +198,25 @@ struct Trace {
     other: Option<usize>,
 }
 
-fn close_lines(
-    domain: &Domain,
-    sizes: &Sizes,
-    fractures: &[Fracture],
-    own: usize,
-    intersections: &[([usize; 2], Intersection)],
-    found: &mut Vec<Feature>,
-) {
-    let enough = sizes.small * sizes.h_intersection.min(sizes.h_fracture);
-    let traces = traces(fractures, own, intersections);
-    for (rank, a) in traces.iter().enumerate() {
-        for b in traces[rank + 1..]
-            .iter()
-            .filter(|b| a.other.is_some() || b.other.is_some())
-        {
-            let [p, q] = nearest_of_segments(a.ends, b.ends);
-            let size = p.distance(q);
-            if size > tolerance(domain) && size < enough {
-                let involved = [Some(own), a.other, b.other];
-                let involved: Vec<usize> = involved.into_iter().flatten().collect();
-                let names = names(fractures, &involved);
-                let at = (p + q) / 2.0;
-                found.push(Feature {
-                    kind: FeatureKind::CloseLines,
-                    names,
-                    size,
-                    enough,
-                    at,
-                });
-            }
-        }
-    }
-}
-
-fn traces(
-    fractures: &[Fracture],
-    own: usize,
-    intersections: &[([usize; 2], Intersection)],
-) -> Vec<Trace> {
-    let edges = fractures[own].polygon.edges();
-    let edges = edges.map(|ends| Trace { ends, other: None });
-    let shared = intersections.iter().filter(|(pair, _)| pair.contains(&own));
-    let shared = shared.map(|([a, b], shared)| Trace {
-        ends: [shared.from, shared.to],
-        other: Some(if *a == own { *b } else { *a }),
-    });
-    edges.chain(shared).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{Given, Network};
-    use crate::polygon::Polygon;
-
-    const DOMAIN: Domain = Domain {
-        low: DVec3::ZERO,
-        high: DVec3::splat(10.0),
-    };
+    use crate::network::Network;
+    use crate::samples::{DOMAIN, FLOOR, SIZES, input, wall};
 
     fn kinds(polygons: &[&[[f64; 3]]]) -> Vec<(FeatureKind, Vec<String>)> {
-        let sizes = Sizes {
-            h: 1.0,
-            h_fracture: 1.0,
-            h_intersection: 1.0,
-            growth: 0.5,
-            small: 0.2,
-            small_angle: 10.0,
-            mend: false,
+        let sizes = CellSizes {
+            snap: false,
+            ..SIZES
         };
-        let given = polygons.iter().enumerate().map(|(number, corners)| {
-            let corners: Vec<DVec3> = corners.iter().map(|&corner| corner.into()).collect();
-            Given {
-                name: format!("f{number}"),
-                set: String::new(),
-                place: String::new(),
-                polygon: Polygon::through(&corners).expect("a polygon"),
-            }
-        });
-        let network = Network::build(DOMAIN, sizes, given.collect()).expect("a network");
+        let polygons = polygons.iter().enumerate();
+        let list = polygons.map(|(number, corners)| input(&format!("f{number}"), corners));
+        let network = Network::build(DOMAIN, sizes, list.collect()).expect("a network");
         let features = network.features.into_iter();
         features
             .map(|feature| (feature.kind, feature.names))
             .collect()
     }
-
-    const FLOOR: [[f64; 3]; 4] = [
-        [2.0, 2.0, 5.0],
-        [8.0, 2.0, 5.0],
-        [8.0, 8.0, 5.0],
-        [2.0, 8.0, 5.0],
-    ];
 
     fn both() -> Vec<String> {
         vec!["f0".into(), "f1".into()]
@@ -259,25 +224,16 @@ mod tests {
 
     #[test]
     fn a_gap_is_found() {
-        let wall = [
-            [5.0, 3.0, 5.1],
-            [5.0, 6.0, 5.1],
-            [5.0, 6.0, 7.0],
-            [5.0, 3.0, 7.0],
-        ];
-        assert_eq!(kinds(&[&FLOOR, &wall]), [(FeatureKind::Gap, both())]);
+        assert_eq!(kinds(&[&FLOOR, &wall(5.1)]), [(FeatureKind::Gap, both())]);
     }
 
     #[test]
     fn a_dangling_end_is_two_close_lines() {
-        let wall = [
-            [5.0, 3.0, 4.9],
-            [5.0, 6.0, 4.9],
-            [5.0, 6.0, 7.0],
-            [5.0, 3.0, 7.0],
-        ];
         let names = vec!["f1".to_owned(), "f0".to_owned()];
-        assert_eq!(kinds(&[&FLOOR, &wall]), [(FeatureKind::CloseLines, names)]);
+        assert_eq!(
+            kinds(&[&FLOOR, &wall(4.9)]),
+            [(FeatureKind::CloseLines, names)]
+        );
     }
 
     #[test]

@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use crate::clip::Domain;
 use crate::fisher::Fisher;
-use crate::network::clip_one;
 use crate::orientation::Orientation;
 use crate::polygon::{Outline, Polygon};
 use crate::random::Stream;
@@ -27,7 +26,7 @@ pub enum Amount {
 
 /// The shape of the fractures of a set.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum FractureShape {
     /// Regular polygons with the area of a disc; the size is the radius of the disc.
     Disc {
         /// Number of corners.
@@ -50,7 +49,7 @@ pub struct StochasticSet {
     /// Sizes.
     pub size: SizeLaw,
     /// Shape.
-    pub shape: Shape,
+    pub shape: FractureShape,
     /// How many.
     pub amount: Amount,
     /// Seed of the random numbers.
@@ -59,7 +58,7 @@ pub struct StochasticSet {
 
 /// A fracture as drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct DrawnFracture {
     /// The whole of it.
     pub polygon: Polygon,
     /// Its size (m).
@@ -78,7 +77,7 @@ impl StochasticSet {
     ///
     /// # Errors
     /// What makes the set endless, and what to do.
-    pub fn draw(&self, domain: &Domain) -> Result<Vec<Drawn>, (String, String)> {
+    pub fn draw(&self, domain: &Domain) -> Result<Vec<DrawnFracture>, (String, String)> {
         self.check(domain)?;
         let mut stream = Stream::new(self.seed, &self.name);
         let mut drawn = Vec::new();
@@ -121,7 +120,7 @@ impl StochasticSet {
         Ok(())
     }
 
-    fn draw_one(&self, domain: &Domain, stream: &mut Stream) -> Drawn {
+    fn draw_one(&self, domain: &Domain, stream: &mut Stream) -> DrawnFracture {
         let margin = self.shape.reach(self.size.largest());
         let (low, high) = (domain.low - margin, domain.high + margin);
         let coordinate = |axis: usize, stream: &mut Stream| stream.between(low[axis], high[axis]);
@@ -132,9 +131,9 @@ impl StochasticSet {
         let size = self.size.draw(stream);
         let outline = self.shape.outline(size, stream);
         let polygon = Polygon::placed(outline, DVec3::new(x, y, z), Orientation::of_normal(pole));
-        let inside = clip_one(domain, CRUMB * self.size.smallest(), &polygon);
+        let inside = domain.clip_large(&polygon, CRUMB * self.size.smallest());
         let area_inside = inside.map_or(0.0, |clipped| clipped.area());
-        Drawn {
+        DrawnFracture {
             polygon,
             size,
             pole,
@@ -145,34 +144,34 @@ impl StochasticSet {
 
 const TOO_MANY: &str = "ask for a smaller p32 or count, for larger fractures or a smaller domain";
 
-impl Shape {
+impl FractureShape {
     /// Area of a fracture of this size (m^2).
     pub fn area(self, size: f64) -> f64 {
         match self {
-            Shape::Disc { .. } => std::f64::consts::PI * size * size,
-            Shape::Rectangle { aspect } => 4.0 * size * size / aspect,
+            FractureShape::Disc { .. } => std::f64::consts::PI * size * size,
+            FractureShape::Rectangle { aspect } => 4.0 * size * size / aspect,
         }
     }
 
     /// How far a fracture of this size reaches from its centre, at most (m).
     fn reach(self, size: f64) -> f64 {
         match self {
-            Shape::Disc { sides } => {
+            FractureShape::Disc { sides } => {
                 let step = 2.0 * std::f64::consts::PI / sides as f64;
                 size * (step / libm::sin(step)).sqrt()
             }
-            Shape::Rectangle { aspect } => size * (1.0 + aspect.powi(-2)).sqrt(),
+            FractureShape::Rectangle { aspect } => size * (1.0 + aspect.powi(-2)).sqrt(),
         }
     }
 
     fn outline(self, size: f64, stream: &mut Stream) -> Outline {
         match self {
-            Shape::Disc { sides } => Outline::Disc {
+            FractureShape::Disc { sides } => Outline::Disc {
                 radius: size,
                 sides,
                 rotation: stream.between(0.0, 360.0),
             },
-            Shape::Rectangle { aspect } => Outline::Rectangle {
+            FractureShape::Rectangle { aspect } => Outline::Rectangle {
                 length: 2.0 * size,
                 width: 2.0 * size / aspect,
                 rotation: 0.0,
@@ -205,7 +204,7 @@ mod tests {
                 min: 0.5,
                 max: 4.0,
             },
-            shape: Shape::Disc { sides: 12 },
+            shape: FractureShape::Disc { sides: 12 },
             amount,
             seed: 11,
         }

@@ -1,12 +1,12 @@
-//! Mends fractures whose ends nearly touch: in its own plane, a corner closer than the smallest
-//! gap to another fracture or to a face of the domain moves onto it, whether it fell short or
-//! poked through; edges shorter than the gap are merged.
+//! Snaps fractures whose ends nearly touch: in its own plane, a corner closer than the smallest gap
+//! to another fracture or to a face of the domain moves onto it, whether it ends before that or
+//! goes beyond; edges shorter than the gap are merged.
 
 use glam::DVec3;
 
 use crate::clip::{Domain, FACES, drop_doubles};
+use crate::fracture::{CellSizes, NetworkFracture, close_pairs};
 use crate::intersections::common_line;
-use crate::network::{Fracture, Sizes, close_pairs, tolerance};
 use crate::polygon::Polygon;
 
 /// A corner that moves may bring another within reach; more rounds have not been seen to help.
@@ -37,8 +37,8 @@ impl Line {
     }
 }
 
-/// Mends all fractures and notes the changes in them.
-pub(crate) fn treat(domain: &Domain, sizes: &Sizes, fractures: &mut [Fracture]) {
+/// Snaps all fractures and notes the changes in them.
+pub(crate) fn snap(domain: &Domain, sizes: &CellSizes, fractures: &mut [NetworkFracture]) {
     let gap = sizes.gap();
     for _ in 0..ROUNDS {
         let mut near = vec![Vec::new(); fractures.len()];
@@ -49,7 +49,7 @@ pub(crate) fn treat(domain: &Domain, sizes: &Sizes, fractures: &mut [Fracture]) 
         let mut has_changed = false;
         for (index, near) in near.iter().enumerate() {
             let lines = lines(domain, sizes, fractures, index, near);
-            has_changed |= mend(domain, gap, fractures, index, &lines);
+            has_changed |= snap_one(domain, gap, fractures, index, &lines);
         }
         if !has_changed {
             break;
@@ -59,8 +59,8 @@ pub(crate) fn treat(domain: &Domain, sizes: &Sizes, fractures: &mut [Fracture]) 
 
 fn lines(
     domain: &Domain,
-    sizes: &Sizes,
-    fractures: &[Fracture],
+    sizes: &CellSizes,
+    fractures: &[NetworkFracture],
     own: usize,
     near: &[usize],
 ) -> Vec<Line> {
@@ -101,7 +101,7 @@ fn lines(
 fn target<'a>(
     corner: DVec3,
     lines: &'a [Line],
-    fractures: &[Fracture],
+    fractures: &[NetworkFracture],
     gap: f64,
     tolerance: f64,
 ) -> Option<(DVec3, Vec<&'a Line>)> {
@@ -143,14 +143,14 @@ fn crossing(first: &Line, second: &Line) -> Option<DVec3> {
     Some(first.point + step * first.along)
 }
 
-fn mend(
+fn snap_one(
     domain: &Domain,
     gap: f64,
-    fractures: &mut [Fracture],
+    fractures: &mut [NetworkFracture],
     index: usize,
     lines: &[Line],
 ) -> bool {
-    let tolerance = tolerance(domain);
+    let tolerance = domain.tolerance();
     let mut has_changed = false;
     let mut corner = 0;
     while corner < fractures[index].polygon.corners().len() {
@@ -188,12 +188,12 @@ fn mend(
 fn with_corner(domain: &Domain, polygon: &Polygon, corner: usize, to: DVec3) -> Option<Polygon> {
     // Clamping more than rounding would leave the plane.
     let inside = to.clamp(domain.low, domain.high);
-    if inside.distance(to) > tolerance(domain) {
+    if inside.distance(to) > domain.tolerance() {
         return None;
     }
     let mut corners = polygon.corners().to_vec();
     corners[corner] = inside;
-    drop_doubles(&mut corners, tolerance(domain));
+    drop_doubles(&mut corners, domain.tolerance());
     straighten(&mut corners, polygon.normal());
     let changed = Polygon::new(corners, polygon.normal())?;
     let is_like = (0.7..1.4).contains(&(changed.area() / polygon.area()));
@@ -219,11 +219,11 @@ fn straighten(corners: &mut Vec<DVec3>, normal: DVec3) {
 fn merge_short_edges(
     domain: &Domain,
     gap: f64,
-    fractures: &mut [Fracture],
+    fractures: &mut [NetworkFracture],
     index: usize,
     lines: &[Line],
 ) -> bool {
-    let tolerance = tolerance(domain);
+    let tolerance = domain.tolerance();
     let mut has_changed = false;
     loop {
         let polygon = &fractures[index].polygon;
@@ -281,71 +281,20 @@ fn without(polygon: &Polygon, corner: usize) -> Option<(Polygon, f64)> {
 mod tests {
     use super::*;
     use crate::intersections::intersection;
+    use crate::samples::{DOMAIN, FLOOR, SIZES, fracture, wall};
 
-    const DOMAIN: Domain = Domain {
-        low: DVec3::ZERO,
-        high: DVec3::splat(10.0),
-    };
-
-    fn sizes() -> Sizes {
-        Sizes {
-            h: 1.0,
-            h_fracture: 1.0,
-            h_intersection: 1.0,
-            growth: 0.5,
-            small: 0.2,
-            small_angle: 10.0,
-            mend: true,
-        }
-    }
-
-    fn fracture(name: &str, corners: &[[f64; 3]]) -> Fracture {
-        let corners: Vec<DVec3> = corners.iter().map(|&corner| corner.into()).collect();
-        let polygon = Polygon::through(&corners).expect("a polygon");
-        Fracture {
-            name: name.into(),
-            set: String::new(),
-            place: String::new(),
-            area_given: polygon.area(),
-            polygon,
-            changes: Vec::new(),
-        }
-    }
-
-    fn floor() -> Fracture {
-        fracture(
-            "floor",
-            &[
-                [2.0, 2.0, 5.0],
-                [8.0, 2.0, 5.0],
-                [8.0, 8.0, 5.0],
-                [2.0, 8.0, 5.0],
-            ],
-        )
-    }
-
-    /// A wall from `low` to 7 m.
-    fn wall(low: f64) -> Fracture {
-        fracture(
-            "wall",
-            &[
-                [5.0, 3.0, low],
-                [5.0, 6.0, low],
-                [5.0, 6.0, 7.0],
-                [5.0, 3.0, 7.0],
-            ],
-        )
-    }
-
-    fn treated(mut fractures: Vec<Fracture>) -> Vec<Fracture> {
-        treat(&DOMAIN, &sizes(), &mut fractures);
+    fn snapped(mut fractures: Vec<NetworkFracture>) -> Vec<NetworkFracture> {
+        snap(&DOMAIN, &SIZES, &mut fractures);
         fractures
     }
 
     #[test]
-    fn an_end_that_falls_short_or_pokes_through_moves_onto_the_other() {
+    fn an_end_that_falls_short_or_goes_beyond_moves_onto_the_other() {
         for low in [5.15, 4.85] {
-            let fractures = treated(vec![floor(), wall(low)]);
+            let fractures = snapped(vec![
+                fracture("floor", &FLOOR),
+                fracture("wall", &wall(low)),
+            ]);
             let wall = &fractures[1];
             assert!((wall.polygon.area() - 6.0).abs() < 1e-12, "{low}");
             assert_eq!(wall.changes.len(), 2, "{:?}", wall.changes);
@@ -364,8 +313,8 @@ mod tests {
     #[test]
     fn ends_farther_than_the_gap_stay() {
         for low in [5.25, 4.75] {
-            let before = vec![floor(), wall(low)];
-            assert_eq!(treated(before.clone()), before);
+            let before = vec![fracture("floor", &FLOOR), fracture("wall", &wall(low))];
+            assert_eq!(snapped(before.clone()), before);
         }
     }
 
@@ -377,7 +326,7 @@ mod tests {
             [3.0, 6.0, 4.0],
             [0.1, 6.0, 4.0],
         ];
-        let fractures = treated(vec![fracture("near", &near)]);
+        let fractures = snapped(vec![fracture("near", &near)]);
         assert!((fractures[0].polygon.area() - 9.0).abs() < 1e-12);
         assert!(fractures[0].changes[0].contains("the face `left`"));
     }
@@ -393,7 +342,11 @@ mod tests {
                 [4.0, 2.9, 8.0],
             ],
         );
-        let fractures = treated(vec![floor(), other, wall(5.1)]);
+        let fractures = snapped(vec![
+            fracture("floor", &FLOOR),
+            other,
+            fracture("wall", &wall(5.1)),
+        ]);
         let corners = fractures[2].polygon.corners();
         assert!(
             corners
@@ -413,7 +366,7 @@ mod tests {
             [5.0, 6.0, 7.0],
             [5.0, 3.0, 7.0],
         ];
-        let fractures = treated(vec![floor(), fracture("blunt", &blunt)]);
+        let fractures = snapped(vec![fracture("floor", &FLOOR), fracture("blunt", &blunt)]);
         let lowest = fractures[1]
             .polygon
             .corners()
@@ -423,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn mended_corners_stay_in_their_plane_and_in_the_domain() {
+    fn snapped_corners_stay_in_their_plane_and_in_the_domain() {
         // The roof meets the wall's plane beyond the face `front`, within reach of the wall's
         // corner.
         let roof = fracture(
@@ -444,7 +397,7 @@ mod tests {
                 [5.0, 0.01, 7.0],
             ],
         );
-        for fracture in treated(vec![roof, wall]) {
+        for fracture in snapped(vec![roof, wall]) {
             let polygon = &fracture.polygon;
             for &corner in polygon.corners() {
                 assert!(polygon.height(corner).abs() < 1e-12, "{fracture:?}");
@@ -466,7 +419,7 @@ mod tests {
             [2.9, 6.0, 4.0],
             [0.0, 6.0, 4.0],
         ];
-        let fractures = treated(vec![fracture("cut", &cut)]);
+        let fractures = snapped(vec![fracture("cut", &cut)]);
         let polygon = &fractures[0].polygon;
         assert_eq!(polygon.corners().len(), 4);
         let at_face = polygon
