@@ -3,7 +3,7 @@
 use glam::DVec3;
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
-    Bookmark, Discretisation, FacetResult, LinearMethod, Load, Newton, NewtonSettings, Problem,
+    Discretisation, FacetResult, LinearMethod, Load, Newton, NewtonSettings, Problem, RestartState,
     Solution, State, Support, System, solution,
 };
 use lie_core::Friction;
@@ -284,9 +284,10 @@ fn interrupt(
     let end = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes");
     for start in starts {
         let mut newton = prepared();
-        let bookmark: Bookmark<'_> = postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
+        let bookmark: RestartState<'_> =
+            postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
         assert!(bookmark.fits(&system));
-        let mut state = newton.turn_to(&system, bookmark).expect("prepared");
+        let mut state = newton.restore(&system, bookmark).expect("prepared");
         for factor in &factors[start..] {
             step(&mut newton, &mut state, *factor);
         }

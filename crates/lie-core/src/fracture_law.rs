@@ -43,7 +43,7 @@ pub struct Response {
 
 /// How much of the shear stiffness an open fracture keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Hold {
+pub(crate) struct ShearRetention {
     /// `g`, from 1 to 0.
     pub(crate) share: f64,
     /// `dg/dw_n` (1/m).
@@ -52,7 +52,7 @@ pub(crate) struct Hold {
     pub(crate) curvature: f64,
 }
 
-impl Hold {
+impl ShearRetention {
     const WHOLE: Self = Self {
         share: 1.0,
         slope: 0.0,
@@ -110,7 +110,7 @@ impl FractureLaw {
             separation,
             traction: across.traction,
         };
-        let walls = self.held(balance, slip, self.shear_stiffness);
+        let walls = self.elastic_state(balance, slip, self.shear_stiffness);
         let shear = hold.share * self.shear_stiffness;
         let energy = 0.5 * self.shear_stiffness * slip.length_squared();
         let coupling = hold.slope * self.shear_stiffness * slip;
@@ -131,12 +131,12 @@ impl FractureLaw {
     /// would make the law jump, and to drop it without a word to the normal traction would make it
     /// give or take energy over a cycle of loads. So the stiffness fades over one aperture, and the
     /// energy that the slip loses by it pushes the walls apart.
-    pub(crate) fn hold(&self, separation: Separation) -> Hold {
+    pub(crate) fn hold(&self, separation: Separation) -> ShearRetention {
         let lets_go = self.closure.tension == Tension::CutOff && self.friction.is_none();
         if lets_go && self.closure.normal_stiffness > 0.0 {
-            Hold::fading(self.closure.gap(separation), self.closure.aperture)
+            ShearRetention::fading(self.closure.gap(separation), self.closure.aperture)
         } else {
-            Hold::WHOLE
+            ShearRetention::WHOLE
         }
     }
 

@@ -30,11 +30,11 @@ mod element;
 pub mod enrichment;
 mod facet;
 mod fracture_law;
+mod joint_state;
 pub mod kernel;
 mod quadrature;
 mod recovery;
 mod rock;
-mod walls;
 
 pub use basis::Basis;
 pub use bezier::{bezier_function, control_value};
@@ -42,6 +42,6 @@ pub use closure::{Closure, ClosureKind, NormalBalance, NormalResponse, Separatio
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};
 pub use fracture_law::{FractureLaw, Friction, Response};
+pub use joint_state::{JointHistory, JointState, RockStiffness, Tangent, TrialState};
 pub use recovery::{FinePoint, RecoveryRule, recovery_rule};
 pub use rock::{Rock, SymmetricStress};
-pub use walls::{Landing, Memory, Springs, Tangent, Walls};

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use lie_core::{
-    Closure, ClosureKind, FractureLaw, Friction, Landing, Memory, Springs, Tension, Walls,
+    Closure, ClosureKind, FractureLaw, Friction, JointHistory, JointState, RockStiffness, Tension,
+    TrialState,
 };
 
 const NORMAL: DVec3 = DVec3::Z;
@@ -10,8 +11,8 @@ const NORMAL: DVec3 = DVec3::Z;
 /// A fracture whose walls are moved.
 struct Driven {
     law: FractureLaw,
-    walls: Walls,
-    memory: Memory,
+    walls: JointState,
+    memory: JointHistory,
     /// Jump at the last commit.
     jump: DVec3,
 }
@@ -20,28 +21,28 @@ impl Driven {
     fn new(law: FractureLaw) -> Self {
         Self {
             law,
-            walls: law.carrying(DVec3::ZERO, NORMAL),
-            memory: Memory::default(),
+            walls: law.under_initial_stress(DVec3::ZERO, NORMAL),
+            memory: JointHistory::default(),
             jump: DVec3::ZERO,
         }
     }
 
     /// The state at a jump, without commit: rock many times stiffer than the fracture.
-    fn at(&self, jump: DVec3) -> Walls {
+    fn at(&self, jump: DVec3) -> JointState {
         let spring = 1e4 * self.law.closure.normal_stiffness;
-        let springs = Springs {
+        let springs = RockStiffness {
             normal: spring,
             shear: spring,
         };
         let mut walls = self.walls;
         for _ in 0..20 {
-            let landing = Landing {
+            let landing = TrialState {
                 separation: self.law.closure.opened(jump.dot(NORMAL)),
                 slip: self.walls.slip + (jump - self.jump).reject_from(NORMAL),
                 normal_traction: walls.normal_traction,
                 shear: walls.shear,
             };
-            walls = self.law.balance(&landing, springs, &self.memory);
+            walls = self.law.return_map(&landing, springs, &self.memory);
         }
         walls
     }

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use kluft_io::write_atomically;
 use kluft_mesh::Defect;
-use kluft_solver::Bookmark;
+use kluft_solver::RestartState;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
@@ -61,7 +61,7 @@ pub struct Progress<'a> {
     /// Largest resident memory so far (bytes).
     pub peak_memory_bytes: u64,
     /// Where the solver stands; none after the last load step.
-    pub bookmark: Option<Bookmark<'a>>,
+    pub bookmark: Option<RestartState<'a>>,
 }
 
 /// Sum of a file's bytes.

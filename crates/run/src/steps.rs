@@ -128,7 +128,7 @@ impl Run<'_> {
             let path = self.output.path(checkpoint::NAME);
             return Err(checkpoint::other_build(&path).into());
         };
-        let state = self.stage(Stage::RestoreSolver, |_| newton.turn_to(system, bookmark));
+        let state = self.stage(Stage::RestoreSolver, |_| newton.restore(system, bookmark));
         let text = format!("after step {} of {}", self.finished.len(), steps.len());
         self.observer.note("resumed", &text);
         Ok(Prepared {

@@ -10,7 +10,9 @@
 use glam::{DMat3, DVec3};
 use kluft_mesh::cell_volume;
 use lie_core::enrichment::coefficient;
-use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Springs, Walls, facet_points};
+use lie_core::{
+    FacetQuadrature, FacetRulePoint, FractureLaw, JointState, RockStiffness, facet_points,
+};
 use rayon::prelude::*;
 
 use crate::pattern::Lists;
@@ -37,7 +39,7 @@ pub struct FacetPoint {
     /// over the height of the cells on both sides, in series.
     pub spring: f64,
     /// The walls carrying the initial stress. The law always sees the jump beyond that.
-    pub initial: Walls,
+    pub initial: JointState,
 }
 
 /// Share of a facet below which the area of a point has no direction of its own.
@@ -47,8 +49,8 @@ const SHEAR_SHARE: f64 = 0.3;
 
 impl FacetPoint {
     /// Stiffness of the rock beside it.
-    pub fn springs(&self) -> Springs {
-        Springs {
+    pub fn rock_stiffness(&self) -> RockStiffness {
+        RockStiffness {
             normal: self.spring,
             shear: SHEAR_SHARE * self.spring,
         }
@@ -397,8 +399,8 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
 
 /// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
 /// what the initial stress would need of it.
-fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> Walls {
+fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> JointState {
     let stress = problem.initial_stress;
     let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
-    law.carrying(traction, normal)
+    law.under_initial_stress(traction, normal)
 }

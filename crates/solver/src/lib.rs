@@ -44,7 +44,9 @@ pub use linear::{
 };
 pub use loads::{CaseLoads, Loads};
 pub use matrix::BlockMatrix;
-pub use newton::{Bookmark, Iteration, Linearisation, Newton, NewtonSettings, Outcome, StepRecord};
+pub use newton::{
+    Iteration, Linearisation, Newton, NewtonSettings, Outcome, RestartState, StepRecord,
+};
 pub use pattern::{Lists, Pattern};
 pub use points::Points;
 pub use problem::{

@@ -143,14 +143,14 @@ fn facet_result(
     state: &FacetPointState,
 ) -> FacetResult {
     let closure = &system.law(point).closure;
-    let aperture = state.walls.separation.aperture;
+    let aperture = state.joint.separation.aperture;
     let opening = jump.dot(point.normal);
-    let traction = state.walls.traction(point.normal);
+    let traction = state.joint.traction(point.normal);
     let below = closure.cutoff().is_some_and(|cutoff| aperture < cutoff);
-    let parted = closure.gap(state.walls.separation) > 0.0;
+    let parted = closure.gap(state.joint.separation) > 0.0;
     let kind = if below && !closure.is_linear() {
         FacetState::BelowCutoff
-    } else if state.walls.sliding && state.walls.normal_traction < 0.0 {
+    } else if state.joint.sliding && state.joint.normal_traction < 0.0 {
         FacetState::Slipping
     } else if parted || closure.normal_stiffness == 0.0 && aperture >= closure.aperture {
         FacetState::Open

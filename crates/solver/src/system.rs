@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use kluft_mesh::Defect;
-use lie_core::{FractureLaw, Landing, Memory, Response, Walls};
+use lie_core::{FractureLaw, JointHistory, JointState, Response, TrialState};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -119,11 +119,11 @@ impl Sizes {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct FacetPointState {
     /// Where the law is linearised, which is where the walls are once converged.
-    pub walls: Walls,
+    pub joint: JointState,
     /// Jump of the walls beyond that (m); rounding once converged.
-    pub mismatch: DVec3,
+    pub jump_residual: DVec3,
     /// What former steps left behind.
-    pub memory: Memory,
+    pub history: JointHistory,
 }
 
 /// The discrete problem, assembled.
@@ -197,9 +197,9 @@ impl<'a> System<'a> {
     pub fn initial_state(&self) -> State {
         let points = self.discretisation.interface.points.iter();
         let facet_points = points.map(|point| FacetPointState {
-            walls: point.initial,
-            mismatch: DVec3::ZERO,
-            memory: Memory::default(),
+            joint: point.initial,
+            jump_residual: DVec3::ZERO,
+            history: JointHistory::default(),
         });
         State {
             load: self.problem.schedule.start(),
@@ -224,20 +224,20 @@ impl<'a> System<'a> {
             let law = self.law(point);
             let seen = point.initial_jump() + jump;
             let opening = seen.dot(point.normal);
-            let aperture = state.walls.separation.aperture;
-            let landing = Landing {
+            let aperture = state.joint.separation.aperture;
+            let landing = TrialState {
                 separation: law.closure.opened(aperture - law.closure.aperture),
                 slip: seen - opening * point.normal,
-                normal_traction: state.walls.normal_traction,
-                shear: state.walls.shear,
+                normal_traction: state.joint.normal_traction,
+                shear: state.joint.shear,
             };
-            state.walls = if law.is_smooth() {
-                law.landed(&landing)
+            state.joint = if law.is_smooth() {
+                law.state_at(&landing)
             } else {
-                law.balance(&landing, point.springs(), &state.memory)
+                law.return_map(&landing, point.rock_stiffness(), &state.history)
             };
-            let beyond = opening - state.walls.separation.opening;
-            state.mismatch = beyond * point.normal + landing.slip - state.walls.slip;
+            let beyond = opening - state.joint.separation.opening;
+            state.jump_residual = beyond * point.normal + landing.slip - state.joint.slip;
         }
     }
 
@@ -251,7 +251,7 @@ impl<'a> System<'a> {
         let points = self.discretisation.interface.points.par_iter();
         points
             .zip(&state.facet_points)
-            .map(|(point, state)| state.walls.traction(point.normal))
+            .map(|(point, state)| state.joint.traction(point.normal))
             .collect()
     }
 

@@ -13,14 +13,14 @@ use crate::system::{State, System};
 /// Everything that the next load step depends on beside the system and the settings: continued from
 /// it, a run gives the same bits as one that never stopped.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Bookmark<'a> {
+pub struct RestartState<'a> {
     state: Cow<'a, State>,
     path: Cow<'a, Path>,
     subspace: Cow<'a, Option<Subspace>>,
     linear: SolverHistory,
 }
 
-impl Bookmark<'_> {
+impl RestartState<'_> {
     /// Whether it was made for a system of the same size.
     pub fn fits(&self, system: &System<'_>) -> bool {
         let unknowns = system.discretisation.points.len();
@@ -36,8 +36,8 @@ impl Bookmark<'_> {
 
 impl Newton {
     /// Marks the place after a load step that led to `state`.
-    pub fn bookmark<'a>(&'a self, state: &'a State) -> Bookmark<'a> {
-        Bookmark {
+    pub fn bookmark<'a>(&'a self, state: &'a State) -> RestartState<'a> {
+        RestartState {
             state: Cow::Borrowed(state),
             path: Cow::Borrowed(&self.path),
             subspace: Cow::Borrowed(&self.subspace),
@@ -49,10 +49,10 @@ impl Newton {
     ///
     /// # Errors
     /// If the linear solver cannot be brought to where it was.
-    pub fn turn_to(
+    pub fn restore(
         &mut self,
         system: &System<'_>,
-        bookmark: Bookmark<'_>,
+        bookmark: RestartState<'_>,
     ) -> Result<State, LinearFailure> {
         self.linear.restore(system, bookmark.linear)?;
         self.path = bookmark.path.into_owned();

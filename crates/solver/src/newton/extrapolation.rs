@@ -8,7 +8,7 @@
 use std::collections::VecDeque;
 
 use glam::DVec3;
-use lie_core::{FractureLaw, Landing};
+use lie_core::{FractureLaw, TrialState};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -143,24 +143,24 @@ fn follow(
 ) {
     let (opened, across) = (moved.dot(normal), traction.dot(normal));
     let shear = traction - across * normal;
-    let former = state.walls.separation;
-    let landed = former.moved(state.mismatch.dot(normal) + opened);
-    let landing = Landing {
+    let former = state.joint.separation;
+    let landed = former.moved(state.jump_residual.dot(normal) + opened);
+    let landing = TrialState {
         separation: if law.closure.normal_stiffness == 0.0 {
             landed
         } else {
             law.closure.balanced(0.0, across)
         },
         slip: if law.shear_stiffness == 0.0 {
-            state.walls.slip + moved - opened * normal
+            state.joint.slip + moved - opened * normal
         } else {
             shear / law.shear_stiffness
         },
         normal_traction: across,
         shear,
     };
-    state.walls = law.landed(&landing);
-    state.mismatch = landed.beyond(landing.separation) * normal;
+    state.joint = law.state_at(&landing);
+    state.jump_residual = landed.beyond(landing.separation) * normal;
 }
 
 #[cfg(test)]

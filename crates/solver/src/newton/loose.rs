@@ -53,7 +53,7 @@ fn ties(system: &System<'_>, state: &State) -> Vec<Tie> {
             let across = point.normal.dot(stiffness * point.normal);
             let trace = stiffness.x_axis.x + stiffness.y_axis.y + stiffness.z_axis.z;
             let enough = NONE * point.spring;
-            let along = !state.walls.sliding && trace - across > enough;
+            let along = !state.joint.sliding && trace - across > enough;
             (across > enough, along)
         })
         .collect();

@@ -121,7 +121,7 @@ impl Newton {
 fn is_elastic(from: &State, to: &State) -> bool {
     let pairs = from.facet_points.iter().zip(&to.facet_points);
     let unbroken = |(from, to): (&crate::FacetPointState, &crate::FacetPointState)| {
-        !to.walls.sliding && from.memory.largest_opening == to.memory.largest_opening
+        !to.joint.sliding && from.history.largest_opening == to.history.largest_opening
     };
     pairs.into_iter().all(unbroken)
 }

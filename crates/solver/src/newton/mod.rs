@@ -33,7 +33,7 @@ use extrapolation::Path;
 use subspace::{LastMove, Subspace};
 use walls::Landed;
 
-pub use bookmark::Bookmark;
+pub use bookmark::RestartState;
 pub use record::{Iteration, Linearisation, NewtonSettings, Outcome, StepRecord};
 pub(crate) use subspace::bytes as subspace_bytes;
 
@@ -407,7 +407,7 @@ fn assess(
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     record.worst_facet_point = worst;
     let apertures = state.facet_points.iter();
-    let apertures = apertures.map(|point| point.walls.separation.aperture);
+    let apertures = apertures.map(|point| point.joint.separation.aperture);
     let smallest_aperture = apertures.fold(f64::INFINITY, f64::min);
     let sizes = sizes(system, trial, &tractions).or_share(REMEMBERED, state.reached);
     trial.sizes = sizes;
@@ -426,7 +426,7 @@ fn sizes(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Sizes {
     let displacements = system.displacements(&state.unknowns, &state.load);
     // A body that does not move may still hold joints closed by its initial stress.
     let openings = state.facet_points.iter();
-    let openings = openings.map(|point| point.walls.separation.opening.abs());
+    let openings = openings.map(|point| point.joint.separation.opening.abs());
     Sizes {
         force: system.force_scale(&trial.rock_forces, tractions, &state.load),
         displacement: openings.fold(largest(&displacements), f64::max),
@@ -441,7 +441,7 @@ fn rebound(system: &System<'_>, state: &State) -> f64 {
     }
     let points = interface(system).points.iter().zip(&state.facet_points);
     points
-        .map(|(point, state)| point.spring * state.walls.separation.opening.abs())
+        .map(|(point, state)| point.spring * state.joint.separation.opening.abs())
         .fold(0.0, f64::max)
 }
 

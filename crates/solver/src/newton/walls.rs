@@ -1,7 +1,7 @@
 //! The facet points of a step: where each is linearised, and how it follows the linear solves.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FractureLaw, Landing, Separation, Springs, Tangent};
+use lie_core::{FractureLaw, RockStiffness, Separation, Tangent, TrialState};
 use rayon::prelude::*;
 
 use super::Linearisation;
@@ -29,7 +29,7 @@ pub(super) struct Landed {
 impl Landed {
     /// Stiffness of the surrounding rock as two landings tell it, `-dt/dw`; 0 where they tell
     /// nothing.
-    fn spring_to(&self, landing: &Landing) -> f64 {
+    fn spring_to(&self, landing: &TrialState) -> f64 {
         let spring = self.separation.map(|before| {
             (self.traction - landing.normal_traction) / landing.separation.beyond(before)
         });
@@ -43,7 +43,7 @@ pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: &Load)
     let jumps = interface.prescribed_change(&state.load, load);
     state.load.clone_from(load);
     for (jump, state) in jumps.into_iter().zip(&mut state.facet_points) {
-        state.mismatch += jump;
+        state.jump_residual += jump;
     }
 }
 
@@ -52,7 +52,7 @@ pub(super) fn commit(system: &System<'_>, state: &mut State) {
     let points = &system.discretisation.interface.points;
     for (point, state) in points.iter().zip(&mut state.facet_points) {
         let law = system.law(point);
-        law.commit(&mut state.walls, &mut state.memory);
+        law.commit(&mut state.joint, &mut state.history);
     }
 }
 
@@ -91,8 +91,8 @@ pub(super) fn reined(system: &System<'_>, tangents: &Tangents) -> Tangents {
 
 pub(super) fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointState) -> Tangent {
     law.tangent(
-        &state.walls,
-        &state.memory,
+        &state.joint,
+        &state.history,
         point.normal,
         RIGID * point.spring,
     )
@@ -109,7 +109,7 @@ pub(super) fn linearised_tractions(
         .zip(&state.facet_points)
         .zip(&tangents.exact)
         .map(|((point, state), tangent)| {
-            state.walls.traction(point.normal) + *tangent * state.mismatch
+            state.joint.traction(point.normal) + *tangent * state.jump_residual
         })
         .collect()
 }
@@ -144,13 +144,13 @@ pub(super) fn follow(
 }
 
 /// Where a change of the jump (m) takes a facet point on the tangent plane of its law.
-fn land(point: &FacetPoint, state: &FacetPointState, tangent: DMat3, change: DVec3) -> Landing {
-    let walls = &state.walls;
-    let beyond = state.mismatch + change;
+fn land(point: &FacetPoint, state: &FacetPointState, tangent: DMat3, change: DVec3) -> TrialState {
+    let walls = &state.joint;
+    let beyond = state.jump_residual + change;
     let opening = beyond.dot(point.normal);
     let traction = walls.traction(point.normal) + tangent * beyond;
     let across = traction.dot(point.normal);
-    Landing {
+    TrialState {
         separation: walls.separation.moved(opening),
         slip: walls.slip + beyond - opening * point.normal,
         normal_traction: across,
@@ -162,7 +162,7 @@ fn follow_point(
     law: &FractureLaw,
     linearisation: Linearisation,
     point: &FacetPoint,
-    landing: &Landing,
+    landing: &TrialState,
     state: &mut FacetPointState,
     landed: &mut Landed,
 ) -> f64 {
@@ -172,28 +172,37 @@ fn follow_point(
         traction: landing.normal_traction,
     };
     let plain = linearisation == Linearisation::Landed && law.is_smooth();
-    state.walls = if law.is_linear() || plain {
-        law.landed(landing)
+    state.joint = if law.is_linear() || plain {
+        law.state_at(landing)
     } else {
-        law.balance(landing, springs(law, point, landing, secant), &state.memory)
+        law.return_map(
+            landing,
+            springs(law, point, landing, secant),
+            &state.history,
+        )
     };
-    let walls = &state.walls;
+    let walls = &state.joint;
     let opening = landing.separation.beyond(walls.separation);
-    state.mismatch = opening * point.normal + landing.slip - walls.slip;
+    state.jump_residual = opening * point.normal + landing.slip - walls.slip;
     let traction = landing.normal_traction * point.normal + landing.shear;
     (traction - walls.traction(point.normal))
         .length()
-        .max(point.spring * state.mismatch.length())
+        .max(point.spring * state.jump_residual.length())
 }
 
 /// The secant serves where the law is smooth. Two landings on different sides of a kink tell nothing of
 /// the rock, so there it is the bound.
-fn springs(law: &FractureLaw, point: &FacetPoint, landing: &Landing, secant: f64) -> Springs {
-    let bound = point.springs();
+fn springs(
+    law: &FractureLaw,
+    point: &FacetPoint,
+    landing: &TrialState,
+    secant: f64,
+) -> RockStiffness {
+    let bound = point.rock_stiffness();
     let touching = law.closure.normal_stiffness.is_infinite();
     let parted = landing.normal_traction + bound.normal * law.closure.gap(landing.separation) > 0.0;
     let kinked = touching || (parted && !law.closure.is_smooth());
-    Springs {
+    RockStiffness {
         normal: if kinked { bound.normal } else { secant },
         ..bound
     }

@@ -1,7 +1,7 @@
 //! The walls of a fracture at one point: where they are, what they carry, and what they remember.
 //!
 //! Newton's method asks the law three things. Where it balances the rock beside the point
-//! ([`FractureLaw::balance`]): after a linear solve has put the walls at a jump `w` with a traction
+//! ([`FractureLaw::return_map`]): after a linear solve has put the walls at a jump `w` with a traction
 //! `t`, the state `w~, t~` of the law with `t~ + k w~ = t + k w`, `k` the stiffness of the rock. How
 //! the traction changes from there ([`FractureLaw::tangent`]). And, once a step has converged, what
 //! lasts ([`FractureLaw::commit`]).
@@ -19,11 +19,11 @@ use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::closure::{NormalBalance, Separation, Tension};
-use crate::fracture_law::{FractureLaw, Friction, Hold, outer};
+use crate::fracture_law::{FractureLaw, Friction, ShearRetention, outer};
 
 /// Where the walls are and what they carry.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Walls {
+pub struct JointState {
     /// How far they are apart.
     pub separation: Separation,
     /// Tangential jump (m), since they last stuck without shear.
@@ -40,7 +40,7 @@ pub struct Walls {
 
 /// What lasts of former steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Memory {
+pub struct JointHistory {
     /// Opening by dilation (m).
     pub dilation: f64,
     /// Largest opening (m), of a bond that may break.
@@ -49,7 +49,7 @@ pub struct Memory {
 
 /// Where a linear solve has put the walls, and the traction that it gave them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Landing {
+pub struct TrialState {
     /// How far they are apart.
     pub separation: Separation,
     /// Tangential jump (m), since they last stuck without shear.
@@ -62,7 +62,7 @@ pub struct Landing {
 
 /// Stiffness of the rock beside a facet point (Pa/m).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Springs {
+pub struct RockStiffness {
     /// Across.
     pub normal: f64,
     /// Along; positive if the law has friction.
@@ -78,7 +78,7 @@ pub struct Tangent {
     pub positive: DMat3,
 }
 
-impl Walls {
+impl JointState {
     /// Traction (Pa) across a facet with unit `normal`.
     pub fn traction(&self, normal: DVec3) -> DVec3 {
         self.normal_traction * normal + self.shear
@@ -89,7 +89,7 @@ impl FractureLaw {
     /// The walls carrying `traction` (Pa) as far as they can before anything has moved them: what
     /// initial stress leaves behind. Shear beyond the limit of friction starts to slide in the first
     /// step.
-    pub fn carrying(&self, traction: DVec3, normal: DVec3) -> Walls {
+    pub fn under_initial_stress(&self, traction: DVec3, normal: DVec3) -> JointState {
         let across = traction.dot(normal);
         let balance = self.closure.balanced_after(0.0, across, 0.0);
         let shear = if self.shear_stiffness > 0.0 {
@@ -97,17 +97,22 @@ impl FractureLaw {
         } else {
             DVec3::ZERO
         };
-        Walls {
+        JointState {
             separation: balance.separation,
             slip: shear / self.shear_stiffness.max(f64::MIN_POSITIVE),
             normal_traction: balance.traction,
             shear,
-            ..Walls::default()
+            ..JointState::default()
         }
     }
 
     /// The state of the law that balances the rock, see the module.
-    pub fn balance(&self, landing: &Landing, springs: Springs, memory: &Memory) -> Walls {
+    pub fn return_map(
+        &self,
+        landing: &TrialState,
+        springs: RockStiffness,
+        memory: &JointHistory,
+    ) -> JointState {
         match &self.friction {
             Some(friction) => self.balance_friction(friction, landing, springs, memory),
             None => self.balance_elastic(landing, springs, memory),
@@ -115,15 +120,20 @@ impl FractureLaw {
     }
 
     /// The state of the law where a linear solve has put the walls, of a law that is smooth.
-    pub fn landed(&self, landing: &Landing) -> Walls {
+    pub fn state_at(&self, landing: &TrialState) -> JointState {
         let across = NormalBalance {
             separation: landing.separation,
             traction: self.closure.at(landing.separation).traction,
         };
-        self.held(across, landing.slip, self.shear_stiffness)
+        self.elastic_state(across, landing.slip, self.shear_stiffness)
     }
 
-    fn balance_elastic(&self, landing: &Landing, springs: Springs, memory: &Memory) -> Walls {
+    fn balance_elastic(
+        &self,
+        landing: &TrialState,
+        springs: RockStiffness,
+        memory: &JointHistory,
+    ) -> JointState {
         let load = landing.normal_traction + springs.normal * landing.separation.opening;
         let slip = landing.slip;
         let stiffness = self.shear_stiffness * (1.0 - self.damage(memory));
@@ -138,17 +148,22 @@ impl FractureLaw {
             let excess = |way: f64| springs.normal * way + thrust(from.moved(way));
             balance.separation = from.moved(root(excess, reach));
         }
-        self.held(balance, slip, stiffness)
+        self.elastic_state(balance, slip, stiffness)
     }
 
     /// Walls without friction: `across` is where they are and what the closure law carries there.
-    pub(crate) fn held(&self, across: NormalBalance, slip: DVec3, stiffness: f64) -> Walls {
-        Walls {
+    pub(crate) fn elastic_state(
+        &self,
+        across: NormalBalance,
+        slip: DVec3,
+        stiffness: f64,
+    ) -> JointState {
+        JointState {
             separation: across.separation,
             slip,
             normal_traction: across.traction + self.thrust(across.separation, slip, stiffness),
             shear: self.hold(across.separation).share * stiffness * slip,
-            ..Walls::default()
+            ..JointState::default()
         }
     }
 
@@ -158,7 +173,7 @@ impl FractureLaw {
     }
 
     /// Share of a cohesive bond that former steps broke.
-    fn damage(&self, memory: &Memory) -> f64 {
+    fn damage(&self, memory: &JointHistory) -> f64 {
         let stiffness = self.closure.normal_stiffness;
         self.closure
             .tension
@@ -168,10 +183,10 @@ impl FractureLaw {
     fn balance_friction(
         &self,
         friction: &Friction,
-        landing: &Landing,
-        springs: Springs,
-        memory: &Memory,
-    ) -> Walls {
+        landing: &TrialState,
+        springs: RockStiffness,
+        memory: &JointHistory,
+    ) -> JointState {
         let (k, compliance) = (springs.shear, self.shear_stiffness.recip());
         let pull = landing.shear + k * landing.slip;
         let size = pull.length();
@@ -184,7 +199,7 @@ impl FractureLaw {
         let (missing, stuck) = excess(0.0);
         if missing >= 0.0 {
             let slip = pull / (self.shear_stiffness + k);
-            return Walls {
+            return JointState {
                 // The stiffness may be infinite.
                 slip: if compliance > 0.0 { slip } else { DVec3::ZERO },
                 shear: pull / (1.0 + k * compliance),
@@ -199,7 +214,7 @@ impl FractureLaw {
         let walls = excess(lambda).1;
         let limit = self.limit(friction, &walls, memory);
         let direction = pull / size;
-        Walls {
+        JointState {
             slip: (limit * compliance + lambda) * direction,
             shear: limit * direction,
             sliding: true,
@@ -211,46 +226,46 @@ impl FractureLaw {
     fn across(
         &self,
         friction: &Friction,
-        landing: &Landing,
-        springs: Springs,
-        memory: &Memory,
+        landing: &TrialState,
+        springs: RockStiffness,
+        memory: &JointHistory,
         plastic_slip: f64,
-    ) -> Walls {
+    ) -> JointState {
         let dilation = memory.dilation + friction.dilation * plastic_slip;
         let load =
             landing.normal_traction + springs.normal * (landing.separation.opening - dilation);
         let balance = self
             .closure
             .balanced_after(springs.normal, load, memory.largest_opening);
-        Walls {
+        JointState {
             separation: balance.separation.moved(dilation),
             normal_traction: balance.traction,
             plastic_slip,
-            ..Walls::default()
+            ..JointState::default()
         }
     }
 
     /// Separation as the closure law sees it: without what dilation opened.
-    fn undilated(&self, walls: &Walls, memory: &Memory) -> Separation {
+    fn undilated(&self, walls: &JointState, memory: &JointHistory) -> Separation {
         let dilation = self.friction.map_or(0.0, |friction| friction.dilation);
         let opened = memory.dilation + dilation * walls.plastic_slip;
         walls.separation.moved(-opened)
     }
 
     /// Largest shear traction (Pa).
-    fn limit(&self, friction: &Friction, walls: &Walls, memory: &Memory) -> f64 {
+    fn limit(&self, friction: &Friction, walls: &JointState, memory: &JointHistory) -> f64 {
         let (bond, _) = self.bond(walls, memory);
         (friction.cohesion * bond - friction.coefficient * walls.normal_traction).max(0.0)
     }
 
     /// Share of the cohesion that is left, and how it changes with the opening (1/m).
-    fn bond(&self, walls: &Walls, memory: &Memory) -> (f64, f64) {
+    fn bond(&self, walls: &JointState, memory: &JointHistory) -> (f64, f64) {
         match self.closure.tension {
             Tension::Elastic => (1.0, 0.0),
             Tension::Cohesive { .. } => (1.0 - self.damage(memory), 0.0),
             Tension::CutOff => {
                 let gap = self.closure.gap(self.undilated(walls, memory));
-                let hold = Hold::fading(gap, self.closure.aperture);
+                let hold = ShearRetention::fading(gap, self.closure.aperture);
                 (hold.share, hold.slope)
             }
         }
@@ -258,7 +273,13 @@ impl FractureLaw {
 
     /// How the traction changes around a state of the law. `rigid` (Pa/m) takes the place of infinite
     /// stiffness: it changes how fast an iteration converges, not to what.
-    pub fn tangent(&self, walls: &Walls, memory: &Memory, normal: DVec3, rigid: f64) -> Tangent {
+    pub fn tangent(
+        &self,
+        walls: &JointState,
+        memory: &JointHistory,
+        normal: DVec3,
+        rigid: f64,
+    ) -> Tangent {
         match &self.friction {
             Some(friction) if walls.sliding => {
                 self.sliding_tangent(friction, walls, memory, normal, rigid)
@@ -267,7 +288,13 @@ impl FractureLaw {
         }
     }
 
-    fn stuck_tangent(&self, walls: &Walls, memory: &Memory, normal: DVec3, rigid: f64) -> Tangent {
+    fn stuck_tangent(
+        &self,
+        walls: &JointState,
+        memory: &JointHistory,
+        normal: DVec3,
+        rigid: f64,
+    ) -> Tangent {
         let across = self.slope(walls, memory, rigid);
         let hold = self.hold(walls.separation);
         let whole = if self.friction.is_some() {
@@ -288,7 +315,7 @@ impl FractureLaw {
     }
 
     /// Slope of the closure law (Pa/m).
-    fn slope(&self, walls: &Walls, memory: &Memory, rigid: f64) -> f64 {
+    fn slope(&self, walls: &JointState, memory: &JointHistory, rigid: f64) -> f64 {
         let separation = self.undilated(walls, memory);
         let touching = self.closure.normal_stiffness.is_infinite();
         if touching {
@@ -305,8 +332,8 @@ impl FractureLaw {
     fn sliding_tangent(
         &self,
         friction: &Friction,
-        walls: &Walls,
-        memory: &Memory,
+        walls: &JointState,
+        memory: &JointHistory,
         normal: DVec3,
         rigid: f64,
     ) -> Tangent {
@@ -344,7 +371,7 @@ impl FractureLaw {
     }
 
     /// Makes a converged state the one that the next step starts from.
-    pub fn commit(&self, walls: &mut Walls, memory: &mut Memory) {
+    pub fn commit(&self, walls: &mut JointState, memory: &mut JointHistory) {
         if matches!(self.closure.tension, Tension::Cohesive { .. }) {
             let opening = walls.separation.opening - memory.dilation;
             memory.largest_opening = memory.largest_opening.max(opening);
