@@ -44,7 +44,7 @@ fn run(system: &System<'_>, method: Option<LinearMethod>, steps: usize) -> (usiz
 
 /// One step for each of `count` stiffnesses between `K_n0 / 2` and `2 K_n0`, with one set-up.
 fn sweep(system: &mut System<'_>, method: Option<LinearMethod>, count: usize) -> (usize, usize) {
-    let laws: Vec<FractureLaw> = system.problem.fractures.iter().map(|f| f.law).collect();
+    let laws: Vec<FractureLaw> = system.problem().fractures.iter().map(|f| f.law).collect();
     let mut newton = Newton::new(system, settings(method)).expect("a plan");
     let mut counts = (0, 0);
     let mut state = system.initial_state();
@@ -93,12 +93,12 @@ fn main() {
         false => block::problem(cubes, &block::TWO_PLANES),
     };
     let discretisation = Discretisation::of(&problem).expect("supported");
-    let fractured = discretisation.points.jump_count() as f64;
+    let fractured = discretisation.points().jump_count() as f64;
     println!(
         "{} unknowns, {} of them jumps, {:.1} % of the nodes on fractures",
         discretisation.unknown_count(),
-        3 * discretisation.points.jump_count(),
-        100.0 * fractured / discretisation.points.node_count() as f64,
+        3 * discretisation.points().jump_count(),
+        100.0 * fractured / discretisation.points().node_count() as f64,
     );
     let mut system = System::assemble(&problem, discretisation);
     let closing: Vec<FractureLaw> = problem.fractures.iter().map(|f| f.law).collect();

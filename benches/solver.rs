@@ -43,7 +43,7 @@ fn stages(criterion: &mut Criterion) {
         });
         let system = System::assemble(&problem, discretisation);
         group.bench_function(BenchmarkId::new("order and analyse", cubes), |bencher| {
-            let unknowns = Unknowns::from(&system.discretisation);
+            let unknowns = Unknowns::from(system.discretisation());
             let workload = Workload::of(&problem);
             bencher.iter(|| Plan::of(unknowns, workload, Some(LinearMethod::Direct), usize::MAX));
         });
@@ -113,10 +113,10 @@ fn kernels(criterion: &mut Criterion) {
     let problem = problem(KERNEL_CUBES, &THREE_PLANES);
     let discretisation = Discretisation::of(&problem).expect("supported");
     let system = System::assemble(&problem, discretisation.clone());
-    let pattern = &system.discretisation.pattern;
-    let vector = vec![DVec3::ONE; system.discretisation.points.len()];
+    let pattern = system.discretisation().pattern();
+    let vector = vec![DVec3::ONE; system.discretisation().points().len()];
     let mut product = vector.clone();
-    let values = size_of_val(&*system.rock.blocks) + size_of_val(&*pattern.columns);
+    let values = size_of_val(system.rock_rows().blocks) + size_of_val(&*pattern.blocks.columns);
     let mesh = size_of_val(&*problem.mesh.cells.nodes) + size_of_val(&*problem.mesh.nodes);
     let rate = bandwidth();
     let alone = |bytes: usize| 1e-6 * bytes as f64 / rate;
@@ -124,7 +124,7 @@ fn kernels(criterion: &mut Criterion) {
         "kernels: {} cells, {} blocks, {rate:.1} GB/s on {} threads; the bytes alone take {:.1} ms \
          (assemble) and {:.1} ms (product); written to fresh memory and read back {:.1} ms (assemble)",
         problem.mesh.cells.len(),
-        pattern.columns.len(),
+        pattern.blocks.columns.len(),
         rayon::current_num_threads(),
         alone(values + mesh),
         alone(values + 2 * size_of_val(&*vector)),
@@ -133,7 +133,7 @@ fn kernels(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("kernels");
     group.sample_size(10);
     group.bench_function("pattern", |bencher| {
-        bencher.iter(|| Pattern::of(&problem.mesh, &system.discretisation.points));
+        bencher.iter(|| Pattern::of(&problem.mesh, system.discretisation().points()));
     });
     group.bench_function("assemble", |bencher| {
         bencher.iter_batched(

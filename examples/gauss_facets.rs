@@ -58,10 +58,10 @@ fn solve(problem: &Problem, system: &System<'_>) -> Result<Solution, Box<dyn Err
 
 /// Centre (m) and mean aperture (m) of every facet.
 fn facets(system: &System<'_>, solution: &Solution) -> Vec<(DVec3, f64)> {
-    let mesh = &system.problem.mesh;
+    let mesh = &system.problem().mesh;
     let facets = &mesh.facets.elements;
     let mut sums = vec![(0.0, 0.0); facets.len()];
-    let points = &system.discretisation.interface.points;
+    let points = system.discretisation().interface().points();
     for (point, result) in points.iter().zip(&solution.facet_points) {
         let (area, volume) = &mut sums[point.facet as usize];
         *area += point.area;

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use kluft_io::load_msh;
 use kluft_mesh::{Defect, Faces, Mesh, SurfaceRole};
-use kluft_solver::Points;
+use kluft_solver::SectorNodes;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -31,7 +31,7 @@ fn read(file: &Path) -> Result<(), Vec<Defect>> {
     let roles: Vec<SurfaceRole> = draft.groups.iter().zip(inner).map(role).collect();
     let mesh = Mesh::build_on(draft, faces, &roles)?;
     let built = start.elapsed();
-    let points = Points::of(&mesh);
+    let points = SectorNodes::of(&mesh);
     let whole = start.elapsed();
     println!(
         "parse {:.3} pair {:.3} check {:.3} number {:.3} total {:.3} cells {} points {}",

@@ -121,8 +121,10 @@ impl Outcome {
     pub fn mean_slip(&self) -> f64 {
         let problem = self.problem();
         let solution = scenes::solve(&problem);
-        let interface = Discretisation::of(&problem).expect("supported").interface;
-        let points = || interface.points.iter().zip(&solution.facet_points);
+        let interface = Discretisation::of(&problem)
+            .expect("supported")
+            .into_interface();
+        let points = || interface.points().iter().zip(&solution.facet_points);
         let slip: f64 = points()
             .map(|(point, found)| point.area * found.slip.length())
             .sum();
@@ -133,7 +135,9 @@ impl Outcome {
     pub fn facet_nodes(&self) -> Vec<(DVec3, FacetResult)> {
         let problem = self.problem();
         let solution = scenes::solve(&problem);
-        let interface = Discretisation::of(&problem).expect("supported").interface;
+        let interface = Discretisation::of(&problem)
+            .expect("supported")
+            .into_interface();
         let results = solution.facet_nodes(&problem, &interface);
         let nodes = problem.mesh.facets.elements.nodes.iter();
         let places = nodes.map(|&node| problem.mesh.nodes[node as usize]);

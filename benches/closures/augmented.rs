@@ -45,9 +45,9 @@ struct Uzawa<'a> {
 impl Uzawa<'_> {
     /// Openings (m), and `sigma = min(0, lambda + r w_n)` (Pa).
     fn walls(&self) -> (Vec<f64>, Vec<f64>) {
-        let interface = &self.system.discretisation.interface;
+        let interface = self.system.discretisation().interface();
         let jumps = interface.jumps(&self.unknowns, &self.load);
-        let openings = jumps.iter().zip(&interface.points);
+        let openings = jumps.iter().zip(interface.points());
         let openings: Vec<f64> = openings.map(|(w, point)| w.dot(point.normal)).collect();
         let pairs = openings.iter().zip(&self.multipliers);
         let tractions = pairs.map(|(w, lambda)| (lambda + self.stiffness * w).min(0.0));
@@ -56,9 +56,9 @@ impl Uzawa<'_> {
 
     /// Tractions (Pa) and tangents (Pa/m) of the facet points, and which of them touch.
     fn responses(&self) -> (Vec<DVec3>, Vec<DMat3>, Vec<bool>) {
-        let interface = &self.system.discretisation.interface;
+        let interface = self.system.discretisation().interface();
         let jumps = interface.jumps(&self.unknowns, &self.load);
-        let each = interface.points.iter().enumerate().map(|(index, point)| {
+        let each = interface.points().iter().enumerate().map(|(index, point)| {
             let (n, w) = (point.normal, jumps[index]);
             let across = DMat3::from_cols(n * n.x, n * n.y, n * n.z);
             let shear = self.system.law(point).shear_stiffness;
@@ -90,12 +90,18 @@ impl Uzawa<'_> {
                 return Some(());
             }
             if self.active.as_ref() != Some(&active) {
-                linear.update(self.system, &tangents).ok()?;
+                let stiffness = self
+                    .system
+                    .discretisation()
+                    .interface()
+                    .stiffness(&tangents);
+                linear.update(self.system.fixed_part(), stiffness).ok()?;
                 self.factorisations += 1;
                 self.active = Some(active);
             }
             let tolerance = 0.1 * self.settings.force;
-            let solution = linear.solve(self.system, &residual, tolerance).ok()?;
+            let fixed = self.system.fixed_part();
+            let solution = linear.solve(fixed, &residual, tolerance).ok()?;
             let moves = self.unknowns.iter_mut().zip(&solution.unknowns);
             moves.for_each(|(unknown, step)| *unknown += *step);
             self.newton += 1;
@@ -112,8 +118,10 @@ pub fn augmented(
     stiffness: f64,
     settings: NewtonSettings,
 ) -> Option<Augmented> {
-    let unknowns = Unknowns::from(&system.discretisation);
-    let workload = Workload::of(system.problem);
+    let unknowns = Unknowns::from(system.discretisation());
+    let workload = Workload::of_system(system);
+    let points = system.discretisation().points().len();
+    let workload = workload.with_extra_memory(&system.problem().mesh, points);
     let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX).ok()?;
     let memory = plan.prediction().memory_bytes;
     let mut linear = plan.prepare(system).ok()?;
@@ -122,8 +130,8 @@ pub fn augmented(
         load: Load::proportional(1.0),
         settings,
         stiffness,
-        unknowns: vec![DVec3::ZERO; system.discretisation.points.len()],
-        multipliers: vec![0.0; system.discretisation.interface.points.len()],
+        unknowns: vec![DVec3::ZERO; system.discretisation().points().len()],
+        multipliers: vec![0.0; system.discretisation().interface().points().len()],
         active: None,
         newton: 0,
         factorisations: 0,

@@ -94,9 +94,7 @@ fn with_normals_of_the_mesh(terms: &Terms<'_>) -> (f64, f64) {
     let normals: Vec<DVec3> = normals.iter().map(|area| area.normalize()).collect();
     let apart = normals.iter().map(|normal| normal.distance(normals[0]));
     let apart = apart.fold(0.0, f64::max);
-    for point in &mut discretisation.interface.points {
-        point.normal = normals[point.facet as usize];
-    }
+    discretisation.set_normals(|point| normals[point.facet as usize]);
     let system = System::assemble(&problem, discretisation);
     let solved = solve_assembled(&system, Treatment::Contact, 0.0, LinearMethod::Direct);
     let points = solved.expect("contact converges").points;

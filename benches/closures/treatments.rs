@@ -127,7 +127,7 @@ pub fn solve_assembled(
     stiffness: f64,
     linear: LinearMethod,
 ) -> Option<Solved> {
-    let (problem, settings) = (system.problem, settings(linear));
+    let (problem, settings) = (system.problem(), settings(linear));
     let start = Instant::now();
     let mut solved = if treatment == Treatment::Augmented {
         by_multipliers(problem, system, stiffness, settings)?
@@ -145,7 +145,9 @@ fn points(
     of: impl Fn(usize) -> (f64, f64, f64),
 ) -> Vec<Point> {
     let nodes = &problem.mesh.facets.elements.nodes;
-    let each = nodes.iter().zip(&system.discretisation.interface.points);
+    let each = nodes
+        .iter()
+        .zip(system.discretisation().interface().points());
     each.enumerate()
         .map(|(index, (&node, point))| {
             let (opening, traction, aperture) = of(index);
@@ -161,8 +163,9 @@ fn points(
 }
 
 fn by_law(problem: &Problem, system: &System<'_>, settings: NewtonSettings) -> Option<Solved> {
-    let unknowns = Unknowns::from(&system.discretisation);
-    let workload = Workload::of(problem);
+    let unknowns = Unknowns::from(system.discretisation());
+    let count = system.discretisation().points().len();
+    let workload = Workload::of(problem).with_extra_memory(&problem.mesh, count);
     let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX).ok()?;
     let memory = plan.prediction().memory_bytes;
     let mut newton = Newton::planned(system, settings, plan).ok()?;
@@ -172,7 +175,7 @@ fn by_law(problem: &Problem, system: &System<'_>, settings: NewtonSettings) -> O
         return None;
     }
     let solution = solution(system, &state);
-    let results = solution.facet_nodes(problem, &system.discretisation.interface);
+    let results = solution.facet_nodes(problem, system.discretisation().interface());
     Some(Solved {
         points: points(problem, system, |index| {
             let result = &results[index];
@@ -182,7 +185,7 @@ fn by_law(problem: &Problem, system: &System<'_>, settings: NewtonSettings) -> O
         outer: 1,
         factorisations: record.iterations.len(),
         linear: record.linear_iterations(),
-        unknowns: system.discretisation.unknown_count(),
+        unknowns: system.discretisation().unknown_count(),
         seconds: 0.0,
         memory,
     })
@@ -204,7 +207,7 @@ fn by_multipliers(
         outer: found.outer,
         factorisations: found.factorisations,
         linear: 0,
-        unknowns: system.discretisation.unknown_count(),
+        unknowns: system.discretisation().unknown_count(),
         seconds: 0.0,
         memory: found.memory,
     })

@@ -1,7 +1,7 @@
 //! Unknowns, and what solving for them will take.
 
 use kluft_mesh::Mesh;
-use kluft_solver::{Discretisation, Pattern, Plan, Points, Prediction, Unknowns, Workload};
+use kluft_solver::{Discretisation, Pattern, Plan, Prediction, SectorNodes, Unknowns, Workload};
 
 use super::findings::{Inspection, SectorCounts, SolverFinding, UnknownFindings};
 
@@ -13,18 +13,18 @@ pub fn predict(
     inspection: &mut Inspection,
 ) {
     let own = discretisation.is_none().then(|| {
-        let points = Points::of(mesh);
+        let points = SectorNodes::of(mesh);
         let pattern = Pattern::of(mesh, &points);
         (points, pattern)
     });
     let (points, pattern) = match (&own, discretisation) {
         (Some((points, pattern)), _) => (points, pattern),
-        (None, Some(found)) => (&found.points, &found.pattern),
+        (None, Some(found)) => (found.points(), found.pattern()),
         (None, None) => return,
     };
     inspection.unknowns = Some(unknowns(mesh, points, discretisation));
     let jumps: Vec<u32> = match discretisation {
-        Some(found) => found.interface.unknowns.clone(),
+        Some(found) => found.interface().unknowns().to_vec(),
         None => (0..points.len())
             .filter(|&unknown| points.sector(unknown).0 > 0)
             .map(|unknown| unknown as u32)
@@ -35,6 +35,7 @@ pub fn predict(
         points,
         jumps: &jumps,
     };
+    let workload = workload.with_extra_memory(mesh, points.len());
     match Plan::of(outline, workload, None, usize::MAX) {
         Ok(plan) => inspection
             .solvers
@@ -60,7 +61,7 @@ fn finding(plan: &Plan, prediction: &Prediction) -> SolverFinding {
 
 fn unknowns(
     mesh: &Mesh,
-    points: &Points,
+    points: &SectorNodes,
     discretisation: Option<&Discretisation>,
 ) -> UnknownFindings {
     let mut nodes = [0; 9];

@@ -117,7 +117,7 @@ fn weigh(problem: &Problem, survey: &Survey, inspection: &mut Inspection) -> Vec
     walls::judge(problem, survey, inspection);
     let (discretisation, defects) = match Discretisation::of(problem) {
         Ok(discretisation) => (Some(discretisation), Vec::new()),
-        Err(defects) => (None, defects),
+        Err(defects) => (None, in_terms_of_scene(defects)),
     };
     let workload = Workload::of(problem);
     cost::predict(&problem.mesh, discretisation.as_ref(), workload, inspection);

@@ -24,7 +24,7 @@ fn vertical_joint() -> Problem {
 
 /// Displacements of all points of the nodes that satisfy `on`.
 fn at_nodes(problem: &Problem, displacements: &[DVec3], on: impl Fn(DVec3) -> bool) -> Vec<DVec3> {
-    let points = kluft_solver::Points::of(&problem.mesh);
+    let points = kluft_solver::SectorNodes::of(&problem.mesh);
     (0..points.len())
         .filter(|&point| on(problem.mesh.nodes[points.node[point] as usize]))
         .map(|point| displacements[point])
@@ -162,8 +162,10 @@ fn gravity_rests_on_the_joint() {
     problem.rocks[0].density = 2700.0;
     problem.gravity = DVec3::new(0.0, 0.0, -9.81);
     let solution = scenes::solve(&problem);
-    let interface = Discretisation::of(&problem).expect("supported").interface;
-    let force: f64 = std::iter::zip(&interface.points, &solution.facet_points)
+    let interface = Discretisation::of(&problem)
+        .expect("supported")
+        .into_interface();
+    let force: f64 = std::iter::zip(interface.points(), &solution.facet_points)
         .map(|(point, result)| point.area * result.normal_traction)
         .sum();
     assert!((force / (-2700.0 * 9.81) - 1.0).abs() < 1e-9, "{force}");

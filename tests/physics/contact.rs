@@ -166,11 +166,11 @@ fn a_block_rests_on_its_weight_under_any_lift() {
             .retain(|condition| condition.boundary != top);
         scenes::support(&mut problem, "top", lift);
         let discretisation = Discretisation::of(&problem).expect("supported");
-        let interface = discretisation.interface;
+        let interface = discretisation.interface();
         for (record, solution) in walk(&problem, &[0.5, 1.0, 0.1]) {
             let count = record.iterations.len();
             assert!(record.converged() && count <= 12, "1e{exponent}: {count}");
-            let points = interface.points.iter().zip(&solution.facet_points);
+            let points = interface.points().iter().zip(&solution.facet_points);
             let lower = points.filter(|(point, _)| point.position.z < 1.5);
             let carried: f64 = lower
                 .map(|(point, found)| point.area * found.normal_traction)

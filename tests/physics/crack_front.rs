@@ -55,16 +55,18 @@ pub fn problem(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> Pro
 pub fn tractions(shape: Shape, quadrature: FacetQuadrature, stiffness: f64) -> Vec<(DVec3, f64)> {
     let problem = problem(shape, quadrature, stiffness);
     let solution = scenes::solve(&problem);
-    let interface = Discretisation::of(&problem).expect("supported").interface;
+    let interface = Discretisation::of(&problem)
+        .expect("supported")
+        .into_interface();
     let nodes = &problem.mesh.facets.elements.nodes;
     // The position of a nodal point is the middle of its share; where it acts is the node.
     let place = |index: usize| match (quadrature, nodes.get(index)) {
         (FacetQuadrature::Nodal | FacetQuadrature::Control, Some(&node)) => {
             problem.mesh.nodes[node as usize]
         }
-        _ => interface.points[index].position,
+        _ => interface.points()[index].position,
     };
-    let ahead = (0..interface.points.len()).filter(|&i| interface.points[i].fracture == 1);
+    let ahead = (0..interface.points().len()).filter(|&i| interface.points()[i].fracture == 1);
     ahead
         .map(|index| (place(index), solution.facet_points[index].normal_traction))
         .collect()

@@ -34,7 +34,7 @@ fn errors(
 ) -> (f64, f64) {
     let discretisation = Discretisation::of(problem).expect("supported");
     let system = System::assemble(problem, discretisation);
-    let points = &system.discretisation.points;
+    let points = system.discretisation().points();
     let places = points.node.iter();
     let mesh = &problem.mesh;
     let moved: Vec<DVec3> = places
@@ -117,7 +117,7 @@ fn the_error_at_a_crack_front_is_met() {
     let record = newton.step(&system, &mut state, load, |_, _| {});
     assert!(record.converged());
     let found = solution(&system, &state);
-    let points = &system.discretisation.interface.points;
+    let points = system.discretisation().interface().points();
     let volume: f64 = points
         .iter()
         .zip(&found.facet_points)

@@ -105,7 +105,9 @@ fn an_inclined_crack_slides_as_far_as_in_closed_form() {
     let largest = 3.807850e-3;
     let nodes = &problem.mesh.facets.elements.nodes;
     let mut worst = 0.0_f64;
-    let interface = Discretisation::of(&problem).expect("supported").interface;
+    let interface = Discretisation::of(&problem)
+        .expect("supported")
+        .into_interface();
     let results = solution.facet_nodes(&problem, &interface);
     for (point, &node) in std::iter::zip(&results, nodes) {
         let x = problem.mesh.nodes[node as usize].x.abs();

@@ -55,7 +55,9 @@ fn walls_rub_on_facets_of_second_order() {
         let mut problem = cube(shape);
         scenes::load(&mut problem, "top", DVec3::new(8e6, 2e6, -10e6));
         let steps = scenes::solve_path(&problem, NewtonSettings::default(), [0.5, 1.0, 0.7]);
-        let interface = Discretisation::of(&problem).expect("supported").interface;
+        let interface = Discretisation::of(&problem)
+            .expect("supported")
+            .into_interface();
         for (record, solution) in steps {
             assert!(record.converged(), "{shape:?}: {record:?}");
             assert!(

@@ -161,7 +161,7 @@ fn walls_moved_by_different_cases_keep_their_shear() {
     problem.schedule.cases.conditions = vec![0, 1];
     for method in LinearMethod::ALL {
         follow(&problem, method, |load, system, solution| {
-            let points = &system.discretisation.interface.points;
+            let points = system.discretisation().interface().points();
             for (point, result) in points.iter().zip(&solution.facet_points) {
                 let shear = result.traction - result.normal_traction * point.normal;
                 assert!((shear - 20e9 * result.slip).length() < 1e-9 * 20e9 * 1e-5);

@@ -83,13 +83,14 @@ fn error(shape: Shape, cubes: usize) -> f64 {
             forces[node as usize] += force;
         }
     }
-    let supports = &system.discretisation.supports;
+    let supports = system.discretisation().supports();
     let applied = (0..forces.len()).map(|i| supports.project(i, forces[i]));
     let case = CaseLoads {
         applied: applied.collect(),
-        prescribed: system.loads.cases()[0].prescribed.clone(),
+        prescribed: system.loads().cases()[0].prescribed.clone(),
     };
-    system.loads = Loads::new(vec![case], system.loads.initial().to_vec());
+    let initial = system.loads().initial().to_vec();
+    system.set_loads(Loads::new(vec![case], initial));
     let mut state = system.initial_state();
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
     assert!(

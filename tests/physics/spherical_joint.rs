@@ -12,7 +12,7 @@
 
 use glam::{DMat3, DVec3};
 use kluft_mesh::{Mesh, SurfaceRole};
-use kluft_solver::{Condition, Discretisation, Points, Problem, Solution, SurfaceLoad};
+use kluft_solver::{Condition, Discretisation, Problem, SectorNodes, Solution, SurfaceLoad};
 use lie_core::{ClosureKind, Rock};
 
 use crate::oracles::closed_aperture;
@@ -110,7 +110,7 @@ type Sample = (DVec3, DVec3, f64);
 /// Samples of the core or the shell at the four points of degree 2 in each tetrahedron.
 fn samples(problem: &Problem, solution: &Solution, part: &str, exact: &Exact) -> Vec<Sample> {
     let mesh = &problem.mesh;
-    let points = Points::of(mesh);
+    let points = SectorNodes::of(mesh);
     let mut samples = Vec::new();
     for cell in 0..mesh.cells.len() {
         let set = &mesh.group_sets[mesh.cell_group_set[cell] as usize];
@@ -178,8 +178,10 @@ fn error(samples: &[Sample]) -> (f64, f64) {
 /// Relative errors: mean normal traction, mean opening, displacement of the core, of the shell; and
 /// by how much the core has turned.
 pub fn errors(problem: &Problem, solution: &Solution, exact: &Exact) -> ([f64; 4], f64) {
-    let interface = Discretisation::of(problem).expect("supported").interface;
-    let points = || interface.points.iter().zip(&solution.facet_points);
+    let interface = Discretisation::of(problem)
+        .expect("supported")
+        .into_interface();
+    let points = || interface.points().iter().zip(&solution.facet_points);
     let area: f64 = points().map(|(point, _)| point.area).sum();
     let traction: f64 = points()
         .map(|(point, r)| point.area * r.normal_traction)

@@ -10,7 +10,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use glam::DVec3;
 use kluft_mesh::Mesh;
-use kluft_solver::{Points, Problem, Solution, Support, SurfaceLoad};
+use kluft_solver::{Problem, SectorNodes, Solution, Support, SurfaceLoad};
 
 use crate::voigt::tetrahedron;
 
@@ -263,7 +263,7 @@ pub fn system(problem: &Problem) -> Reduced {
 pub fn compare(problem: &Problem, solution: &Solution) -> (f64, f64) {
     let split = Split::of(problem);
     let copy = split.copy.clone();
-    let points = Points::of(&problem.mesh);
+    let points = SectorNodes::of(&problem.mesh);
     assert_eq!(points.len(), split.held.len() / 3, "copies of nodes");
     let found = split.solve();
     let largest = found.iter().map(|u| u.length()).fold(0.0, f64::max);

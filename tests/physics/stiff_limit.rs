@@ -1,7 +1,7 @@
 //! Joints as stiff as can be weld: the network becomes the intact rock.
 
 use kluft_mesh::SurfaceRole;
-use kluft_solver::{NewtonSettings, Points, Problem};
+use kluft_solver::{NewtonSettings, Problem, SectorNodes};
 
 use crate::networks;
 use crate::scenes;
@@ -29,7 +29,7 @@ fn welded(fractured: &Problem, seed: u64) -> Problem {
 fn at_cells(problem: &Problem) -> Vec<glam::DVec3> {
     let (record, solution, _) = scenes::try_solve(problem, NewtonSettings::default());
     assert!(record.converged(), "{record:?}");
-    let points = Points::of(&problem.mesh);
+    let points = SectorNodes::of(&problem.mesh);
     let moved = points.of_cell_node.iter();
     moved
         .map(|&point| solution.displacements[point as usize])

@@ -59,7 +59,7 @@ fn tangent_is_the_derivative_of_the_residual() {
         let problem = three_planes(kind);
         let discretisation = Discretisation::of(&problem).expect("supported");
         let system = System::assemble(&problem, discretisation);
-        let count = system.discretisation.points.len();
+        let count = system.discretisation().points().len();
         let unknowns: Vec<DVec3> = noise(count, 5).iter().map(|v| 1e-5 * *v).collect();
         let direction = noise(count, 11);
         let step = 1e-10;
@@ -78,13 +78,19 @@ fn tangent_is_the_derivative_of_the_residual() {
             .map(|response| response.tangent)
             .collect();
         let tangent = system.tangent(&tangents);
-        let product = tangent.times(&system.discretisation.pattern, &direction);
+        let product = tangent.times(&system.discretisation().pattern().blocks, &direction);
         // In the rows of held nodes the matrix carries the scale of the rock for the directions
         // that are held, and the residual nothing.
         let held = |unknown: usize| {
-            let node = system.discretisation.points.node[unknown] as usize;
-            let mut own = system.discretisation.points.of_node(node);
-            own.any(|point| system.discretisation.supports.hold(point).is_some())
+            let node = system.discretisation().points().node[unknown] as usize;
+            let mut own = system.discretisation().points().of_node(node);
+            own.any(|point| {
+                system
+                    .discretisation()
+                    .supports()
+                    .constraint(point)
+                    .is_some()
+            })
         };
         let free: Vec<usize> = (0..count).filter(|&unknown| !held(unknown)).collect();
         let expected: Vec<DVec3> = free.iter().map(|&i| product[i]).collect();
@@ -102,11 +108,11 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
     let problem = three_planes(EXACT);
     let discretisation = Discretisation::of(&problem).expect("supported");
     let system = System::assemble(&problem, discretisation);
-    let pattern = &system.discretisation.pattern;
-    let interface = &system.discretisation.interface;
+    let pattern = system.discretisation().pattern();
+    let interface = system.discretisation().interface();
     for closure in [0.9, 0.5, 1e-1, 1e-3, 1e-6, 1e-9] {
         let tangents: Vec<_> = interface
-            .points
+            .points()
             .iter()
             .map(|point| {
                 let law = system.law(point);
@@ -115,11 +121,12 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
             })
             .collect();
         let tangent = system.tangent(&tangents);
-        let points = &system.discretisation.points;
+        let points = system.discretisation().points();
         for row in 0..points.len() {
-            for address in pattern.row(row) {
-                let column = pattern.columns[address] as usize;
-                let twin = tangent.blocks[pattern.address(column, row)].transpose();
+            for address in pattern.blocks.row(row) {
+                let column = pattern.blocks.columns[address] as usize;
+                let twin = pattern.blocks.address(column, row);
+                let twin = tangent.blocks[twin.expect("symmetric")].transpose();
                 let difference = tangent.blocks[address] - twin;
                 let size = tangent.blocks[address].to_cols_array().map(f64::abs);
                 let size = size.into_iter().fold(0.0, f64::max);
@@ -131,10 +138,11 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
                 assert!(worst <= 1e-12 * size);
             }
         }
-        let order = NodeOrder::of(pattern, points).expect("ordering");
-        let (row_offset, columns) = (&pattern.row_offset, &pattern.columns);
-        let analysis = Analysis::of(row_offset, columns, order.all(points)).expect("analysis");
-        let mut solver = Cholesky::new(analysis, tangent.rows(pattern));
+        let order = NodeOrder::of(&pattern.neighbours, &points.offset).expect("ordering");
+        let rows = tangent.rows(&pattern.blocks);
+        let order = order.all(&points.offset);
+        let analysis = Analysis::of(rows.row_offset, rows.columns, order).expect("analysis");
+        let mut solver = Cholesky::new(analysis, rows);
         assert_eq!(solver.factorise(), Ok(()), "closed to {closure}");
     }
 }

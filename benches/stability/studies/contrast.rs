@@ -48,7 +48,7 @@ fn of_jumps(problem: &Problem) -> Equations {
     let responses = system.responses(&unknowns, &load);
     let tangents: Vec<_> = responses.iter().map(|response| response.tangent).collect();
     let tangent = system.tangent(&tangents);
-    let rows = tangent.rows(&system.discretisation.pattern);
+    let rows = tangent.rows(&system.discretisation().pattern().blocks);
     let mut triplets = Vec::new();
     for row in 0..rows.rows() {
         for (column, block) in rows.row(row) {

@@ -144,10 +144,12 @@ fn rested(law: FractureLaw, lift: f64) -> (Vec<StepRecord>, f64) {
     problem.gravity = DVec3::new(0.0, 0.0, -9.81);
     let loads = [0.5, 1.0, 0.5, 0.1];
     let path = scenes::solve_path(&problem, NewtonSettings::default(), loads);
-    let interface = Discretisation::of(&problem).expect("supported").interface;
+    let interface = Discretisation::of(&problem)
+        .expect("supported")
+        .into_interface();
     let (mut records, mut errors) = (Vec::new(), Vec::new());
     for (load, (record, solution)) in loads.into_iter().zip(path) {
-        let points = interface.points.iter().zip(&solution.facet_points);
+        let points = interface.points().iter().zip(&solution.facet_points);
         let lower = points.filter(|(point, _)| point.position.z < 1.5);
         let carried: f64 = lower
             .map(|(point, found)| point.area * found.normal_traction)

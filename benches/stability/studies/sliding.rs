@@ -166,10 +166,12 @@ fn wedged(angle: f64, rubs: bool) -> (StepRecord, f64, f64) {
     };
     let problem = wedge(fracture(law), angle, pressure);
     let (record, solution, _) = scenes::try_solve(&problem, NewtonSettings::default());
-    let interface = Discretisation::of(&problem).expect("supported").interface;
+    let interface = Discretisation::of(&problem)
+        .expect("supported")
+        .into_interface();
     // What the joints do to the wedge: plus or minus the traction, by the side it is on.
     let middle = |point: DVec3| if point.x < 1.5 { 1.0 } else { -1.0 };
-    let pairs = interface.points.iter().zip(&solution.facet_points);
+    let pairs = interface.points().iter().zip(&solution.facet_points);
     let carried: DVec3 = pairs
         .map(|(point, found)| {
             let side = middle(point.position) * point.normal.x.signum();

@@ -50,7 +50,7 @@ pub fn of(
 ) -> Accuracy {
     let error = estimator.stress_error(system, &solution.displacements);
     let stress_errors = (0..error.of_cell.len()).map(|cell| {
-        let modulus = system.problem.rock(cell).young_modulus;
+        let modulus = system.problem().rock(cell).young_modulus;
         (modulus * error.of_cell[cell] / error.volumes[cell]).sqrt()
     });
     let has_jumps = !solution.facet_points.is_empty();
@@ -76,11 +76,11 @@ fn of_all_jumps(
     solution: &Solution,
     stress: &StressError,
 ) -> Option<JumpAccuracy> {
-    let points = &system.discretisation.interface.points;
+    let points = system.discretisation().interface().points();
     let results = &solution.facet_points;
     let largest =
         |of: fn(&kluft_solver::FacetResult) -> f64| results.iter().map(of).fold(0.0, f64::max);
-    let mesh = &system.problem.mesh;
+    let mesh = &system.problem().mesh;
     let has_plain_fronts = !mesh.has_quarter_points && mesh.front_nodes().contains(&true);
     let safety = if has_plain_fronts {
         SAFETY_AT_PLAIN_FRONTS
@@ -103,7 +103,7 @@ fn of_all_jumps(
     } else {
         None
     };
-    let mut mean_jump = vec![(0.0, 0.0); system.problem.fractures.len()];
+    let mut mean_jump = vec![(0.0, 0.0); system.problem().fractures.len()];
     for (point, result) in points.iter().zip(results) {
         let (sum, area) = &mut mean_jump[point.fracture as usize];
         *sum += point.area * result.jump.length();

@@ -77,7 +77,7 @@ pub fn not_converged(
 }
 
 fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
-    let facet_point = &system.discretisation.interface.points[point];
+    let facet_point = system.discretisation().interface().points()[point];
     let facet = facet_point.facet as usize;
     let node = problem.mesh.facets.elements.nodes_of(facet)[0] as usize;
     let x = problem.mesh.nodes[node];
@@ -95,7 +95,7 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
             "the factor does not fit in memory; mesh coarser (a larger h)".into()
         }
         LinearFailure::Indefinite(row) => {
-            let node = system.discretisation.points.node[*row] as usize;
+            let node = system.discretisation().points().node[*row] as usize;
             let x = problem.mesh.nodes[node];
             format!(
                 "the stiffness is not positive definite at node {} ({:.4}, {:.4}, {:.4}): the rock there can move freely; hold it, or give the fractures around it stiffness",

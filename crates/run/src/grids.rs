@@ -8,9 +8,13 @@ use crate::accuracy::Accuracy;
 
 /// The rock, with one copy of a node for each of its sectors.
 pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
-    let mesh = &system.problem.mesh;
-    let points = &system.discretisation.points;
-    let rocks = system.problem.rock_of_cell.iter().map(|&rock| rock as i32);
+    let mesh = &system.problem().mesh;
+    let points = &system.discretisation().points();
+    let rocks = system
+        .problem()
+        .rock_of_cell
+        .iter()
+        .map(|&rock| rock as i32);
     let displacements = solution.displacements.iter().map(|u| u.to_array());
     Grid {
         points: points
@@ -36,7 +40,7 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
 /// The fractures; every facet has its own points, so that fields may jump between facets. `results` are
 /// those of the nodes of the facets.
 pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Accuracy) -> Grid {
-    let mesh = &system.problem.mesh;
+    let mesh = &system.problem().mesh;
     let elements = &mesh.facets.elements;
     let vectors =
         |of: fn(&FacetResult) -> DVec3| results.iter().map(move |result| of(result).to_array());

@@ -67,15 +67,15 @@ struct Fracture<'a> {
 
 impl<'a> Fracture<'a> {
     fn of(system: &System<'_>, solution: &'a Solution, index: usize) -> Self {
-        let facets = &system.problem.mesh.facets;
+        let facets = &system.problem().mesh.facets;
         let own = |&facet: &usize| facets.fracture[facet] as usize == index;
         let own: Vec<usize> = (0..facets.elements.len()).filter(own).collect();
-        let points = system.discretisation.interface.points.iter();
+        let points = system.discretisation().interface().points().iter();
         let points = points.zip(&solution.facet_points);
         let points = points.filter(|(point, _)| point.fracture as usize == index);
         let beside = own.first().map_or(0, |&facet| facets.plus[facet] as usize);
         Self {
-            rock: *system.problem.rock(beside),
+            rock: *system.problem().rock(beside),
             samples: own
                 .iter()
                 .flat_map(|&facet| samples(system, solution, facet))
@@ -213,11 +213,11 @@ fn compared(name: &str, value: f64, exact: f64) -> Measure {
 
 /// The jump of a facet at its quadrature points.
 fn samples(system: &System<'_>, solution: &Solution, facet: usize) -> Vec<Sample> {
-    let mesh = &system.problem.mesh;
+    let mesh = &system.problem().mesh;
     let elements = &mesh.facets.elements;
     let wall = |slots: &[u32], local: usize| {
         let slot = slots[elements.range(facet).start + local] as usize;
-        let point = system.discretisation.points.of_cell_node[slot] as usize;
+        let point = system.discretisation().points().of_cell_node[slot] as usize;
         solution.displacements[point]
     };
     let nodes = elements.nodes_of(facet);

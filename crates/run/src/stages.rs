@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use kluft_io::load_msh;
 use kluft_mesh::{Defect, Draft};
-use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry};
+use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
     Discretisation, LinearFailure, Newton, NewtonSettings, Plan, Problem, System, Workload,
 };
@@ -238,10 +238,12 @@ impl<'a> Run<'a> {
 
     /// Enriches the problem and assembles what stays the same for the whole run.
     pub fn assemble<'p>(&mut self, problem: &'p Problem) -> Result<System<'p>, Interruption> {
-        let discretisation = self.stage(Stage::Enrich, |_| Discretisation::of(problem))?;
+        let discretisation = self
+            .stage(Stage::Enrich, |_| Discretisation::of(problem))
+            .map_err(in_terms_of_scene)?;
         self.summary.unknowns = UnknownSummary {
             total: discretisation.unknown_count(),
-            jump: 3 * discretisation.points.jump_count(),
+            jump: 3 * discretisation.points().jump_count(),
         };
         let unknowns = &self.summary.unknowns;
         let text = format!(
@@ -268,8 +270,8 @@ impl<'a> Run<'a> {
         let limit = asked.memory_limit.map_or(available, |limit| limit as usize);
         let before = former.and_then(|former| former.progress.choice.0.parse().ok());
         let plan = self.stage(Stage::ChooseSolver, |_| {
-            let workload = Workload::of(system.problem);
-            let unknowns = (&system.discretisation).into();
+            let workload = Workload::of(system.problem());
+            let unknowns = system.discretisation().into();
             Plan::of(unknowns, workload, before.or(asked.linear), limit)
         });
         let plan = solved(plan, system)?;
@@ -348,7 +350,7 @@ fn seconds_of(seconds: &mut Seconds, stage: Stage) -> Option<&mut f64> {
 /// The failure of a linear solver in words.
 pub fn solved<T>(result: Result<T, LinearFailure>, system: &System<'_>) -> Result<T, Interruption> {
     result.map_err(|failure| {
-        let why = failures::linear_failure(system.problem, system, &failure);
+        let why = failures::linear_failure(system.problem(), system, &failure);
         Interruption::NotConverged(why)
     })
 }

@@ -47,7 +47,7 @@ impl Run<'_> {
         }
         self.summary.steps.clear();
         let solution = solution(&system, &prepared.state);
-        let unknowns = system.discretisation.unknown_count();
+        let unknowns = system.discretisation().unknown_count();
         let estimator = Estimator::of(&system);
         let accuracy = accuracy::of(&system, &mut prepared.newton, &estimator, &solution, true);
         Ok((unknowns, accuracy))
@@ -111,7 +111,7 @@ impl Run<'_> {
         plan: Plan,
         former: Progress<'static>,
     ) -> Result<Prepared<'s, 'p>, Interruption> {
-        let steps = &system.problem.schedule.steps;
+        let steps = &system.problem().schedule.steps;
         let done = &steps[..former.steps.len().min(steps.len())];
         let times = done.iter().map(|step| step.load.time);
         self.output.go_on_after(times);
@@ -146,7 +146,7 @@ impl Run<'_> {
         index: usize,
     ) -> Result<StepRecord, Interruption> {
         let system = prepared.system;
-        let schedule = &system.problem.schedule;
+        let schedule = &system.problem().schedule;
         let step = &schedule.steps[index];
         self.observer.step_begins(StepStart {
             number: index + 1,
@@ -168,7 +168,7 @@ impl Run<'_> {
             return Err(Interruption::Stopped);
         }
         if !record.converged() {
-            let why = failures::not_converged(system.problem, system, index + 1, &record);
+            let why = failures::not_converged(system.problem(), system, index + 1, &record);
             return Err(Interruption::NotConverged(why));
         }
         Ok(record)
@@ -177,7 +177,7 @@ impl Run<'_> {
     /// Estimates the error of a load step, sums it up and writes its results.
     fn take_results(&mut self, prepared: &mut Prepared<'_, '_>) -> Result<(), Interruption> {
         let system = prepared.system;
-        let is_last = self.finished.len() == system.problem.schedule.steps.len();
+        let is_last = self.finished.len() == system.problem().schedule.steps.len();
         let solution = solution(system, &prepared.state);
         let Prepared {
             newton, estimator, ..
@@ -186,9 +186,9 @@ impl Run<'_> {
             let estimator = estimator.get_or_insert_with(|| Estimator::of(system));
             accuracy::of(system, newton, estimator, &solution, is_last)
         });
-        let interface = &system.discretisation.interface;
-        let nodes = solution.facet_nodes(system.problem, interface);
-        let mut fractures = summary::fractures(system.problem, interface, &solution, &nodes);
+        let interface = system.discretisation().interface();
+        let nodes = solution.facet_nodes(system.problem(), interface);
+        let mut fractures = summary::fractures(system.problem(), interface, &solution, &nodes);
         accuracy.note_in(&mut fractures);
         self.summary.fractures = fractures;
         self.summary.stress_error = accuracy.relative;

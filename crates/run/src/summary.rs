@@ -252,12 +252,12 @@ fn fracture_summary(
     fracture: u32,
 ) -> FractureSummary {
     let facets = &problem.mesh.facets;
-    let own: Vec<usize> = (0..interface.points.len())
-        .filter(|&i| interface.points[i].fracture == fracture)
+    let own: Vec<usize> = (0..interface.points().len())
+        .filter(|&i| interface.points()[i].fracture == fracture)
         .collect();
     let results = || own.iter().map(|&i| &points[i]);
     let walls = || own.iter().map(|&i| nodes.get(i).unwrap_or(&points[i]));
-    let weights = || own.iter().map(|&i| interface.points[i].area);
+    let weights = || own.iter().map(|&i| interface.points()[i].area);
     let area_where = |holds: &dyn Fn(&FacetResult) -> bool| -> f64 {
         let chosen = results().zip(weights()).filter(|(result, _)| holds(result));
         // An empty sum of floats is -0.0.

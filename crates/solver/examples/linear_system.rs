@@ -8,13 +8,13 @@
 use std::time::Instant;
 
 use glam::{DMat3, DVec3};
+use kluft_algebra::multigrid::{Multigrid, rigid_modes};
+use kluft_algebra::{
+    Analysis, Cholesky, ConjugateGradientSettings, NodeOrder, conjugate_gradients,
+};
 use kluft_mesh::structured::{Patch, tetrahedra};
 use kluft_mesh::{Mesh, SurfaceRole};
-use kluft_solver::multigrid::{Multigrid, rigid_modes};
-use kluft_solver::{
-    Analysis, Cholesky, Condition, ConjugateGradientSettings, Discretisation, NodeOrder, Problem,
-    Support, System, conjugate_gradients,
-};
+use kluft_solver::{Condition, Discretisation, Problem, Support, System};
 use lie_core::Rock;
 
 /// Unknowns from which on the factor takes more than 16 GB; it is made only if asked for.
@@ -34,7 +34,7 @@ fn main() {
     if solver != Some("cholesky") {
         by_multigrid(&system, &right);
     }
-    let fits = system.discretisation.unknown_count() < LARGEST_FACTORISED;
+    let fits = system.discretisation().unknown_count() < LARGEST_FACTORISED;
     if solver == Some("cholesky") || (solver.is_none() && fits) {
         by_cholesky(&system, &right);
     }
@@ -73,21 +73,21 @@ fn right_hand_side(system: &System<'_>) -> Vec<DVec3> {
             .wrapping_add(1_442_695_040_888_963_407);
         (bits >> 40) as f64 / (1 << 24) as f64 - 0.5
     };
-    let supports = &system.discretisation.supports;
-    (0..system.discretisation.points.len())
+    let supports = system.discretisation().supports();
+    (0..system.discretisation().points().len())
         .map(|point| supports.project(point, DVec3::new(number(), number(), number())))
         .collect()
 }
 
 fn by_multigrid(system: &System<'_>, right: &[DVec3]) {
-    let discretisation = &system.discretisation;
+    let discretisation = system.discretisation();
     let matrix = system.rock_rows();
     let start = Instant::now();
-    let nodes = &system.problem.mesh.nodes;
+    let nodes = &system.problem().mesh.nodes;
     let modes: Vec<[DVec3; 6]> = (0..right.len())
         .map(|point| {
-            let hold = discretisation.supports.hold(point);
-            let free = hold.map_or(DMat3::IDENTITY, |hold| hold.free);
+            let constraint = discretisation.supports().constraint(point);
+            let free = constraint.map_or(DMat3::IDENTITY, |constraint| constraint.free);
             rigid_modes(nodes[point], DVec3::splat(0.5), free)
         })
         .collect();
@@ -113,11 +113,10 @@ fn by_multigrid(system: &System<'_>, right: &[DVec3]) {
 
 fn by_cholesky(system: &System<'_>, right: &[DVec3]) {
     let start = Instant::now();
-    let order = NodeOrder::of(
-        &system.discretisation.pattern,
-        &system.discretisation.points,
-    );
-    let order = order.expect("ordered").all(&system.discretisation.points);
+    let graph = &system.discretisation().pattern().neighbours;
+    let first_unknown = &system.discretisation().points().offset;
+    let order = NodeOrder::of(graph, first_unknown);
+    let order = order.expect("ordered").all(first_unknown);
     let rows = system.rock_rows();
     let analysis = Analysis::of(rows.row_offset, rows.columns, order).expect("analysed");
     let mut solver = Cholesky::new(analysis, rows);
@@ -129,7 +128,7 @@ fn by_cholesky(system: &System<'_>, right: &[DVec3]) {
 }
 
 fn print(system: &System<'_>, solver: &str, setup: f64, solve: f64, iterations: usize) {
-    let unknowns = system.discretisation.unknown_count();
+    let unknowns = system.discretisation().unknown_count();
     let memory = peak_memory().unwrap_or(0);
     println!(
         "{{\"unknowns\":{unknowns},\"solver\":\"{solver}\",\"setup_seconds\":{setup:.3},\

@@ -5,54 +5,55 @@
 //! Everything nonlinear lives on the jumps: the stiffness of the rock is assembled once, and a
 //! Newton iteration changes only the blocks of nodes on fractures. No result depends on the number
 //! of threads: every sum has a fixed order.
+//!
+//! # Rooms
+//!
+//! Each builds on those above it.
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | `problem` | what is solved: mesh, rocks, fractures, conditions, initial stress, load steps |
+//! | `space` | points and unknowns of nodes, who couples with whom, what is held, blocks that nothing holds |
+//! | `assembly` | stiffness of the rock, forces of cells, loads, the fractures with their laws |
+//! | `system` | numbering ([`Discretisation`]), the discrete problem ([`System`]), its [`State`] |
+//! | `linear` | solvers for the tangent on top of [`kluft_algebra`], their cost and choice |
+//! | `newton` | load steps: guess, iteration, tests, division of a step |
+//! | `estimate` | errors of stresses and of mean jumps, sizes of cells that would mend them |
+//!
+//! `solution` derives fields from a state, `memory` counts what a run keeps beside its linear solver.
+//!
+//! The laws of the fractures live in the [`Interface`]: it takes them over from the problem, and
+//! [`System::set_laws`] replaces them.
 
 mod assembly;
-mod cell;
-mod cell_forces;
-mod conjugate_gradients;
-mod dense;
 mod estimate;
-mod folded;
-mod gmres;
-mod interface;
 mod linear;
-mod loads;
-mod matrix;
-pub mod multigrid;
+mod memory;
 mod newton;
-mod pattern;
-mod points;
 mod problem;
-mod rigid_modes;
-mod schedule;
-mod shared_walls;
 mod solution;
-mod supports;
+mod space;
 mod system;
-mod tetrahedra;
 
-pub use conjugate_gradients::{
-    ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
-    conjugate_gradients,
-};
+pub use assembly::facet_point::FacetPoint;
+pub use assembly::interface::Interface;
+pub use assembly::loads::{CaseLoads, Loads};
 pub use estimate::{Estimator, MeanError, StressError, target_sizes};
-pub use interface::{FacetPoint, Interface};
+pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
 pub use linear::{
-    Analysis, AnyTangent, Cholesky, Condensed, Iterative, LinearFailure, LinearMethod,
-    LinearSolution, NodeOrder, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
-    Whole, Workload,
+    Condensed, Direct, ExtraMemory, Iterative, LinearMethod, LinearSolution, NonsymmetricSolver,
+    Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns, Workload,
 };
-pub use loads::{CaseLoads, Loads};
-pub use matrix::BlockMatrix;
 pub use newton::{
     Iteration, Linearisation, Newton, NewtonSettings, Outcome, RestartState, StepRecord,
 };
-pub use pattern::{Lists, Pattern};
-pub use points::Points;
 pub use problem::{
-    Condition, FixedPoint, Fracture, InitialStress, Problem, Profile, Support, SurfaceLoad,
+    Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,
+    Support, SurfaceLoad,
 };
-pub use schedule::{Cases, Load, Schedule, Step};
 pub use solution::{FacetResult, FacetState, Solution, solution};
-pub use supports::{Hold, Supports};
-pub use system::{Discretisation, FacetPointState, State, System, norm};
+pub use space::pattern::{CellOfSlot, Pattern};
+pub use space::rigid_modes::HOLD;
+pub use space::sector_nodes::SectorNodes;
+pub use space::supports::{Constraint, Supports};
+pub use system::{Discretisation, FacetPointState, State, System};

@@ -6,9 +6,10 @@ use lie_core::kernel;
 use lie_core::{FacetQuadrature, SymmetricStress, bezier_function};
 use rayon::prelude::*;
 
-use crate::cell::{Cell, components};
-use crate::interface::{FacetPoint, Interface};
+use crate::assembly::facet_point::FacetPoint;
+use crate::assembly::interface::Interface;
 use crate::problem::Problem;
+use crate::space::cell::{Cell, components};
 use crate::system::{FacetPointState, State, System};
 
 /// What a facet point does.
@@ -62,7 +63,7 @@ impl Solution {
         let mut results = self.facet_points[..facets.elements.nodes.len()].to_vec();
         for facet in 0..facets.elements.len() {
             let shape = facets.elements.shapes[facet];
-            let control = problem.rule_of(facets.fracture[facet]) == FacetQuadrature::Control;
+            let control = interface.rule_of(facets.fracture[facet]) == FacetQuadrature::Control;
             if control && shape.is_quadratic() {
                 let range = facets.elements.range(facet);
                 let points = &interface.points[range.clone()];

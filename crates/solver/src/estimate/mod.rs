@@ -6,8 +6,8 @@
 //! both solutions, the error of the mean jump is `a(e, e_z) / A <= sum |e|_K |e_z|_K / A`, in energy norms
 //! (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
 
+mod nearest_fracture;
 mod patches;
-mod reach;
 mod sizes;
 
 use glam::DVec3;
@@ -15,17 +15,17 @@ use kluft_mesh::{Mesh, Shape};
 use lie_core::{FinePoint, SymmetricStress, kernel, recovery_rule};
 use rayon::prelude::*;
 
-use crate::cell::{Cell, components};
-use crate::linear::LinearFailure;
 use crate::newton::Newton;
-use crate::schedule::Load;
+use crate::problem::Load;
+use crate::space::cell::{Cell, components};
 use crate::system::System;
+use kluft_algebra::LinearFailure;
 use patches::Patches;
 
 pub use sizes::target_sizes;
 
-/// Error of the linear solve for `z`, as a share of its forces. In a network of a hundred fractures the
-/// errors of the means are then within 2 % of those of an exact `z`, which takes four times the iterations.
+/// Error of the linear solve for `z`, as a share of its forces: the errors of the means are then hardly
+/// different from those of an exact `z`, which takes several times the iterations.
 const ROUGH: f64 = 0.1;
 
 /// Memory (bytes) that estimates on a mesh take: patches, samples, polynomials, and what is known of each cell of
@@ -117,7 +117,7 @@ impl Estimator {
     pub fn of(system: &System<'_>) -> Self {
         Self {
             patches: Patches::of(system.problem, &system.discretisation),
-            nearest_fracture: reach::nearest_fracture(&system.problem.mesh),
+            nearest_fracture: nearest_fracture::nearest_fracture(&system.problem.mesh),
         }
     }
 

@@ -10,12 +10,12 @@ use lie_core::kernel::{self, MAX_NODES};
 use lie_core::{RulePoint, SymmetricStress, recovery_rule};
 use rayon::prelude::*;
 
-use crate::cell::{self, Cell, components};
-use crate::multigrid::small::inverse_factor;
-use crate::pattern::{Lists, split};
-use crate::points::Points;
 use crate::problem::Problem;
+use crate::space::cell::{self, Cell, components};
+use crate::space::sector_nodes::SectorNodes;
 use crate::system::Discretisation;
+use kluft_algebra::small::inverse_factor;
+use kluft_algebra::{Lists, RowOwnership};
 
 /// Terms of a complete linear and a complete quadratic polynomial in space.
 const LINEAR: usize = 4;
@@ -107,7 +107,7 @@ impl Patches {
     }
 
     fn len(&self) -> usize {
-        self.cells.offset.len() - 1
+        self.cells.count()
     }
 
     fn cells_of(&self, patch: usize) -> impl Iterator<Item = usize> + '_ {
@@ -125,7 +125,8 @@ impl Patches {
         value: impl Fn(usize, &RulePoint) -> T + Sync,
     ) -> Vec<T> {
         let mut values = vec![T::default(); self.sample_offset[cells.len()]];
-        let shares = split(&mut values, &self.sample_offset, CELLS_PER_TASK);
+        let tasks = RowOwnership::even(cells.len(), CELLS_PER_TASK);
+        let shares = tasks.split(&mut values, &self.sample_offset);
         shares.into_par_iter().for_each(|(owned, mut rest)| {
             for cell in owned {
                 let samples = &recovery_rule(cells.shapes[cell]).samples;
@@ -153,7 +154,7 @@ impl Patches {
     pub(super) fn recover(
         &self,
         problem: &Problem,
-        points: &Points,
+        points: &SectorNodes,
         displacements: &[DVec3],
     ) -> Recovered {
         let cells = &problem.mesh.cells;

@@ -7,46 +7,42 @@
 //! condensed problem takes away again. Their size is that of the Schur complement, so the
 //! difference loses no digits.
 
-use glam::DMat3;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use kluft_algebra::{Analysis, Cholesky, FixedPart, LinearFailure, SchurComplement};
 
-use super::jump_problem::JumpProblem;
-use super::{Analysis, Cholesky, LinearFailure, LinearSolution, SolverHistory, TangentSolver};
-use crate::system::System;
+use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver};
 
 /// Condensed solver of a system.
 pub struct Condensed {
     cholesky: Cholesky,
     /// Number of scalars eliminated before the jumps.
     rock_size: usize,
-    jumps: JumpProblem,
+    jumps: SchurComplement,
 }
 
 impl Condensed {
-    /// Factorises the rock; `analysis` has the unknowns of the interface last.
+    /// Factorises the rock together with `reference`, blocks of springs on all facet points; `analysis` has
+    /// the unknowns of the interface last.
     ///
     /// # Errors
     /// If the rock is not positive definite or memory runs out.
-    pub fn new(system: &System<'_>, analysis: Analysis) -> Result<Self, LinearFailure> {
-        let interface = &system.discretisation.interface;
-        let mut cholesky = Cholesky::new(analysis, system.rock_rows());
-        let springs: Vec<DMat3> = interface
-            .points
-            .iter()
-            .map(|point| point.spring * DMat3::IDENTITY)
-            .collect();
-        let springs = interface.stiffness(&springs);
-        for (row, place, block) in system.tangent_blocks(&system.interface_places(), &springs) {
+    pub fn new(
+        fixed: FixedPart<'_>,
+        reference: Vec<DMat3>,
+        analysis: Analysis,
+    ) -> Result<Self, LinearFailure> {
+        let mut cholesky = Cholesky::new(analysis, fixed.matrix);
+        for (row, place, block) in fixed.blocks(&fixed.places(), &reference) {
             cholesky.set_block(row, place, block);
         }
         cholesky.factorise()?;
         cholesky.forget_values();
         let order = cholesky.order();
-        let rock_size = 3 * (order.len() - interface.unknowns.len());
+        let rock_size = 3 * (order.len() - fixed.interface.rows.len());
         let lower = cholesky.trailing_factor(rock_size);
-        let places = places(system, &order[rock_size / 3..]);
+        let places = places(fixed, &order[rock_size / 3..]);
         Ok(Self {
-            jumps: JumpProblem::new(&lower, places, springs),
+            jumps: SchurComplement::new(&lower, places, reference),
             rock_size,
             cholesky,
         })
@@ -54,35 +50,33 @@ impl Condensed {
 }
 
 /// Block row and column of each block of the fractures, counted in the order of the jumps.
-fn places(system: &System<'_>, jumps: &[usize]) -> Vec<(u32, u32)> {
-    let interface = &system.discretisation.interface;
-    let mut number = vec![0_u32; system.discretisation.points.len()];
+fn places(fixed: FixedPart<'_>, jumps: &[usize]) -> Vec<(u32, u32)> {
+    let mut number = vec![0_u32; fixed.matrix.rows()];
     for (index, &unknown) in jumps.iter().enumerate() {
         number[unknown] = index as u32;
     }
-    let rows = interface.unknowns.iter().enumerate();
+    let rows = fixed.interface.rows.iter().enumerate();
     rows.flat_map(|(index, &row)| {
         let number = &number;
-        let columns = interface.columns.of(index).iter();
+        let columns = fixed.interface.columns.of(index).iter();
         columns.map(move |&column| (number[row as usize], number[column as usize]))
     })
     .collect()
 }
 
 impl TangentSolver for Condensed {
-    fn update(&mut self, system: &System<'_>, tangents: &[DMat3]) -> Result<(), LinearFailure> {
-        let interface = &system.discretisation.interface;
-        self.jumps.set_stiffness(&interface.stiffness(tangents));
+    fn update(&mut self, _: FixedPart<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
+        self.jumps.set_stiffness(&stiffness);
         Ok(())
     }
 
     fn solve(
         &mut self,
-        _: &System<'_>,
-        right: &[DVec3],
+        _: FixedPart<'_>,
+        rhs: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
-        let mut column = self.cholesky.ordered(right);
+        let mut column = self.cholesky.ordered(rhs);
         self.cholesky.eliminate(self.rock_size, &mut column);
         let solved = self.jumps.solve(&mut column[self.rock_size..], tolerance);
         let iterations = solved.map_err(|failure| self.named(failure))?;
@@ -101,7 +95,7 @@ impl TangentSolver for Condensed {
         }
     }
 
-    fn restore(&mut self, _: &System<'_>, history: SolverHistory) -> Result<(), LinearFailure> {
+    fn restore(&mut self, _: FixedPart<'_>, history: SolverHistory) -> Result<(), LinearFailure> {
         let restored = self.jumps.factorise_again(history.stiffness);
         restored.map_err(|failure| self.named(failure))
     }

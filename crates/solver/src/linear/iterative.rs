@@ -3,15 +3,15 @@
 //! the diagonal blocks of the nodes on them and the levels below.
 
 use glam::{DMat3, DVec3};
-
-use super::{LinearFailure, LinearSolution, SolverHistory, TangentSolver};
-use crate::assembly::trace;
-use crate::conjugate_gradients::{
-    ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
+use kluft_algebra::multigrid::{Multigrid, Workspace, rigid_modes};
+use kluft_algebra::{
+    ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks, LinearFailure,
+    conjugate_gradients, norm, trace,
 };
-use crate::interface::Interface;
-use crate::multigrid::{Multigrid, MultigridFailure, Springs, Workspace, rigid_modes};
-use crate::system::{System, norm};
+
+use crate::linear::split_aggregates::SplitAggregates;
+use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver};
+use crate::system::System;
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 2000;
@@ -28,7 +28,7 @@ const MOST_GUESSES: usize = 6;
 const HELPS: f64 = 0.3;
 /// Factor by which the stiffness of a fracture may change in any direction; and the share of the stiffness of
 /// the rock beside it which that stiffness is added to, because less does not matter.
-const ALIKE: f64 = 2.0;
+const FACTOR_OF_CHANGE: f64 = 2.0;
 const BESIDE: f64 = 0.1;
 /// Share of the fractures' unknowns that may change so much before the multigrid is made anew.
 const TOLERATED: f64 = 0.02;
@@ -40,7 +40,7 @@ pub struct Iterative {
     /// Stiffness of the fractures, one block for each of the interface's columns; none before the first.
     stiffness: Option<Vec<DMat3>>,
     /// The one that the multigrid was made with.
-    made_with: Option<Vec<DMat3>>,
+    built_for: Option<Vec<DMat3>>,
     /// By how much the spectrum turned out to reach further than it was taken for.
     margin: f64,
 }
@@ -51,68 +51,69 @@ impl Iterative {
     /// # Errors
     /// If the rock is not positive definite.
     pub fn new(system: &System<'_>) -> Result<Self, LinearFailure> {
-        let frame = system.discretisation.frame(system.problem);
-        let multigrid = Multigrid::of_fractured(system.rock_rows(), &modes(system), frame);
-        let multigrid = multigrid.map_err(explain)?;
+        let space = system.discretisation.space(system.problem);
+        let multigrid = Multigrid::with_basis(
+            system.rock_rows(),
+            &space.points.offset,
+            &modes(system),
+            |means| SplitAggregates::of(space, means).basis(),
+        )?;
         Ok(Self {
             workspace: multigrid.workspace(),
             multigrid,
             stiffness: None,
-            made_with: None,
+            built_for: None,
             margin: 1.0,
         })
     }
 
     /// Makes the multigrid anew for a stiffness of the fractures.
-    fn refresh(&mut self, system: &System<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
-        self.made_with = None;
-        let springs = springs(&system.discretisation.interface, &stiffness);
-        let refreshed = self.multigrid.refresh(system.rock_rows(), springs);
-        refreshed.map_err(explain)?;
+    fn rebuild_for(
+        &mut self,
+        fixed: FixedPart<'_>,
+        stiffness: Vec<DMat3>,
+    ) -> Result<(), LinearFailure> {
+        self.built_for = None;
+        let blocks = InterfaceBlocks {
+            pattern: fixed.interface,
+            blocks: &stiffness,
+        };
+        self.multigrid.rebuild(fixed.matrix, blocks)?;
         self.multigrid.widen(self.margin);
         self.workspace = self.multigrid.workspace();
-        self.made_with = Some(stiffness);
+        self.built_for = Some(stiffness);
         Ok(())
     }
 
     /// Whether the multigrid was made with a stiffness of the fractures that is much like `stiffness`.
-    fn serves(&self, system: &System<'_>, stiffness: &[DMat3]) -> bool {
-        let Some(made_with) = &self.made_with else {
+    fn is_current(&self, fixed: FixedPart<'_>, stiffness: &[DMat3]) -> bool {
+        let Some(built_for) = &self.built_for else {
             return false;
         };
-        let interface = &system.discretisation.interface;
-        let rows = system.rock_rows();
-        let numbered = interface.unknowns.iter().enumerate();
+        let FixedPart { matrix, interface } = fixed;
+        let numbered = interface.rows.iter().enumerate();
         let changed = numbered.filter(|&(row, unknown)| {
             let columns = interface.columns.of(row);
             let place = columns.partition_point(|column| column < unknown);
             let own = interface.columns.offset[row] + place;
-            let rock = trace(rows.diagonal(*unknown as usize)) / 3.0;
-            !are_alike(made_with[own], stiffness[own], BESIDE * rock)
+            let rock = trace(matrix.diagonal(*unknown as usize)) / 3.0;
+            !is_spectrally_close(built_for[own], stiffness[own], BESIDE * rock)
         });
-        changed.count() as f64 <= TOLERATED * interface.unknowns.len() as f64
+        changed.count() as f64 <= TOLERATED * interface.rows.len() as f64
     }
 }
 
-/// Whether the stiffness of a fracture changes by less than a factor of [`ALIKE`] in every direction, when `rock`
+/// Whether the stiffness of a fracture changes by less than a factor of [`FACTOR_OF_CHANGE`] in every direction, when `rock`
 /// is added to it. A sum of entries would not tell that walls begin to slide in one direction.
-fn are_alike(old: DMat3, new: DMat3, rock: f64) -> bool {
+fn is_spectrally_close(old: DMat3, new: DMat3, rock: f64) -> bool {
     let [old, new] = [old, new].map(|block| block + rock * DMat3::IDENTITY);
-    is_positive(ALIKE * old - new) && is_positive(ALIKE * new - old)
+    is_positive(FACTOR_OF_CHANGE * old - new) && is_positive(FACTOR_OF_CHANGE * new - old)
 }
 
 /// Whether a symmetric block is positive definite, by its leading minors.
 fn is_positive(block: DMat3) -> bool {
     let [x, y] = [block.x_axis, block.y_axis];
     x.x > 0.0 && x.x * y.y > x.y * y.x && block.determinant() > 0.0
-}
-
-fn springs<'a>(interface: &'a Interface, stiffness: &'a [DMat3]) -> Springs<'a> {
-    Springs {
-        rows: &interface.unknowns,
-        columns: &interface.columns,
-        blocks: stiffness,
-    }
 }
 
 /// Rigid motions of the rock at each node with unknowns.
@@ -128,25 +129,19 @@ fn modes(system: &System<'_>) -> Vec<[DVec3; 6]> {
     let firsts = (0..nodes.len()).filter(|&node| !points.of_node(node).is_empty());
     firsts
         .map(|node| {
-            let hold = discretisation.supports.hold(points.of_node(node).start);
-            let free = hold.map_or(DMat3::IDENTITY, |hold| hold.free);
+            let constraint = discretisation
+                .supports
+                .constraint(points.of_node(node).start);
+            let free = constraint.map_or(DMat3::IDENTITY, |constraint| constraint.free);
             rigid_modes(nodes[node], centre, free)
         })
         .collect()
 }
 
-fn explain(failure: MultigridFailure) -> LinearFailure {
-    match failure {
-        MultigridFailure::NotPositive(row) => LinearFailure::Indefinite(row),
-        MultigridFailure::NotFinite => LinearFailure::NotFinite,
-    }
-}
-
 impl TangentSolver for Iterative {
-    fn update(&mut self, system: &System<'_>, tangents: &[DMat3]) -> Result<(), LinearFailure> {
-        let stiffness = system.discretisation.interface.stiffness(tangents);
-        if !self.serves(system, &stiffness) {
-            self.refresh(system, stiffness.clone())?;
+    fn update(&mut self, fixed: FixedPart<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
+        if !self.is_current(fixed, &stiffness) {
+            self.rebuild_for(fixed, stiffness.clone())?;
         }
         self.stiffness = Some(stiffness);
         Ok(())
@@ -154,22 +149,18 @@ impl TangentSolver for Iterative {
 
     fn solve(
         &mut self,
-        system: &System<'_>,
-        right: &[DVec3],
+        fixed: FixedPart<'_>,
+        rhs: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
-        let rows = system.rock_rows();
-        let interface = &system.discretisation.interface;
         let stiffness = self.stiffness.as_deref().unwrap_or_default();
-        let multiply = |vector: &[DVec3], product: &mut [DVec3]| {
-            rows.multiply(vector, product);
-            interface.add_product(stiffness, vector, product);
-        };
+        let multiply =
+            |vector: &[DVec3], product: &mut [DVec3]| fixed.multiply(stiffness, vector, product);
         let (mut unknowns, residual) =
-            first_guess(&self.multigrid, &interface.unknowns, multiply, right);
+            first_guess(&self.multigrid, fixed.interface.rows, multiply, rhs);
         let size = norm(&residual);
-        let wanted = tolerance * norm(right) / size;
-        let mut correction = vec![DVec3::ZERO; right.len()];
+        let wanted = tolerance * norm(rhs) / size;
+        let mut correction = vec![DVec3::ZERO; rhs.len()];
         let mut iterations = 0;
         for attempt in 0..=MOST_WIDENINGS {
             let report = conjugate_gradients(
@@ -192,7 +183,7 @@ impl TangentSolver for Iterative {
                 // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
                 _ if last <= wanted.max(ROUNDED) => break,
                 ConjugateGradientOutcome::Breakdown
-                    if attempt < MOST_WIDENINGS && self.made_with == self.stiffness =>
+                    if attempt < MOST_WIDENINGS && self.built_for == self.stiffness =>
                 {
                     self.margin *= WIDENING;
                     self.multigrid.widen(self.margin);
@@ -212,26 +203,26 @@ impl TangentSolver for Iterative {
     fn history(&self) -> SolverHistory {
         SolverHistory {
             stiffness: self.stiffness.clone(),
-            preconditioned: self.made_with.clone(),
+            preconditioned: self.built_for.clone(),
             margin: Some(self.margin),
         }
     }
 
     fn restore(
         &mut self,
-        system: &System<'_>,
+        fixed: FixedPart<'_>,
         history: SolverHistory,
     ) -> Result<(), LinearFailure> {
         self.margin = history.margin.unwrap_or(1.0);
         self.stiffness = history.stiffness;
-        let made_with = history.preconditioned;
-        made_with.map_or(Ok(()), |stiffness| self.refresh(system, stiffness))
+        let built_for = history.preconditioned;
+        built_for.map_or(Ok(()), |stiffness| self.rebuild_for(fixed, stiffness))
     }
 
-    fn renew(&mut self, system: &System<'_>) -> Result<bool, LinearFailure> {
+    fn rebuild(&mut self, fixed: FixedPart<'_>) -> Result<bool, LinearFailure> {
         match &self.stiffness {
-            Some(stiffness) if self.made_with.as_ref() != Some(stiffness) => {
-                self.refresh(system, stiffness.clone())?;
+            Some(stiffness) if self.built_for.as_ref() != Some(stiffness) => {
+                self.rebuild_for(fixed, stiffness.clone())?;
                 Ok(true)
             }
             _ => Ok(false),
@@ -240,12 +231,12 @@ impl TangentSolver for Iterative {
 
     fn precondition(
         &mut self,
-        _: &System<'_>,
-        right: &[DVec3],
+        _: FixedPart<'_>,
+        rhs: &[DVec3],
     ) -> Result<Vec<DVec3>, LinearFailure> {
-        let mut correction = vec![DVec3::ZERO; right.len()];
+        let mut correction = vec![DVec3::ZERO; rhs.len()];
         self.multigrid
-            .apply(right, &mut correction, &mut self.workspace);
+            .apply(rhs, &mut correction, &mut self.workspace);
         Ok(correction)
     }
 }
@@ -259,12 +250,12 @@ fn first_guess(
     multigrid: &Multigrid,
     jumps: &[u32],
     multiply: impl Fn(&[DVec3], &mut [DVec3]),
-    right: &[DVec3],
+    rhs: &[DVec3],
 ) -> (Vec<DVec3>, Vec<DVec3>) {
-    let mut guess = vec![DVec3::ZERO; right.len()];
-    let mut residual = right.to_vec();
-    let mut size = norm(right);
-    let mut elsewhere = right.to_vec();
+    let mut guess = vec![DVec3::ZERO; rhs.len()];
+    let mut residual = rhs.to_vec();
+    let mut size = norm(rhs);
+    let mut elsewhere = rhs.to_vec();
     for &unknown in jumps {
         elsewhere[unknown as usize] = DVec3::ZERO;
     }
@@ -278,9 +269,9 @@ fn first_guess(
         for &unknown in jumps {
             next[unknown as usize] += alone[unknown as usize];
         }
-        let mut remaining = vec![DVec3::ZERO; right.len()];
+        let mut remaining = vec![DVec3::ZERO; rhs.len()];
         multiply(&next, &mut remaining);
-        for (image, force) in remaining.iter_mut().zip(right) {
+        for (image, force) in remaining.iter_mut().zip(rhs) {
             *image = *force - *image;
         }
         let length = norm(&remaining);
@@ -295,8 +286,8 @@ fn first_guess(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::AnyTangent;
-    use crate::multigrid::fractured_tests::{problem, remaining, system};
+    use crate::linear::fractured_tests::{problem, remaining, system};
+    use crate::linear::nonsymmetric::NonsymmetricSolver;
 
     /// What a multigrid for walls glued at random cannot solve for loose ones is solved with one of their own.
     #[test]
@@ -316,22 +307,24 @@ mod tests {
             preconditioned: Some(stiffness(|point| 10_f64.powi(point as i32 % 16))),
             margin: None,
         };
-        outdated.restore(&system, history).expect("definite");
-        let mut right = vec![DVec3::ZERO; system.discretisation.points.len()];
-        right[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
-        let stalled = outdated.solve(&system, &right, 1e-8);
+        outdated
+            .restore(system.fixed_part(), history)
+            .expect("definite");
+        let mut rhs = vec![DVec3::ZERO; system.discretisation.points.len()];
+        rhs[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
+        let stalled = outdated.solve(system.fixed_part(), &rhs, 1e-8);
         assert!(matches!(stalled, Err(LinearFailure::Stalled(_))));
-        let mut renewing = AnyTangent::new(Box::new(outdated));
-        let solved = renewing.solve_positive(&system, &right, 1e-8);
+        let mut renewing = NonsymmetricSolver::new(Box::new(outdated));
+        let solved = renewing.solve_positive(&system, &rhs, 1e-8);
         let solved = solved.expect("solved").unknowns;
-        assert!(remaining(&system, &loose, &solved, &right) < 1e-7);
+        assert!(remaining(&system, &loose, &solved, &rhs) < 1e-7);
     }
 
     /// `old` and `new` on orthogonal axes that no coordinate follows.
     fn alike(old: DVec3, new: DVec3) -> bool {
         let turn = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, 0.7, 1.1);
         let turned = |diagonal| turn * DMat3::from_diagonal(diagonal) * turn.transpose();
-        are_alike(turned(old), turned(new), 1.0)
+        is_spectrally_close(turned(old), turned(new), 1.0)
     }
 
     #[test]

@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
+use kluft_algebra::LinearFailure;
 use serde::{Deserialize, Serialize};
 
 use super::Newton;
 use super::extrapolation::Path;
 use super::subspace::Subspace;
-use crate::linear::{LinearFailure, SolverHistory};
+use crate::linear::SolverHistory;
 use crate::system::{State, System};
 
 /// Everything that the next load step depends on beside the system and the settings: continued from

@@ -12,7 +12,7 @@ use lie_core::{FractureLaw, TrialState};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::schedule::Load;
+use crate::problem::Load;
 use crate::system::{FacetPointState, State, System};
 
 /// States that are kept: with the present one enough for a cubic.

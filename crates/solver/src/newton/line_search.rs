@@ -9,7 +9,7 @@ use super::{
     Iteration, Linearisation, Move, Newton, Outcome, StepRecord, Trial, assess, interface, walls,
 };
 use crate::linear::Tangents;
-use crate::schedule::Load;
+use crate::problem::Load;
 use crate::system::System;
 
 /// Iterations that take the whole way.

@@ -4,7 +4,7 @@ use kluft_mesh::Defect;
 use rayon::prelude::*;
 
 use super::walls::tangent;
-use crate::rigid_modes::{self, Tie};
+use crate::space::rigid_modes::{self, Tie};
 use crate::system::{State, System};
 
 /// Stiffness that counts as none, against that of the rock beside a facet point.

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{Iteration, Linearisation, Newton, Outcome, StepRecord, interface, largest};
-use crate::schedule::Load;
+use crate::problem::Load;
 use crate::system::{State, System};
 
 /// Smallest part of a load step that is tried; what it differs from two halves is let be.

@@ -24,11 +24,12 @@ mod walls;
 use std::time::Instant;
 
 use glam::DVec3;
+use kluft_algebra::{LinearFailure, norm};
 
-use crate::interface::Interface;
-use crate::linear::{AnyTangent, LinearFailure, LinearMethod, Plan, Unknowns, Workload};
-use crate::schedule::Load;
-use crate::system::{Sizes, State, System, norm};
+use crate::assembly::interface::Interface;
+use crate::linear::{LinearMethod, NonsymmetricSolver, Plan, Unknowns, Workload};
+use crate::problem::Load;
+use crate::system::{Sizes, State, System};
 use extrapolation::Path;
 use subspace::{LastMove, Subspace};
 use walls::Landed;
@@ -66,7 +67,7 @@ const UNBALANCED: f64 = 1e-4;
 /// rock, which is all that was prepared, stays.
 pub struct Newton {
     settings: NewtonSettings,
-    linear: AnyTangent,
+    linear: NonsymmetricSolver,
     path: Path,
     /// Moves of former steps, if the linear solver iterates.
     subspace: Option<Subspace>,
@@ -128,7 +129,7 @@ impl Newton {
     /// If it cannot be prepared.
     pub fn new(system: &System<'_>, settings: NewtonSettings) -> Result<Self, LinearFailure> {
         let unknowns = Unknowns::from(&system.discretisation);
-        let workload = Workload::of(system.problem);
+        let workload = Workload::of_system(system);
         let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX)?;
         Self::planned(system, settings, plan)
     }
@@ -145,7 +146,7 @@ impl Newton {
         let recycles = plan.method == LinearMethod::Iterative;
         Ok(Self {
             subspace: recycles.then(Subspace::default),
-            linear: AnyTangent::new(plan.prepare(system)?),
+            linear: NonsymmetricSolver::new(plan.prepare(system)?),
             path: Path::default(),
             settings,
         })
@@ -258,7 +259,7 @@ impl Newton {
     /// The first guess for a step.
     fn start(&mut self, system: &System<'_>, state: &State, load: &Load) -> Trial {
         let mut guess = state.clone();
-        system.adapt(&mut guess);
+        system.restate(&mut guess);
         let subspace = self.subspace.as_mut();
         let found = subspace.and_then(|s| s.guess(system, &self.settings, &guess, load));
         let (guess, landed, last) = if let Some(found) = found {

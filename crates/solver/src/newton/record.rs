@@ -1,9 +1,10 @@
 //! Settings of a nonlinear solve, and its record.
 
+use kluft_algebra::LinearFailure;
 use kluft_mesh::Defect;
 
-use crate::linear::{LinearFailure, LinearMethod};
-use crate::schedule::Load;
+use crate::linear::LinearMethod;
+use crate::problem::Load;
 
 /// Where a facet point is linearised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

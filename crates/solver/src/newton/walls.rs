@@ -5,9 +5,9 @@ use lie_core::{FractureLaw, RockStiffness, Separation, Tangent, TrialState};
 use rayon::prelude::*;
 
 use super::Linearisation;
-use crate::interface::FacetPoint;
+use crate::assembly::facet_point::FacetPoint;
 use crate::linear::Tangents;
-use crate::schedule::Load;
+use crate::problem::Load;
 use crate::system::{FacetPointState, State, System};
 
 /// Stiffness that stands for walls in contact, against that of the rock beside them. Their tractions

@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 
-use crate::dense::apart;
+use kluft_algebra::dense_kernels::apart;
 
 /// Eigenvalue, against the largest, below which directions are not told from each other.
 const DEPENDENT: f64 = 1e-12;

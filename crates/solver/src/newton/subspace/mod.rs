@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::walls::{self, Landed};
 use super::{Move, NewtonSettings, interface, largest};
 use crate::linear::Tangents;
-use crate::schedule::Load;
+use crate::problem::Load;
 use crate::system::{State, System};
 
 /// Most directions that a guess is made of; beyond, they are condensed to the principal ones of the

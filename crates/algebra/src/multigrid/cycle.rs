@@ -1,0 +1,134 @@
+//! The V-cycle.
+
+use rayon::prelude::*;
+
+use super::coarsest::Dense;
+use super::smoother::{Smoother, Work, residual};
+use super::sparse::{Sparse, rows_per_task};
+
+/// Smoothings of a coarsest level that is too large to invert, as after disconnected bodies.
+const LAST_SMOOTHINGS: usize = 2;
+
+/// A level and the way to the next.
+#[derive(Debug, Clone)]
+pub(super) struct Level<const N: usize> {
+    pub(super) matrix: Sparse<N, N>,
+    pub(super) smoother: Smoother,
+    pub(super) below: Below<N>,
+}
+
+/// What is below a level.
+#[derive(Debug, Clone)]
+pub(super) enum Below<const N: usize> {
+    /// Another level.
+    Level(Transfer<N>),
+    /// None: this level is inverted.
+    Inverse(Dense),
+    /// None: nothing couples any more, or hardly; this level is smoothed.
+    Nothing,
+}
+
+/// The way down to the next level and up again.
+#[derive(Debug, Clone)]
+pub(super) struct Transfer<const N: usize> {
+    pub(super) prolongator: Sparse<N, 6>,
+    /// Its blocks once more, aggregate by aggregate.
+    pub(super) restrictor: Sparse<N, 6>,
+}
+
+impl<const N: usize> Transfer<N> {
+    /// `r_c = P^T r`.
+    fn restrict(&self, residual: &[[f32; N]], coarse: &mut [[f32; 6]]) {
+        let rows = rows_per_task::<6>();
+        let tasks = coarse.par_chunks_mut(rows).enumerate();
+        tasks.for_each(|(task, chunk)| {
+            for (place, sum) in chunk.iter_mut().enumerate() {
+                let aggregate = task * rows + place;
+                *sum = self.restricted(aggregate, residual);
+            }
+        });
+    }
+
+    fn restricted(&self, aggregate: usize, residual: &[[f32; N]]) -> [f32; 6] {
+        let mut sum = [0.0; 6];
+        for (row, block) in self.restrictor.row(aggregate) {
+            let mut part = [0.0; 6];
+            for (line, &entry) in block.iter().zip(&residual[row]) {
+                for (part, &weight) in part.iter_mut().zip(line) {
+                    *part += weight * entry;
+                }
+            }
+            for (sum, part) in sum.iter_mut().zip(part) {
+                *sum += part;
+            }
+        }
+        sum
+    }
+
+    /// `z += P z_c`.
+    fn prolong(&self, coarse: &[[f32; 6]], solution: &mut [[f32; N]]) {
+        let rows = rows_per_task::<N>();
+        let tasks = solution.par_chunks_mut(rows).enumerate();
+        tasks.for_each(|(task, chunk)| {
+            for (place, sum) in chunk.iter_mut().enumerate() {
+                for (column, block) in self.prolongator.row(task * rows + place) {
+                    for (sum, line) in sum.iter_mut().zip(block) {
+                        let both = line.iter().zip(&coarse[column]);
+                        *sum += both.map(|(weight, entry)| weight * entry).sum::<f32>();
+                    }
+                }
+            }
+        });
+    }
+
+    fn bytes(&self) -> usize {
+        self.prolongator.bytes() + self.restrictor.bytes()
+    }
+}
+
+impl<const N: usize> Level<N> {
+    /// A level without unknowns.
+    pub(super) fn empty() -> Self {
+        Self {
+            matrix: Sparse::empty(),
+            smoother: Smoother::new(1.0),
+            below: Below::Nothing,
+        }
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        let below = match &self.below {
+            Below::Level(transfer) => transfer.bytes(),
+            Below::Inverse(dense) => dense.bytes(),
+            Below::Nothing => 0,
+        };
+        self.matrix.bytes() + below
+    }
+
+    /// One symmetric V-cycle from zero: `work.solution` from `work.rhs`.
+    pub(super) fn cycle(
+        &self,
+        work: &mut Work<N>,
+        coarser: &[Level<6>],
+        coarser_work: &mut [Work<6>],
+    ) {
+        match (&self.below, coarser, coarser_work) {
+            (Below::Inverse(dense), _, _) => dense.solve(&work.rhs, &mut work.solution),
+            (Below::Level(transfer), [next, coarser @ ..], [next_work, coarser_work @ ..]) => {
+                self.smoother.start(&self.matrix, work);
+                residual(&self.matrix, work);
+                transfer.restrict(&work.step, &mut next_work.rhs);
+                next.cycle(next_work, coarser, coarser_work);
+                transfer.prolong(&next_work.solution, &mut work.solution);
+                self.smoother.resume(&self.matrix, work);
+            }
+            _ => {
+                self.smoother.start(&self.matrix, work);
+                for _ in 1..LAST_SMOOTHINGS {
+                    self.smoother.resume(&self.matrix, work);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The matrix of the next level, `P^T A P`, in unknowns that scale its diagonal to the identity.
+
+use rayon::prelude::*;
+
+use super::sparse::{Sparse, Transpose, rows_per_task};
+use super::triple_product::{Block6, PartialProduct};
+use crate::small::{Modes, inverse_factor, narrow, product, transpose, widen};
+
+/// A motion of an aggregate with less than this share of the energy of its stiffest one costs
+/// nothing within single precision; it is left out of the next level.
+const COSTS_NOTHING: f64 = 1e-6;
+
+/// The next level.
+pub(super) struct Coarse {
+    pub(super) matrix: Sparse<6, 6>,
+    pub(super) modes: Vec<Modes<6>>,
+}
+
+/// The next level of `P^T A P`, whose nodes have these modes; scales the columns of `P` to its unknowns.
+pub(super) fn coarse<const N: usize>(
+    whole: &PartialProduct,
+    prolongator: &mut Sparse<N, 6>,
+    modes: &[Modes<6>],
+) -> Coarse {
+    let diagonal = whole.diagonal.par_iter();
+    let factors: Vec<Block6> = diagonal
+        .map(|block| inverse_factor(block, COSTS_NOTHING).0)
+        .collect();
+    scale_prolongator(prolongator, &factors);
+    // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
+    let scaled = factors.par_iter().zip(&whole.diagonal).zip(modes);
+    let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
+    Coarse {
+        modes: modes.collect(),
+        matrix: scaled_matrix(&whole.upper, &factors),
+    }
+}
+
+/// `P L^-T`.
+fn scale_prolongator<const N: usize>(prolongator: &mut Sparse<N, 6>, factors: &[Block6]) {
+    let blocks = prolongator.blocks.par_iter_mut().zip(&prolongator.columns);
+    blocks.for_each(|(block, &column)| {
+        let right = transpose(&factors[column as usize]);
+        *block = narrow(&product(&widen(block), &right));
+    });
+}
+
+/// `L^-1 A L^-T` without its diagonal, blocks as columns, from the blocks of `A` right of the
+/// diagonal, blocks as rows: symmetric to the last bit.
+fn scaled_matrix(upper: &Sparse<6, 6>, factors: &[Block6]) -> Sparse<6, 6> {
+    let lower = Transpose::of(upper, upper.rows());
+    let scaled = |row: usize, column: usize, block: &[[f32; 6]; 6]| {
+        let right = transpose(&factors[column]);
+        narrow(&product(&product(&factors[row], &widen(block)), &right))
+    };
+    Sparse::build(
+        upper.rows(),
+        rows_per_task::<6>(),
+        || (),
+        |(), row| lower.column(row).len() + upper.range(row).len(),
+        #[inline(always)]
+        |(), row, columns, blocks| {
+            let mut targets = columns.iter_mut().zip(blocks);
+            for (&(at, position), (column, target)) in lower.column(row).iter().zip(&mut targets) {
+                let block = &upper.blocks[position as usize];
+                (*column, *target) = (at, scaled(at as usize, row, block));
+            }
+            for ((at, block), (column, target)) in upper.row(row).zip(targets) {
+                (*column, *target) = (at as u32, transpose(&scaled(row, at, block)));
+            }
+        },
+    )
+}

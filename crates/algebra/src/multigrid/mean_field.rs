@@ -1,0 +1,144 @@
+//! The mean motions of nodes, the aggregates that they form, and the basis that is made of these.
+
+use glam::DVec3;
+
+use super::block_jacobi::{self, Factors};
+use super::clusters::Clusters;
+use super::sparse::{Sparse, Transpose, rows_per_task};
+use super::sum_rows::SumRows;
+use super::{aggregation, prolongation, spectrum, tentative};
+use crate::block_rows::numbers;
+use crate::failure::MultigridFailure;
+use crate::small::{Modes, narrow};
+
+/// Blocks whose norm is below this share of the diagonal do not tie nodes together.
+pub(super) const STRENGTH: f32 = 0.02;
+
+/// The mean motions of nodes with unknowns, and the motions of their aggregates.
+pub struct MeanField {
+    prolongator: Sparse<3, 6>,
+    transpose: Transpose,
+    modes: Vec<Modes<6>>,
+    /// Node of each row.
+    nodes: Vec<u32>,
+    /// Row of each node.
+    row_of_node: Vec<u32>,
+}
+
+impl MeanField {
+    /// Aggregates rows that are all clusters of their own, the first ones of `nodes` among `node_count`;
+    /// and their scaled matrix.
+    pub(super) fn of(
+        rows: &SumRows<'_>,
+        modes: &[[DVec3; 6]],
+        nodes: Vec<u32>,
+        node_count: usize,
+    ) -> Result<(Self, Sparse<3, 3>), MultigridFailure> {
+        let single = Clusters::single(rows.count());
+        let factors = Factors::of(rows, &single)?;
+        let mut matrix = Sparse::default();
+        block_jacobi::set_matrix(&mut matrix, rows, &single, &factors);
+        let modes = block_jacobi::modes(&factors, modes);
+        let bound = spectrum::largest_eigenvalue(&matrix);
+        if !bound.is_finite() {
+            return Err(MultigridFailure::NotFinite);
+        }
+        let aggregates = aggregation::aggregate(&matrix, STRENGTH);
+        let tentative = tentative::tentative(&aggregates, &modes);
+        let mut prolongator = prolongation::smoothed(&matrix, bound, &aggregates, &tentative);
+        block_jacobi::unscale(&factors, &mut prolongator);
+        let means = Self {
+            transpose: Transpose::of(&prolongator, aggregates.count),
+            modes: tentative.modes,
+            prolongator,
+            row_of_node: numbers(node_count, &nodes),
+            nodes,
+        };
+        Ok((means, matrix))
+    }
+
+    /// Nodes with unknowns, ascending.
+    pub(super) fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
+    /// Number of aggregates.
+    pub fn aggregates(&self) -> usize {
+        self.transpose.columns()
+    }
+
+    /// The modes of each aggregate in its own six unknowns: upper triangular, with a zero on the diagonal
+    /// where a mode depends on those before it.
+    pub fn modes(&self) -> &[Modes<6>] {
+        &self.modes
+    }
+
+    /// Aggregates that move a node, ascending, and how: blocks as rows.
+    pub fn motions_of(&self, node: usize) -> impl Iterator<Item = (usize, &[[f32; 6]; 3])> {
+        self.prolongator.row(self.row_of_node[node] as usize)
+    }
+
+    /// Nodes that an aggregate moves, ascending, and how.
+    pub fn moved_by(&self, aggregate: usize) -> impl Iterator<Item = (usize, &[[f32; 6]; 3])> {
+        let column = self.transpose.column(aggregate).iter();
+        column.map(|&(row, position)| {
+            let node = self.nodes[row as usize] as usize;
+            (node, &self.prolongator.blocks[position as usize])
+        })
+    }
+
+    /// The motions as they are, where every node has one row.
+    pub(super) fn into_basis(self) -> Basis {
+        Basis {
+            prolongator: self.prolongator,
+            modes: self.modes,
+        }
+    }
+}
+
+/// Motions of the nodes of the next level, as if the interface had no stiffness.
+#[derive(Debug, Clone, Default)]
+pub struct Basis {
+    /// One row an unknown, in unknowns that are not scaled.
+    pub(super) prolongator: Sparse<3, 6>,
+    /// Modes of the next level's nodes.
+    pub(super) modes: Vec<Modes<6>>,
+}
+
+impl Basis {
+    /// A basis of `rows` unknowns and one node for each of `modes`. `motions` tells the nodes that move an
+    /// unknown, ascending, and how: blocks as rows. It is called twice a row.
+    pub fn new(
+        rows: usize,
+        modes: Vec<Modes<6>>,
+        motions: impl Fn(usize) -> Vec<(u32, [[f64; 6]; 3])> + Sync + Send,
+    ) -> Self {
+        let prolongator = Sparse::build(
+            rows,
+            rows_per_task::<3>(),
+            || (),
+            |(), row| motions(row).len(),
+            |(), row, columns, blocks| {
+                for (place, (column, block)) in motions(row).into_iter().enumerate() {
+                    (columns[place], blocks[place]) = (column, narrow(&block));
+                }
+            },
+        );
+        Self { prolongator, modes }
+    }
+
+    /// Nodes of the next level that move an unknown, and how: blocks as rows.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &[[f32; 6]; 3])> {
+        self.prolongator.row(row)
+    }
+
+    /// Modes of the nodes of the next level.
+    pub fn modes(&self) -> &[Modes<6>] {
+        &self.modes
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        self.prolongator.bytes() + size_of_val(&self.modes[..])
+    }
+}

@@ -1,0 +1,277 @@
+//! How levels come about.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::block_jacobi::{self, Factors, InverseFactors};
+use super::clusters::Clusters;
+use super::coarsest::Dense;
+use super::cycle::{Below, Level, Transfer};
+use super::galerkin::{self, Coarse};
+use super::mean_field::{Basis, MeanField, STRENGTH};
+use super::smoother::Smoother;
+use super::sparse::{Sparse, Transpose};
+use super::sum_rows::{RowSubset, SumRows};
+use super::triple_product::PartialProduct;
+use super::{aggregation, prolongation, spectrum, tentative};
+use crate::block_rows::{BlockRows, numbers};
+use crate::failure::MultigridFailure;
+use crate::small::Modes;
+
+/// A level with at most this many scalar unknowns is inverted.
+const LARGEST_INVERSE: usize = 400;
+/// A next level with more than this share of the nodes is not worth its cost.
+const STAGNATION: f64 = 0.8;
+
+/// With more than this share of the rows near to the interface, the others are not worth keeping.
+const MOST_NEAR: f64 = 0.5;
+
+/// What stays when the blocks of the interface change.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FixedHierarchy {
+    pub(super) clusters: Clusters,
+    pub(super) basis: Basis,
+    /// What the rows far from the interface give to the matrix of the next level, once that is known.
+    far: Option<PartialProduct>,
+}
+
+/// A matrix, the rows of each node, and the motions of nodes that cost next to nothing.
+#[derive(Clone, Copy)]
+pub(super) struct NodeMatrix<'a> {
+    pub(super) matrix: BlockRows<'a>,
+    /// Node `n` has the rows `offset[n]..offset[n + 1]`, which may be none.
+    pub(super) offset: &'a [u32],
+    /// Modes of each node with rows.
+    pub(super) modes: &'a [[DVec3; 6]],
+}
+
+/// What is large of a finest level.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LevelBuffers {
+    matrix: Sparse<3, 3>,
+    prolongator: Sparse<3, 6>,
+    restrictor: Sparse<3, 6>,
+}
+
+impl LevelBuffers {
+    /// That of a level which is needed no more.
+    pub(super) fn of(level: Level<3>) -> Self {
+        let (prolongator, restrictor) = match level.below {
+            Below::Level(transfer) => (transfer.prolongator, transfer.restrictor),
+            _ => Default::default(),
+        };
+        Self {
+            matrix: level.matrix,
+            prolongator,
+            restrictor,
+        }
+    }
+}
+
+impl FixedHierarchy {
+    /// Prepares the hierarchy of a fixed matrix, with the basis that `split` makes of the mean motions.
+    pub(super) fn of(
+        nodes: NodeMatrix<'_>,
+        split: impl FnOnce(MeanField) -> Basis,
+    ) -> Result<(Self, LevelBuffers), MultigridFailure> {
+        let NodeMatrix {
+            matrix,
+            offset,
+            modes,
+        } = nodes;
+        let has_rows = |node: &u32| offset[*node as usize] < offset[*node as usize + 1];
+        let used: Vec<u32> = (0..offset.len() as u32 - 1).filter(has_rows).collect();
+        let firsts: Vec<u32> = used.iter().map(|&node| offset[node as usize]).collect();
+        let number = numbers(matrix.rows(), &firsts);
+        let subset = RowSubset {
+            rows: &firsts,
+            number: &number,
+        };
+        let is_whole = firsts.len() == matrix.rows();
+        let of_means = SumRows {
+            subset: (!is_whole).then_some(subset),
+            ..SumRows::of_fixed(matrix)
+        };
+        let (means, scaled) = MeanField::of(&of_means, modes, used, offset.len() - 1)
+            .map_err(|failure| failure.of_rows(&firsts))?;
+        let hierarchy = Self {
+            clusters: Clusters::of(&scaled, means.nodes(), offset),
+            basis: split(means),
+            far: None,
+        };
+        let buffers = LevelBuffers {
+            matrix: scaled,
+            ..LevelBuffers::default()
+        };
+        Ok((hierarchy, buffers))
+    }
+
+    /// Whether the next level is worth having.
+    fn has_next(&self, rows: usize) -> bool {
+        let next = self.basis.modes.len();
+        3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
+    }
+
+    /// The finest level of a sum, in the buffers of a former one, and the next one if it is worth having.
+    pub(super) fn finest(
+        &mut self,
+        rows: &SumRows<'_>,
+        buffers: LevelBuffers,
+    ) -> Result<(InverseFactors, Level<3>, Option<Coarse>), MultigridFailure> {
+        let LevelBuffers {
+            mut matrix,
+            mut prolongator,
+            restrictor,
+        } = buffers;
+        let factors = Factors::of(rows, &self.clusters)?;
+        block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors);
+        let bound = spectrum::largest_eigenvalue(&matrix);
+        if !bound.is_finite() {
+            return Err(MultigridFailure::NotFinite);
+        }
+        let (below, next) = if self.has_next(matrix.rows()) {
+            let Basis {
+                prolongator: basis,
+                modes,
+            } = &self.basis;
+            let columns = modes.len();
+            block_jacobi::smooth_by_blocks(
+                &mut prolongator,
+                basis,
+                columns,
+                &self.clusters,
+                &factors,
+            );
+            let transpose = Transpose::of(&prolongator, columns);
+            let product = self.product(rows, &matrix, &prolongator, &transpose);
+            let (transfer, next) = descend(
+                product,
+                prolongator,
+                &transpose,
+                restrictor,
+                &self.basis.modes,
+            );
+            (Below::Level(transfer), Some(next))
+        } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
+            (Below::Nothing, None)
+        } else {
+            let dense = Dense::new(&matrix).ok_or(MultigridFailure::NotFinite)?;
+            (Below::Inverse(dense), None)
+        };
+        let level = Level {
+            matrix,
+            smoother: Smoother::new(bound),
+            below,
+        };
+        Ok((factors.compact(), level, next))
+    }
+
+    /// `P^T A P`.
+    fn product(
+        &mut self,
+        rows: &SumRows<'_>,
+        matrix: &Sparse<3, 3>,
+        prolongator: &Sparse<3, 6>,
+        transpose: &Transpose,
+    ) -> PartialProduct {
+        let is_changed: Vec<bool> = (0..self.clusters.count())
+            .into_par_iter()
+            .map(|cluster| rows.is_changed(self.clusters.members.of(cluster)))
+            .collect();
+        let is_changed = |row: usize| is_changed[self.clusters.place[row].0 as usize];
+        let is_near = |row| is_changed(row) || matrix.row(row).any(|(at, _)| is_changed(at));
+        let is_near: Vec<bool> = (0..matrix.rows()).into_par_iter().map(is_near).collect();
+        let near = is_near.iter().filter(|near| **near).count();
+        if near == 0 || near as f64 > MOST_NEAR * matrix.rows() as f64 {
+            return PartialProduct::whole(matrix, prolongator, transpose);
+        }
+        let of_rows = |near: bool| {
+            PartialProduct::of_rows(matrix, prolongator, transpose, |row| is_near[row] == near)
+        };
+        let aggregates = transpose.columns();
+        let far = self.far.take();
+        let far = far.unwrap_or_else(|| PartialProduct::sum(aggregates, &of_rows(false)));
+        let near = of_rows(true);
+        let whole = PartialProduct::sum(aggregates, std::iter::once(&far).chain(&near));
+        self.far = Some(far);
+        whole
+    }
+
+    /// Without what only other blocks of the interface would ask for.
+    pub(super) fn without_basis(self) -> Self {
+        let modes = self.basis.modes;
+        Self {
+            basis: Basis {
+                prolongator: Sparse::default(),
+                modes,
+            },
+            ..self
+        }
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        self.clusters.bytes()
+            + self.basis.bytes()
+            + self.far.as_ref().map_or(0, PartialProduct::bytes)
+    }
+}
+
+/// A level, and the next one if it is worth having.
+pub(super) fn level(
+    matrix: Sparse<6, 6>,
+    modes: &[Modes<6>],
+) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
+    let bound = spectrum::largest_eigenvalue(&matrix);
+    if !bound.is_finite() {
+        return Err(MultigridFailure::NotFinite);
+    }
+    let (below, next) = below(&matrix, modes, bound)?;
+    let smoother = Smoother::new(bound);
+    let level = Level {
+        matrix,
+        smoother,
+        below,
+    };
+    Ok((level, next))
+}
+
+fn below(
+    matrix: &Sparse<6, 6>,
+    modes: &[Modes<6>],
+    largest_eigenvalue: f64,
+) -> Result<(Below<6>, Option<Coarse>), MultigridFailure> {
+    if 6 * matrix.rows() <= LARGEST_INVERSE {
+        let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
+        return Ok((Below::Inverse(dense), None));
+    }
+    let aggregates = aggregation::aggregate(matrix, STRENGTH);
+    if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
+        return Ok((Below::Nothing, None));
+    }
+    let tentative = tentative::tentative(&aggregates, modes);
+    let prolongator = prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
+    let transpose = Transpose::of(&prolongator, aggregates.count);
+    let product = PartialProduct::whole(matrix, &prolongator, &transpose);
+    let storage = Sparse::default();
+    let (transfer, coarse) = descend(product, prolongator, &transpose, storage, &tentative.modes);
+    Ok((Below::Level(transfer), Some(coarse)))
+}
+
+/// The way to the level of `P^T A P`, whose nodes have these modes, and that level. `restrictor` is storage.
+fn descend<const N: usize>(
+    product: PartialProduct,
+    mut prolongator: Sparse<N, 6>,
+    transpose: &Transpose,
+    mut restrictor: Sparse<N, 6>,
+    modes: &[Modes<6>],
+) -> (Transfer<N>, Coarse) {
+    let coarse = galerkin::coarse(&product, &mut prolongator, modes);
+    drop(product);
+    transpose.arrange(&prolongator, &mut restrictor);
+    let transfer = Transfer {
+        prolongator,
+        restrictor,
+    };
+    (transfer, coarse)
+}

@@ -1,0 +1,124 @@
+//! Chebyshev smoothing: polynomials of the level matrix, the same before and after the coarse
+//! levels, so that the cycle is symmetric.
+
+use rayon::prelude::*;
+
+use super::sparse::{Sparse, rows_per_task};
+
+/// Number of products with the matrix in one smoothing.
+const DEGREE: usize = 2;
+
+/// A Chebyshev polynomial of the fourth kind (Lottes 2022; Adams et al. 2003 for Chebyshev
+/// smoothing as such), which needs no lower end of the spectrum:
+/// `d_k = a_k d_(k-1) + b_k (r - A z_(k-1))`, `z_k = z_(k-1) + d_k`.
+#[derive(Debug, Clone)]
+pub(super) struct Smoother {
+    largest_eigenvalue: f64,
+    /// `a_k` and `b_k`.
+    steps: [(f32, f32); DEGREE],
+}
+
+/// Vectors that a level works with, one entry a node.
+#[derive(Debug, Clone)]
+pub(super) struct Work<const N: usize> {
+    /// Right-hand side `r`.
+    pub(super) rhs: Vec<[f32; N]>,
+    /// Solution `z`.
+    pub(super) solution: Vec<[f32; N]>,
+    /// Last step `d`; between smoothings, the residual.
+    pub(super) step: Vec<[f32; N]>,
+    next: Vec<[f32; N]>,
+}
+
+impl<const N: usize> Work<N> {
+    pub(super) fn new(rows: usize) -> Self {
+        let zeros = vec![[0.0; N]; rows];
+        Self {
+            rhs: zeros.clone(),
+            solution: zeros.clone(),
+            step: zeros.clone(),
+            next: zeros,
+        }
+    }
+}
+
+impl Smoother {
+    /// For a matrix with this bound of its eigenvalues.
+    pub(super) fn new(largest_eigenvalue: f64) -> Self {
+        let step = |index: usize| {
+            let k = (index + 1) as f64;
+            let a = (2.0 * k - 3.0).max(0.0) / (2.0 * k + 1.0);
+            let b = (8.0 * k - 4.0) / (2.0 * k + 1.0) / largest_eigenvalue;
+            (a as f32, b as f32)
+        };
+        Self {
+            largest_eigenvalue,
+            steps: std::array::from_fn(step),
+        }
+    }
+
+    /// For a spectrum that reaches further by `margin` than the bound says.
+    pub(super) fn with_margin(&self, margin: f64) -> Self {
+        Self {
+            largest_eigenvalue: self.largest_eigenvalue,
+            ..Self::new(margin * self.largest_eigenvalue)
+        }
+    }
+
+    /// Smooths from zero.
+    pub(super) fn start<const N: usize>(&self, matrix: &Sparse<N, N>, work: &mut Work<N>) {
+        let (_, factor) = self.steps[0];
+        let rows = rows_per_task::<N>();
+        let targets = work.solution.par_chunks_mut(rows);
+        let targets = targets.zip(work.step.par_chunks_mut(rows));
+        let tasks = targets.zip(work.rhs.par_chunks(rows));
+        tasks.for_each(|((solution, step), rhs)| {
+            for ((solution, step), rhs) in solution.iter_mut().zip(step).zip(rhs) {
+                *step = rhs.map(|entry| factor * entry);
+                *solution = *step;
+            }
+        });
+        for &(a, b) in &self.steps[1..] {
+            advance(matrix, work, a, b);
+        }
+    }
+
+    /// Smooths what the solution is so far.
+    pub(super) fn resume<const N: usize>(&self, matrix: &Sparse<N, N>, work: &mut Work<N>) {
+        for &(a, b) in &self.steps {
+            advance(matrix, work, a, b);
+        }
+    }
+}
+
+fn advance<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>, a: f32, b: f32) {
+    let rows = rows_per_task::<N>();
+    let (rhs, old) = (&work.rhs, &work.solution);
+    let targets = work.next.par_chunks_mut(rows);
+    let tasks = targets.zip(work.step.par_chunks_mut(rows)).enumerate();
+    tasks.for_each(|(task, (next, step))| {
+        for (place, (next, step)) in next.iter_mut().zip(step).enumerate() {
+            let row = task * rows + place;
+            let product = matrix.times(row, old);
+            for i in 0..N {
+                step[i] = a * step[i] + b * (rhs[row][i] - product[i]);
+                next[i] = old[row][i] + step[i];
+            }
+        }
+    });
+    std::mem::swap(&mut work.solution, &mut work.next);
+}
+
+/// Writes the residual where the last step was.
+pub(super) fn residual<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>) {
+    let rows = rows_per_task::<N>();
+    let (rhs, solution) = (&work.rhs, &work.solution);
+    let tasks = work.step.par_chunks_mut(rows).enumerate();
+    tasks.for_each(|(task, residual)| {
+        for (place, residual) in residual.iter_mut().enumerate() {
+            let row = task * rows + place;
+            let product = matrix.times(row, solution);
+            *residual = std::array::from_fn(|i| rhs[row][i] - product[i]);
+        }
+    });
+}

@@ -1,0 +1,158 @@
+//! What the hierarchy promises, on a lattice of springs and on nodes that nothing couples.
+
+use glam::{DMat3, DVec3};
+
+use super::block_jacobi::Factors;
+use super::clusters::Clusters;
+use super::mean_field::STRENGTH;
+use super::{aggregation, tentative, *};
+use crate::block_matrix::{BlockMatrix, BlockPattern};
+use crate::conjugate_gradients::{
+    ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
+};
+use crate::small;
+
+struct Case {
+    pattern: BlockPattern,
+    matrix: BlockMatrix,
+    modes: Vec<[DVec3; 6]>,
+}
+
+impl Case {
+    fn rows(&self) -> BlockRows<'_> {
+        self.matrix.rows(&self.pattern)
+    }
+
+    /// Solves for forces without a pattern; iterations.
+    fn solve(&self) -> usize {
+        let multigrid = Multigrid::new(self.rows(), &self.modes).expect("positive definite");
+        let mut workspace = multigrid.workspace();
+        let number = |at: usize| ((at * at * 7919 + at * 13) % 1009) as f64 / 1009.0 - 0.5;
+        let rhs: Vec<DVec3> = (0..self.modes.len())
+            .map(|at| DVec3::new(number(3 * at), number(3 * at + 1), number(3 * at + 2)))
+            .collect();
+        let mut solution = vec![DVec3::ZERO; rhs.len()];
+        let report = conjugate_gradients(
+            |vector, product| self.rows().multiply(vector, product),
+            |residual, correction| multigrid.apply(residual, correction, &mut workspace),
+            &rhs,
+            &mut solution,
+            ConjugateGradientSettings {
+                tolerance: 1e-8,
+                max_iterations: 300,
+            },
+        );
+        assert_eq!(report.outcome, ConjugateGradientOutcome::Converged);
+        report.iterations
+    }
+}
+
+/// A cube of `edge^3` nodes joined by springs to all nodes around each; the nodes of one face are tied to
+/// where they are.
+fn lattice(edge: usize) -> Case {
+    let place = |node: usize| [node % edge, node / edge % edge, node / edge / edge];
+    let at = |node: usize| DVec3::from_array(place(node).map(|x| x as f64));
+    let nodes = edge.pow(3);
+    let (mut row_offset, mut columns, mut blocks) = (vec![0], Vec::new(), Vec::new());
+    for node in 0..nodes {
+        let is_near = |other: &usize| {
+            let pairs = std::iter::zip(place(node), place(*other));
+            pairs.into_iter().all(|(a, b)| a.abs_diff(b) <= 1)
+        };
+        let spring = |other: usize| {
+            let arm = (at(other) - at(node)).normalize_or_zero();
+            DMat3::from_cols(arm.x * arm, arm.y * arm, arm.z * arm)
+        };
+        let around: Vec<usize> = (0..nodes).filter(is_near).collect();
+        let mut own: DMat3 = around.iter().map(|&other| spring(other)).sum();
+        if place(node)[2] == 0 {
+            own += DMat3::IDENTITY;
+        }
+        for &other in &around {
+            columns.push(other as u32);
+            blocks.push(if other == node { own } else { -spring(other) });
+        }
+        row_offset.push(columns.len());
+    }
+    let centre = DVec3::splat(0.5 * edge as f64);
+    let modes = (0..nodes).map(|node| rigid_modes(at(node), centre, DMat3::IDENTITY));
+    Case {
+        modes: modes.collect(),
+        pattern: BlockPattern {
+            row_offset,
+            columns,
+        },
+        matrix: BlockMatrix { blocks },
+    }
+}
+
+/// `count` nodes that nothing couples.
+fn loose(count: usize) -> Case {
+    Case {
+        pattern: BlockPattern {
+            row_offset: (0..=count).collect(),
+            columns: (0..count as u32).collect(),
+        },
+        matrix: BlockMatrix {
+            blocks: vec![DMat3::from_diagonal(DVec3::new(1.0, 2.0, 3.0)); count],
+        },
+        modes: vec![[DVec3::ZERO; 6]; count],
+    }
+}
+
+#[test]
+fn iterations_hardly_grow_with_a_lattice() {
+    let [small, large] = [8, 16].map(|edge| lattice(edge).solve());
+    assert!(small <= 20 && large <= 24, "{small}, {large}");
+}
+
+#[test]
+fn rigid_motions_are_prolonged_exactly() {
+    let case = lattice(8);
+    let rows = SumRows::of_fixed(case.rows());
+    let single = Clusters::single(rows.count());
+    let factors = Factors::of(&rows, &single).unwrap();
+    let mut scaled = Sparse::default();
+    block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors);
+    let modes = block_jacobi::modes(&factors, &case.modes);
+    let aggregates = aggregation::aggregate(&scaled, STRENGTH);
+    let tentative = tentative::tentative(&aggregates, &modes);
+    for (node, &aggregate) in aggregates.of_node.iter().enumerate() {
+        if aggregate == aggregation::ALONE {
+            continue;
+        }
+        let triangle = &tentative.modes[aggregate as usize];
+        let prolonged = small::product(&small::widen(&tentative.blocks[node]), triangle);
+        for (row, expected) in prolonged.iter().zip(&modes[node]) {
+            for (entry, expected) in row.iter().zip(expected) {
+                // `T` is stored in single precision.
+                assert!((entry - expected).abs() < 1e-6);
+            }
+        }
+    }
+}
+
+#[test]
+fn loose_and_held_nodes_are_solved_at_once() {
+    for count in [1, 2, 150, 1000] {
+        assert!(loose(count).solve() <= 2, "{count} loose nodes");
+    }
+}
+
+#[test]
+fn no_rows_make_no_trouble() {
+    let case = loose(0);
+    let multigrid = Multigrid::new(case.rows(), &case.modes).unwrap();
+    multigrid.apply(&[], &mut [], &mut multigrid.workspace());
+}
+
+#[test]
+fn a_block_that_is_not_positive_is_named() {
+    let mut case = loose(5);
+    case.matrix.blocks[3].z_axis.z = -1.0;
+    let failure = Multigrid::new(case.rows(), &case.modes).map(|_| ());
+    assert_eq!(failure, Err(MultigridFailure::NotPositive(3)));
+    case.matrix.blocks[3].z_axis.z = f64::NAN;
+    let failure = Multigrid::new(case.rows(), &case.modes).map(|_| ());
+    assert_eq!(failure, Err(MultigridFailure::NotPositive(3)));
+}

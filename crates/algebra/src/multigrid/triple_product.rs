@@ -1,0 +1,282 @@
+//! Products `P^T A P` with little room besides the result: rows of `A` are taken in batches.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
+use crate::lists::sum_up;
+use crate::small::{add, add_columns, add_product, widen};
+
+/// Rows of a batch, fixed so that no result depends on the number of threads. `A P` of one is kept.
+const fn batch<const N: usize>() -> usize {
+    if N == 3 { 1 << 16 } else { 1 << 14 }
+}
+
+/// A 6x6 block as rows.
+pub(super) type Block6 = [[f64; 6]; 6];
+
+/// What some rows of `A` give to `P^T A P`.
+#[derive(Debug, Clone)]
+pub(super) struct PartialProduct {
+    /// Aggregates that they give something to, ascending.
+    aggregates: Vec<u32>,
+    /// Their diagonal blocks.
+    pub(super) diagonal: Vec<Block6>,
+    /// The blocks of their rows right of the diagonal, as rows; columns are numbers of aggregates.
+    pub(super) upper: Sparse<6, 6>,
+}
+
+impl PartialProduct {
+    /// All of `P^T A P`, `A` having the identity as its diagonal.
+    pub(super) fn whole<const N: usize>(
+        matrix: &Sparse<N, N>,
+        prolongator: &Sparse<N, 6>,
+        transpose: &Transpose,
+    ) -> Self {
+        let parts = Self::of_rows(matrix, prolongator, transpose, |_| true);
+        Self::sum(transpose.columns(), &parts)
+    }
+
+    /// What rows of `A`, which has the identity as its diagonal, give to `P^T A P`: those that `is_wanted`, in
+    /// batches.
+    pub(super) fn of_rows<const N: usize>(
+        matrix: &Sparse<N, N>,
+        prolongator: &Sparse<N, 6>,
+        transpose: &Transpose,
+        is_wanted: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<Self> {
+        let rows = matrix.rows();
+        let mut image = Sparse::empty();
+        let starts = (0..rows).step_by(batch::<N>());
+        let parts = starts.map(|start| {
+            let rows = start..rows.min(start + batch::<N>());
+            let aggregates = transpose.columns();
+            let is_wanted = &is_wanted;
+            set_image(
+                &mut image,
+                matrix,
+                prolongator,
+                aggregates,
+                &rows,
+                is_wanted,
+            );
+            Self::of_image(prolongator, transpose, &rows, &image)
+        });
+        parts.collect()
+    }
+
+    /// What some rows give, from their rows of `A P`.
+    fn of_image<const N: usize>(
+        prolongator: &Sparse<N, 6>,
+        transpose: &Transpose,
+        rows: &Range<usize>,
+        image: &Sparse<N, 6>,
+    ) -> Self {
+        let mut is_met = vec![false; transpose.columns()];
+        let met = prolongator.offset[rows.start]..prolongator.offset[rows.end];
+        for &column in &prolongator.columns[met] {
+            is_met[column as usize] = true;
+        }
+        let aggregates = (0..transpose.columns() as u32).filter(|&at| is_met[at as usize]);
+        let aggregates: Vec<u32> = aggregates.collect();
+        let batch = Batch {
+            prolongator,
+            transpose,
+            image,
+            rows,
+        };
+        let diagonal = aggregates.par_iter().with_min_len(rows_per_task::<6>());
+        Self {
+            diagonal: diagonal.map(|&at| batch.diagonal(at)).collect(),
+            upper: batch.upper(&aggregates),
+            aggregates,
+        }
+    }
+
+    /// The sum of parts, with all aggregates.
+    pub(super) fn sum<'a>(aggregates: usize, parts: impl IntoIterator<Item = &'a Self>) -> Self {
+        let parts: Vec<&Self> = parts.into_iter().collect();
+        let (offset, places) = places(aggregates, &parts);
+        let of = |aggregate: usize| {
+            let places = &places[offset[aggregate]..offset[aggregate + 1]];
+            places
+                .iter()
+                .map(|&(part, row)| (parts[part as usize], row as usize))
+        };
+        let diagonal = (0..aggregates).into_par_iter().map(|aggregate| {
+            let mut sum = [[0.0; 6]; 6];
+            of(aggregate).for_each(|(part, row)| add(&mut sum, 1.0, &part.diagonal[row]));
+            sum
+        });
+        let upper = Sparse::build(
+            aggregates,
+            rows_per_task::<6>(),
+            || Accumulator::<6, 6>::new(aggregates),
+            |sums, aggregate| {
+                for (part, row) in of(aggregate) {
+                    let columns = &part.upper.columns[part.upper.range(row)];
+                    columns.iter().for_each(|&column| sums.touch(column));
+                }
+                sums.take_count()
+            },
+            #[inline(always)]
+            |sums, aggregate, columns, blocks| {
+                for (part, row) in of(aggregate) {
+                    for (column, block) in part.upper.row(row) {
+                        add(sums.at(column as u32), 1.0, &widen(block));
+                    }
+                }
+                sums.take(columns, blocks);
+            },
+        );
+        Self {
+            aggregates: (0..aggregates as u32).collect(),
+            diagonal: diagonal.collect(),
+            upper,
+        }
+    }
+
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.aggregates[..]) + size_of_val(&self.diagonal[..]) + self.upper.bytes()
+    }
+}
+
+/// For each aggregate the parts that have it, and its row there.
+fn places(aggregates: usize, parts: &[&PartialProduct]) -> (Vec<usize>, Vec<(u32, u32)>) {
+    let mut offset = vec![0; aggregates + 1];
+    for &aggregate in parts.iter().flat_map(|part| &part.aggregates) {
+        offset[aggregate as usize + 1] += 1;
+    }
+    sum_up(&mut offset);
+    let mut next = offset.clone();
+    let mut places = vec![(0, 0); offset[aggregates]];
+    for (number, part) in parts.iter().enumerate() {
+        for (row, &aggregate) in part.aggregates.iter().enumerate() {
+            let next = &mut next[aggregate as usize];
+            places[*next] = (number as u32, row as u32);
+            *next += 1;
+        }
+    }
+    (offset, places)
+}
+
+/// Some rows of `A P`, empty if not wanted.
+fn set_image<const N: usize>(
+    image: &mut Sparse<N, 6>,
+    matrix: &Sparse<N, N>,
+    prolongator: &Sparse<N, 6>,
+    aggregates: usize,
+    rows: &Range<usize>,
+    is_wanted: impl Fn(usize) -> bool + Sync,
+) {
+    image.rebuild(
+        rows.len(),
+        rows_per_task::<N>(),
+        || Accumulator::<N, 6>::new(aggregates),
+        |sums, row| {
+            let row = rows.start + row;
+            if !is_wanted(row) {
+                return 0;
+            }
+            for at in std::iter::once(row).chain(matrix.row(row).map(|(at, _)| at)) {
+                let columns = &prolongator.columns[prolongator.range(at)];
+                columns.iter().for_each(|&column| sums.touch(column));
+            }
+            sums.take_count()
+        },
+        #[inline(always)]
+        |sums, row, columns, blocks| {
+            let row = rows.start + row;
+            if !is_wanted(row) {
+                return;
+            }
+            for (column, block) in prolongator.row(row) {
+                add(sums.at(column as u32), 1.0, &widen(block));
+            }
+            for (at, block) in matrix.row(row) {
+                for (column, line) in prolongator.row(at) {
+                    add_product(sums.at(column as u32), 1.0, block, line);
+                }
+            }
+            sums.take(columns, blocks);
+        },
+    );
+}
+
+/// Some rows of `P` and of `A P`.
+struct Batch<'a, const N: usize> {
+    prolongator: &'a Sparse<N, 6>,
+    transpose: &'a Transpose,
+    image: &'a Sparse<N, 6>,
+    rows: &'a Range<usize>,
+}
+
+impl<const N: usize> Batch<'_, N> {
+    /// Blocks of a column of `P`, and the rows of the image.
+    #[inline(always)]
+    fn column(&self, aggregate: u32) -> impl Iterator<Item = (&[[f32; 6]; N], usize)> {
+        let entries = self.transpose.column(aggregate as usize);
+        let before = |end: usize| entries.partition_point(|&(row, _)| (row as usize) < end);
+        let entries = &entries[before(self.rows.start)..before(self.rows.end)];
+        entries.iter().map(|&(row, position)| {
+            let block = &self.prolongator.blocks[position as usize];
+            (block, row as usize - self.rows.start)
+        })
+    }
+
+    fn diagonal(&self, aggregate: u32) -> Block6 {
+        let mut sum = [[0.0; 6]; 6];
+        for (left, row) in self.column(aggregate) {
+            let range = self.image.range(row);
+            let place = self.image.columns[range.clone()].binary_search(&aggregate);
+            if let Ok(place) = place {
+                add_transposed(&mut sum, left, &self.image.blocks[range.start + place]);
+            }
+        }
+        sum
+    }
+
+    /// Entries of a row of the image right of the diagonal.
+    #[inline(always)]
+    fn right_of(&self, row: usize, aggregate: u32) -> Range<usize> {
+        let range = self.image.range(row);
+        let columns = &self.image.columns[range.clone()];
+        range.start + columns.partition_point(|&column| column <= aggregate)..range.end
+    }
+
+    fn upper(&self, aggregates: &[u32]) -> Sparse<6, 6> {
+        let image = self.image;
+        Sparse::build(
+            aggregates.len(),
+            rows_per_task::<6>(),
+            || Accumulator::<6, 6>::new(self.transpose.columns()),
+            |sums, row| {
+                let aggregate = aggregates[row];
+                for (_, row) in self.column(aggregate) {
+                    let columns = &image.columns[self.right_of(row, aggregate)];
+                    columns.iter().for_each(|&column| sums.touch(column));
+                }
+                sums.take_count()
+            },
+            #[inline(always)]
+            |sums, row, columns, blocks| {
+                let aggregate = aggregates[row];
+                for (left, row) in self.column(aggregate) {
+                    for right in self.right_of(row, aggregate) {
+                        let sum = sums.at(image.columns[right]);
+                        add_transposed(sum, left, &image.blocks[right]);
+                    }
+                }
+                sums.take(columns, blocks);
+            },
+        )
+    }
+}
+
+/// `S += A^T B` of blocks as rows.
+#[inline(always)]
+fn add_transposed<const N: usize>(sum: &mut Block6, a: &[[f32; 6]; N], b: &[[f32; 6]; N]) {
+    add_columns(sum, &widen(a), &widen(b));
+}

@@ -1,0 +1,42 @@
+//! A point of a facet, where a law is integrated.
+
+use glam::DVec3;
+use lie_core::{JointState, RockStiffness};
+
+/// Stiffness of the rock along a facet, as a share of that across.
+const SHEAR_SHARE: f64 = 0.3;
+
+/// One point of one facet.
+#[derive(Debug, Clone, Copy)]
+pub struct FacetPoint {
+    /// Facet it belongs to.
+    pub facet: u32,
+    /// Index of its fracture.
+    pub fracture: u32,
+    /// Place (m).
+    pub position: DVec3,
+    /// Area it stands for (m^2); negative at the tip of a quarter-point facet, where nothing moves.
+    pub area: f64,
+    /// Unit normal, from minus to plus.
+    pub normal: DVec3,
+    /// Upper bound of the stiffness of the rock next to it, about `E/h` (Pa/m): constrained modulus
+    /// over the height of the cells on both sides, in series.
+    pub spring: f64,
+    /// The walls carrying the initial stress. The law always sees the jump beyond that.
+    pub initial: JointState,
+}
+
+impl FacetPoint {
+    /// Stiffness of the rock beside it.
+    pub fn rock_stiffness(&self) -> RockStiffness {
+        RockStiffness {
+            normal: self.spring,
+            shear: SHEAR_SHARE * self.spring,
+        }
+    }
+
+    /// Jump (m) at which the law carries the initial stress.
+    pub fn initial_jump(&self) -> DVec3 {
+        self.initial.separation.opening * self.normal + self.initial.slip
+    }
+}

@@ -1,0 +1,422 @@
+//! The fractures as the solver sees them: facet points, each with a jump and a law.
+//!
+//! The jump of a facet point is `w = sum_i J_i y_i + sum_c f_c w_c`, over the unknowns `y_i` of its nodes,
+//! with `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))`, and over the load cases `c` with their
+//! factors `f_c` and the jumps `w_c` of their prescribed displacements.
+//! Facets are integrated at their nodes, so with few exceptions (facets of second order, see
+//! `lie_core::facet_points`) a facet point couples the unknowns of one node only. Without supports the coefficient of a
+//! continuous displacement is zero and left out: the fractures act on the jumps alone.
+
+use glam::{DMat3, DVec3};
+use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists};
+use kluft_mesh::cell_volume;
+use lie_core::enrichment::coefficient;
+use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, JointState, facet_points};
+use rayon::prelude::*;
+
+use crate::assembly::facet_point::FacetPoint;
+use crate::assembly::shared_walls;
+use crate::problem::{Load, Problem};
+use crate::space::sector_nodes::SectorNodes;
+use crate::space::supports::Supports;
+
+/// Share of a facet below which the area of a point has no direction of its own.
+const TURNED: f64 = 1e-9;
+/// One term of the jump of a facet point.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    unknown: u32,
+    /// `J_i`.
+    factor: DMat3,
+}
+
+/// What the prescribed displacements of a load case do to a facet point.
+#[derive(Debug, Clone, Copy)]
+struct PrescribedJump {
+    point: u32,
+    case: u32,
+    /// Jump at load factor 1 (m), `w_c`.
+    jump: DVec3,
+}
+
+/// All facet points and how the unknowns move them.
+#[derive(Debug, Clone)]
+pub struct Interface {
+    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
+    /// in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points follow.
+    pub(crate) points: Vec<FacetPoint>,
+    /// Law of each fracture.
+    laws: Vec<FractureLaw>,
+    /// Rule that each fracture is integrated by.
+    rules: Vec<FacetQuadrature>,
+    /// Start of the terms of each facet point.
+    term_offset: Vec<usize>,
+    terms: Vec<Term>,
+    /// Facet point of each term.
+    point_of_term: Vec<u32>,
+    /// Jumps of prescribed displacements, where there are any, points ascending.
+    prescribed: Vec<PrescribedJump>,
+    /// Unknowns that move facet points, ascending.
+    pub(crate) unknowns: Vec<u32>,
+    /// Terms of each of `unknowns`.
+    terms_of_unknown: Lists,
+    /// For each of `unknowns` the unknowns it shares a facet point with, ascending.
+    pub(crate) columns: Lists,
+}
+
+impl Interface {
+    /// Collects the facet points of a problem, and takes over its laws.
+    pub fn of(problem: &Problem, points: &SectorNodes, supports: &Supports) -> Self {
+        let facets: Vec<(Vec<Drawn>, Vec<Drawn>)> = (0..problem.mesh.facets.elements.len())
+            .into_par_iter()
+            .map(|facet| draw(problem, points, supports, facet))
+            .collect();
+        let (nodal, middle): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
+        let fractures = problem.fractures.iter();
+        let mut interface = Self {
+            points: Vec::new(),
+            laws: fractures.map(|fracture| fracture.law).collect(),
+            rules: (0..problem.fractures.len() as u32)
+                .map(|fracture| problem.rule_of(fracture))
+                .collect(),
+            term_offset: vec![0],
+            terms: Vec::new(),
+            point_of_term: Vec::new(),
+            prescribed: Vec::new(),
+            unknowns: Vec::new(),
+            terms_of_unknown: Lists::default(),
+            columns: Lists::default(),
+        };
+        for drawn in nodal.into_iter().chain(middle).flatten() {
+            let number = interface.points.len() as u32;
+            interface
+                .point_of_term
+                .extend(drawn.terms.iter().map(|_| number));
+            let prescribed = drawn.prescribed.into_iter();
+            let prescribed = prescribed.map(|(case, jump)| PrescribedJump {
+                point: number,
+                case,
+                jump,
+            });
+            interface.prescribed.extend(prescribed);
+            interface.points.push(drawn.point);
+            interface.terms.extend(drawn.terms);
+            interface.term_offset.push(interface.terms.len());
+        }
+        if problem.facet_quadrature != FacetQuadrature::Gauss {
+            shared_walls::share(problem, points, &mut interface.points);
+        }
+        interface.connect();
+        interface
+    }
+
+    fn connect(&mut self) {
+        let mut unknowns: Vec<u32> = self.terms.iter().map(|term| term.unknown).collect();
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        let row = |term: &Term| unknowns.partition_point(|other| *other < term.unknown) as u32;
+        let rows: Vec<u32> = self.terms.iter().map(row).collect();
+        self.terms_of_unknown = Lists::group(rows.into_iter(), unknowns.len());
+        let columns: Vec<Vec<u32>> = (0..unknowns.len())
+            .into_par_iter()
+            .map(|row| {
+                let terms = self.terms_of_unknown.of(row).iter();
+                let around = terms.flat_map(|&term| self.terms_beside(term));
+                let mut columns: Vec<u32> = around.map(|other| other.unknown).collect();
+                columns.sort_unstable();
+                columns.dedup();
+                columns
+            })
+            .collect();
+        self.columns = Lists::collect(&columns);
+        self.unknowns = unknowns;
+    }
+
+    /// Gives the fractures other laws, one each, which carry the initial stress from now on. The facet
+    /// points stay.
+    pub(crate) fn set_laws(&mut self, problem: &Problem, laws: Vec<FractureLaw>) {
+        for point in &mut self.points {
+            let law = &laws[point.fracture as usize];
+            point.initial = initial_walls(problem, law, point.position, point.normal);
+        }
+        self.laws = laws;
+    }
+
+    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
+    /// in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points follow.
+    pub fn points(&self) -> &[FacetPoint] {
+        &self.points
+    }
+
+    /// Unknowns that move facet points, ascending.
+    pub fn unknowns(&self) -> &[u32] {
+        &self.unknowns
+    }
+
+    /// For each of [`Self::unknowns`] the unknowns it shares a facet point with, ascending.
+    pub fn columns(&self) -> &Lists {
+        &self.columns
+    }
+
+    /// Law of each fracture.
+    pub fn laws(&self) -> &[FractureLaw] {
+        &self.laws
+    }
+
+    /// Rule that a fracture is integrated by.
+    pub fn rule_of(&self, fracture: u32) -> FacetQuadrature {
+        self.rules[fracture as usize]
+    }
+
+    /// Where the fractures add to the stiffness of the rock.
+    pub fn pattern(&self) -> InterfacePattern<'_> {
+        InterfacePattern {
+            rows: &self.unknowns,
+            columns: &self.columns,
+        }
+    }
+
+    fn terms_of(&self, point: usize) -> &[Term] {
+        &self.terms[self.term_offset[point]..self.term_offset[point + 1]]
+    }
+
+    /// Terms of the facet point that `term` belongs to.
+    fn terms_beside(&self, term: u32) -> &[Term] {
+        self.terms_of(self.point_of_term[term as usize] as usize)
+    }
+
+    /// Jumps `u(plus) - u(minus)` (m) under a load.
+    pub fn jumps(&self, unknowns: &[DVec3], load: &Load) -> Vec<DVec3> {
+        let mut jumps: Vec<DVec3> = (0..self.points.len())
+            .into_par_iter()
+            .map(|point| {
+                let terms = self.terms_of(point).iter();
+                terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum()
+            })
+            .collect();
+        for entry in &self.prescribed {
+            jumps[entry.point as usize] += load.factor(entry.case as usize) * entry.jump;
+        }
+        jumps
+    }
+
+    /// By how much the prescribed displacements change the jumps from one load to another (m).
+    pub(crate) fn prescribed_change(&self, from: &Load, to: &Load) -> Vec<DVec3> {
+        let mut changes = vec![DVec3::ZERO; self.points.len()];
+        for entry in &self.prescribed {
+            let case = entry.case as usize;
+            changes[entry.point as usize] += (to.factor(case) - from.factor(case)) * entry.jump;
+        }
+        changes
+    }
+
+    /// Adds `sign` times the forces (N) by which `tractions` (Pa) resist to the forces on all
+    /// unknowns: `sum A J_i^T t`.
+    pub fn add_forces(&self, tractions: &[DVec3], sign: f64, forces: &mut [DVec3]) {
+        let sums: Vec<DVec3> = (0..self.unknowns.len())
+            .into_par_iter()
+            .map(|row| {
+                let terms = self.terms_of_unknown.of(row).iter();
+                let force = |&term: &u32| {
+                    let point = self.point_of_term[term as usize] as usize;
+                    let factor = self.terms[term as usize].factor.transpose();
+                    self.points[point].area * (factor * tractions[point])
+                };
+                terms.map(force).sum()
+            })
+            .collect();
+        for (&unknown, sum) in self.unknowns.iter().zip(sums) {
+            forces[unknown as usize] += sign * sum;
+        }
+    }
+
+    /// [`Self::stiffness`] of fractures as stiff as the rock beside them.
+    pub fn springs(&self) -> Vec<DMat3> {
+        let points = self.points.iter();
+        let springs: Vec<DMat3> = points.map(|point| point.spring * DMat3::IDENTITY).collect();
+        self.stiffness(&springs)
+    }
+
+    /// Stiffness of the fractures, one block for each of [`Self::columns`]: `K_ij = sum A J_i^T D J_j`.
+    pub fn stiffness(&self, tangents: &[DMat3]) -> Vec<DMat3> {
+        let rows: Vec<Vec<DMat3>> = (0..self.unknowns.len())
+            .into_par_iter()
+            .map(|row| self.stiffness_row(row, tangents))
+            .collect();
+        rows.concat()
+    }
+
+    /// Forces of the fractures with [`Self::stiffness`] on each of [`Self::unknowns`]: `K_ij v_j`.
+    pub(crate) fn resistance(&self, stiffness: &[DMat3], vector: &[DVec3]) -> Vec<DVec3> {
+        let pattern = self.pattern();
+        let blocks = stiffness;
+        InterfaceBlocks { pattern, blocks }.products(vector)
+    }
+
+    fn stiffness_row(&self, row: usize, tangents: &[DMat3]) -> Vec<DMat3> {
+        let columns = self.columns.of(row);
+        let mut blocks = vec![DMat3::ZERO; columns.len()];
+        for &term in self.terms_of_unknown.of(row) {
+            let point = self.point_of_term[term as usize] as usize;
+            let left = self.terms[term as usize].factor.transpose() * tangents[point];
+            for other in self.terms_of(point) {
+                let place = columns.partition_point(|column| *column < other.unknown);
+                blocks[place] += self.points[point].area * (left * other.factor);
+            }
+        }
+        blocks
+    }
+}
+
+/// A facet point with its terms, before they are numbered.
+struct Drawn {
+    point: FacetPoint,
+    terms: Vec<Term>,
+    /// Load case and jump (m) of prescribed displacements.
+    prescribed: Vec<(u32, DVec3)>,
+}
+
+/// The points of one facet: those at its nodes, and the others.
+fn draw(
+    problem: &Problem,
+    points: &SectorNodes,
+    supports: &Supports,
+    facet: usize,
+) -> (Vec<Drawn>, Vec<Drawn>) {
+    let mesh = &problem.mesh;
+    let elements = &mesh.facets.elements;
+    let nodes = elements.nodes_of(facet);
+    let positions: Vec<DVec3> = nodes
+        .iter()
+        .map(|&node| mesh.nodes[node as usize])
+        .collect();
+    let quadrature = problem.rule_of(mesh.facets.fracture[facet]);
+    let rule = facet_points(elements.shapes[facet], &positions, quadrature);
+    let mean: DVec3 = rule.iter().map(|point| point.area).sum();
+    let drawing = Drawing {
+        problem,
+        points,
+        supports,
+        facet,
+        spring: spring(problem, facet, mean.length()),
+        mean,
+    };
+    let mut drawn: Vec<Drawn> = rule.iter().map(|point| drawing.point(point)).collect();
+    let nodal = match quadrature {
+        FacetQuadrature::Nodal | FacetQuadrature::Control => nodes.len(),
+        FacetQuadrature::Gauss => 0,
+    };
+    let others = drawn.split_off(nodal);
+    (drawn, others)
+}
+
+/// A facet whose points are drawn.
+struct Drawing<'a> {
+    problem: &'a Problem,
+    points: &'a SectorNodes,
+    supports: &'a Supports,
+    facet: usize,
+    /// Stiffness of the rock beside it (Pa/m).
+    spring: f64,
+    /// Sum of the areas of its points times their normals (m^2).
+    mean: DVec3,
+}
+
+impl Drawing<'_> {
+    fn point(&self, rule: &FacetRulePoint) -> Drawn {
+        let Self {
+            problem,
+            points,
+            supports,
+            facet,
+            spring,
+            mean,
+        } = *self;
+        let facets = &problem.mesh.facets;
+        let slots = facets.elements.range(facet);
+        let wall = |slots: &[u32], local: u8| points.of_cell_node[slots[local as usize] as usize];
+        let (plus, minus) = (
+            &facets.plus_slots[slots.clone()],
+            &facets.minus_slots[slots],
+        );
+        let mut terms = Vec::new();
+        let mut prescribed = vec![DVec3::ZERO; problem.schedule.case_count()];
+        for &(local, value) in &rule.nodes {
+            let (plus, minus) = (wall(plus, local), wall(minus, local));
+            for (case, jump) in prescribed.iter_mut().enumerate() {
+                let held = |point: u32| supports.prescribed(point as usize, case);
+                *jump += value * (held(plus) - held(minus));
+            }
+            terms.extend(jump_terms(points, supports, plus, minus, value));
+        }
+        let fracture = facets.fracture[facet];
+        // At the tip of a quarter-point facet the share of the tip is negative or nothing; nothing moves there.
+        let own = rule.area.length();
+        let (area, normal) = match own > TURNED * mean.length() && rule.area.dot(mean) > 0.0 {
+            true => (own, rule.area / own),
+            false => (rule.area.dot(mean.normalize()), mean.normalize()),
+        };
+        let law = &problem.fractures[fracture as usize].law;
+        let point = FacetPoint {
+            facet: facet as u32,
+            fracture,
+            position: rule.position,
+            area,
+            normal,
+            spring,
+            initial: initial_walls(problem, law, rule.position, normal),
+        };
+        let prescribed = (0..).zip(prescribed);
+        Drawn {
+            point,
+            terms,
+            prescribed: prescribed
+                .filter(|(_, jump)| *jump != DVec3::ZERO)
+                .collect(),
+        }
+    }
+}
+
+/// `J_i` for all unknowns of one node that have one.
+fn jump_terms(
+    points: &SectorNodes,
+    supports: &Supports,
+    plus: u32,
+    minus: u32,
+    value: f64,
+) -> impl Iterator<Item = Term> {
+    let (plus_sector, sectors) = points.sector(plus as usize);
+    let (minus_sector, _) = points.sector(minus as usize);
+    let free = |wall: u32| {
+        supports
+            .constraint(wall as usize)
+            .map_or(DMat3::IDENTITY, |constraint| constraint.free)
+    };
+    let (free_plus, free_minus) = (free(plus), free(minus));
+    (0..sectors)
+        .map(move |k| Term {
+            unknown: plus - plus_sector + k,
+            factor: value
+                * (coefficient(sectors, plus_sector, k) * free_plus
+                    - coefficient(sectors, minus_sector, k) * free_minus),
+        })
+        .filter(|term| term.factor != DMat3::ZERO)
+}
+
+fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
+    let mesh = &problem.mesh;
+    let compliance = |cell: u32| {
+        let cell = cell as usize;
+        let volume = cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
+        volume / area / problem.rock(cell).constrained_modulus()
+    };
+    1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
+}
+
+/// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
+/// what the initial stress would need of it.
+fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> JointState {
+    let stress = problem.initial_stress;
+    let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
+    law.under_initial_stress(traction, normal)
+}

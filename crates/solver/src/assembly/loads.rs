@@ -1,0 +1,156 @@
+//! Forces on the unknowns: applied loads, initial stress, prescribed displacements.
+
+use glam::DVec3;
+use kluft_algebra::norm;
+use lie_core::load_areas;
+use rayon::prelude::*;
+
+use crate::assembly::cell_forces;
+use crate::assembly::interface::Interface;
+use crate::problem::SurfaceLoad;
+use crate::space::Space;
+
+/// Forces of one load case on all unknowns at load factor 1 (N).
+#[derive(Debug, Clone)]
+pub struct CaseLoads {
+    /// Surface loads, gravity and fluid pressure.
+    pub applied: Vec<DVec3>,
+    /// What the prescribed displacements ask of the rock.
+    pub prescribed: Vec<DVec3>,
+}
+
+impl CaseLoads {
+    fn sizes(&self) -> CaseSizes {
+        CaseSizes {
+            applied: norm(&self.applied),
+            prescribed: norm(&self.prescribed),
+        }
+    }
+}
+
+/// Euclidean norms of [`CaseLoads`] over all unknowns (N).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CaseSizes {
+    pub(crate) applied: f64,
+    pub(crate) prescribed: f64,
+}
+
+/// Forces on all unknowns (N), and how large they are.
+#[derive(Debug, Clone)]
+pub struct Loads {
+    cases: Vec<CaseLoads>,
+    initial: Vec<DVec3>,
+    case_sizes: Vec<CaseSizes>,
+    initial_size: f64,
+}
+
+impl Loads {
+    /// Those of each load case, and what the initial stress of the rock does, which is never scaled.
+    pub fn new(cases: Vec<CaseLoads>, initial: Vec<DVec3>) -> Self {
+        Self {
+            case_sizes: cases.iter().map(CaseLoads::sizes).collect(),
+            initial_size: norm(&initial),
+            cases,
+            initial,
+        }
+    }
+
+    pub(crate) fn of(space: Space<'_>, interface: &Interface) -> Self {
+        let of_case = |case| CaseLoads {
+            applied: applied(space, interface, case),
+            prescribed: negative(space, cell_forces::prescribed(space, case)),
+        };
+        let cases = 0..space.problem.schedule.case_count();
+        Self::new(
+            cases.map(of_case).collect(),
+            negative(space, cell_forces::initial_stress(space)),
+        )
+    }
+
+    /// Forces of each load case at load factor 1.
+    pub fn cases(&self) -> &[CaseLoads] {
+        &self.cases
+    }
+
+    /// What the initial stress of the rock does.
+    pub fn initial(&self) -> &[DVec3] {
+        &self.initial
+    }
+
+    /// Norms of the forces of each load case at load factor 1.
+    pub(crate) fn case_sizes(&self) -> &[CaseSizes] {
+        &self.case_sizes
+    }
+
+    /// Norm of [`Self::initial`].
+    pub(crate) fn initial_size(&self) -> f64 {
+        self.initial_size
+    }
+}
+
+/// Surface loads, gravity and fluid pressure of a load case.
+fn applied(space: Space<'_>, interface: &Interface, case: usize) -> Vec<DVec3> {
+    let cases = &space.problem.schedule.cases;
+    let mut on_points = match cases.gravity == case {
+        true => cell_forces::gravity(space),
+        false => vec![DVec3::ZERO; space.points.len()],
+    };
+    add_surface_loads(space, case, &mut on_points);
+    let mut applied = on_unknowns(space, &on_points);
+    // The fluid pushes the walls apart: it resists closing like a traction of -p n.
+    let push = interface.points.iter().map(|point| {
+        let fracture = point.fracture as usize;
+        match cases.of_fracture(fracture) == case {
+            true => space.problem.fractures[fracture].fluid_pressure * point.normal,
+            false => DVec3::ZERO,
+        }
+    });
+    interface.add_forces(&push.collect::<Vec<_>>(), 1.0, &mut applied);
+    applied
+}
+
+/// Forces on the unknowns that balance `forces` on the points, if there are any.
+fn negative(space: Space<'_>, forces: Option<Vec<DVec3>>) -> Vec<DVec3> {
+    let Some(forces) = forces else {
+        return vec![DVec3::ZERO; space.points.len()];
+    };
+    let forces: Vec<DVec3> = forces.into_iter().map(|force| -force).collect();
+    on_unknowns(space, &forces)
+}
+
+/// Forces on the unknowns from forces on the points: `T^T P f`.
+fn on_unknowns(space: Space<'_>, forces: &[DVec3]) -> Vec<DVec3> {
+    let (points, supports) = (space.points, space.supports);
+    let projected: Vec<DVec3> = (0..points.len())
+        .into_par_iter()
+        .map(|point| supports.project(point, forces[point]))
+        .collect();
+    (0..points.len())
+        .into_par_iter()
+        .map(|unknown| points.gather(&projected, unknown))
+        .collect()
+}
+
+fn add_surface_loads(space: Space<'_>, case: usize, forces: &mut [DVec3]) {
+    let mesh = &space.problem.mesh;
+    let cases = &space.problem.schedule.cases;
+    let conditions = space.problem.conditions.iter().enumerate();
+    for (_, condition) in conditions.filter(|(index, _)| cases.of_condition(*index) == case) {
+        let Some(load) = condition.load else {
+            continue;
+        };
+        let boundary = &mesh.boundaries[condition.boundary];
+        for facet in 0..boundary.elements.len() {
+            let nodes = boundary.elements.nodes_of(facet).iter();
+            let positions: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+            let areas = load_areas(boundary.elements.shapes[facet], &positions);
+            let slots = &boundary.slots[boundary.elements.range(facet)];
+            for (&slot, (size, area)) in slots.iter().zip(areas) {
+                forces[space.points.of_cell_node[slot as usize] as usize] += match load {
+                    SurfaceLoad::Traction(traction) => size * traction,
+                    SurfaceLoad::Pressure(pressure) => -pressure * area,
+                };
+            }
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Matrices and forces of a problem over its space.
+
+pub(crate) mod cell_forces;
+pub(crate) mod facet_point;
+pub(crate) mod interface;
+pub(crate) mod loads;
+pub(crate) mod rock;
+pub(crate) mod shared_walls;
+pub(crate) mod tetrahedra;

@@ -1,0 +1,27 @@
+//! What a run keeps in memory beside its linear solver.
+
+use kluft_mesh::Mesh;
+
+use crate::estimate::estimate_bytes;
+use crate::linear::{ExtraMemory, Workload};
+use crate::newton::subspace_bytes;
+
+impl Workload {
+    /// Counts in what estimates of errors and moves of former steps take, on a mesh with this number of
+    /// unknown 3-vectors.
+    pub fn with_extra_memory(self, mesh: &Mesh, unknowns: usize) -> Self {
+        let recycles = self.is_smooth && self.steps > 1;
+        let iterative = if recycles {
+            subspace_bytes(unknowns, self.steps)
+        } else {
+            0
+        };
+        Self {
+            extra: ExtraMemory {
+                always: estimate_bytes(mesh),
+                iterative,
+            },
+            ..self
+        }
+    }
+}

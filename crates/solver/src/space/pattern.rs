@@ -1,0 +1,182 @@
+//! Who couples with whom: cells around a node, nodes around a node, blocks of the matrix.
+
+use std::ops::Range;
+
+use kluft_algebra::{BlockPattern, Lists, RowOwnership, sum_up};
+use kluft_mesh::{Elements, Mesh};
+use rayon::prelude::*;
+
+use crate::space::sector_nodes::SectorNodes;
+
+/// Nodes of one task.
+const NODES_PER_TASK: usize = 1024;
+
+/// The cell of each slot.
+#[derive(Debug, Clone)]
+pub enum CellOfSlot {
+    /// All cells have this many nodes.
+    Uniform(u32),
+    /// Cells of several shapes: one entry a slot.
+    Mixed(Vec<u32>),
+}
+
+impl CellOfSlot {
+    fn of(cells: &Elements) -> Self {
+        let count = |cell: usize| cells.offsets[cell + 1] - cells.offsets[cell];
+        let first = if cells.is_empty() { 1 } else { count(0) };
+        if (0..cells.len())
+            .into_par_iter()
+            .all(|cell| count(cell) == first)
+        {
+            return Self::Uniform(first);
+        }
+        let slots = |cell: usize| std::iter::repeat_n(cell as u32, cells.range(cell).len());
+        Self::Mixed((0..cells.len()).flat_map(slots).collect())
+    }
+
+    /// Cell of one slot, and all slots of this cell.
+    pub fn locate(&self, slot: u32, cells: &Elements) -> (usize, Range<usize>) {
+        match self {
+            // Tetrahedra: a shift instead of a division, the dearest part of this.
+            Self::Uniform(4) => {
+                let (cell, start) = (slot / 4, slot - slot % 4);
+                (cell as usize, start as usize..(start + 4) as usize)
+            }
+            Self::Uniform(count) => {
+                let (cell, start) = (slot / count, slot - slot % count);
+                (cell as usize, start as usize..(start + count) as usize)
+            }
+            Self::Mixed(cell) => {
+                let cell = cell[slot as usize] as usize;
+                (cell, cells.range(cell))
+            }
+        }
+    }
+}
+
+/// The pattern of the block matrix, symmetric and stored whole. It is fixed for a run.
+#[derive(Debug, Clone)]
+pub struct Pattern {
+    /// For each node the slots (positions in the cells' flat node list) where it occurs, ascending.
+    pub slots: Lists,
+    /// Cell of each slot.
+    pub cell_of_slot: CellOfSlot,
+    /// For each node the nodes it shares a cell with, itself included, ascending.
+    pub neighbours: Lists,
+    /// The blocks of the matrix, a row for each point.
+    pub blocks: BlockPattern,
+}
+
+impl Pattern {
+    /// Pattern of a mesh.
+    pub fn of(mesh: &Mesh, points: &SectorNodes) -> Self {
+        let slots = Lists::occurrences(&mesh.cells.nodes, mesh.nodes.len());
+        let cell_of_slot = CellOfSlot::of(&mesh.cells);
+        let neighbours = neighbours(&mesh.cells, &slots, &cell_of_slot);
+        let blocks = block_pattern(&neighbours, points);
+        Self {
+            slots,
+            cell_of_slot,
+            neighbours,
+            blocks,
+        }
+    }
+}
+
+/// For each node the nodes it shares a cell with.
+fn neighbours(cells: &Elements, slots: &Lists, cell_of_slot: &CellOfSlot) -> Lists {
+    let node_count = slots.count();
+    let tasks: Vec<usize> = (0..node_count).step_by(NODES_PER_TASK).collect();
+    let around = tasks.into_par_iter().map_init(
+        || (Near::default(), vec![u32::MAX; node_count]),
+        |(near, last_seen), start| {
+            let nodes = start..(start + NODES_PER_TASK).min(node_count);
+            near.gather(nodes.clone(), cells, slots, cell_of_slot);
+            near.distinct(nodes, slots, last_seen)
+        },
+    );
+    Lists::join(&around.collect::<Vec<_>>())
+}
+
+/// The nodes of all cells around the nodes of one task, with repetitions.
+#[derive(Default)]
+struct Near {
+    nodes: Vec<u32>,
+    /// End of each slot's cell in `nodes`.
+    ends: Vec<u32>,
+}
+
+impl Near {
+    /// Apart from [`Near::distinct`], because the cells lie anywhere in memory: here nothing waits
+    /// for them.
+    fn gather(&mut self, nodes: Range<usize>, cells: &Elements, slots: &Lists, of: &CellOfSlot) {
+        self.nodes.clear();
+        self.ends.clear();
+        for &slot in &slots.entries[slots.offset[nodes.start]..slots.offset[nodes.end]] {
+            let (_, own) = of.locate(slot, cells);
+            self.nodes.extend_from_slice(&cells.nodes[own]);
+            self.ends.push(self.nodes.len() as u32);
+        }
+    }
+
+    /// Number of distinct nodes around each node, and these nodes, ascending.
+    fn distinct(
+        &self,
+        nodes: Range<usize>,
+        slots: &Lists,
+        last_seen: &mut [u32],
+    ) -> (Vec<u32>, Vec<u32>) {
+        let mut found = Vec::with_capacity(self.nodes.len() / 4);
+        let mut lengths = Vec::with_capacity(nodes.len());
+        let mut start = 0;
+        let mut ends = self.ends.iter();
+        for node in nodes {
+            let first = found.len();
+            let end = ends.by_ref().take(slots.of(node).len()).last();
+            let end = end.map_or(start, |&end| end as usize);
+            for &other in &self.nodes[start..end] {
+                let seen = &mut last_seen[other as usize];
+                if *seen != node as u32 {
+                    *seen = node as u32;
+                    found.push(other);
+                }
+            }
+            found[first..].sort_unstable();
+            lengths.push((found.len() - first) as u32);
+            start = end;
+        }
+        (lengths, found)
+    }
+}
+
+fn block_pattern(neighbours: &Lists, points: &SectorNodes) -> BlockPattern {
+    let node_count = neighbours.count();
+    let unknowns = |&other: &u32| points.of_node(other as usize);
+    let lengths: Vec<usize> = (0..node_count)
+        .into_par_iter()
+        .map(|node| {
+            neighbours
+                .of(node)
+                .iter()
+                .map(|other| unknowns(other).len())
+                .sum()
+        })
+        .collect();
+    let mut row_offset = vec![0];
+    row_offset.extend(points.node.iter().map(|&node| lengths[node as usize]));
+    sum_up(&mut row_offset);
+    let mut columns = vec![0; row_offset[points.len()]];
+    let tasks = RowOwnership::even(points.len(), NODES_PER_TASK);
+    let shares = tasks.split(&mut columns, &row_offset);
+    shares.into_par_iter().for_each(|(rows, share)| {
+        let nodes = points.node[rows].iter();
+        let all = nodes.flat_map(|&node| neighbours.of(node as usize).iter().flat_map(unknowns));
+        for (column, unknown) in share.iter_mut().zip(all) {
+            *column = unknown as u32;
+        }
+    });
+    BlockPattern {
+        row_offset,
+        columns,
+    }
+}

@@ -1,0 +1,271 @@
+//! Blocks of rock that nothing holds.
+//!
+//! Every block moves rigidly in six ways. Supports and stiff fractures forbid some of them; what
+//! is left over is the null space of a small matrix, and would make the stiffness singular.
+
+use faer::{Mat, Side};
+use glam::DVec3;
+use kluft_mesh::{Defect, Mesh, facet_area_vector};
+use lie_core::FractureLaw;
+
+use crate::problem::Problem;
+use crate::space::sector_nodes::SectorNodes;
+use crate::space::supports::Supports;
+use kluft_algebra::dense_kernels::apart;
+
+/// Below this share of the largest eigenvalue a motion counts as unresisted; the others are far
+/// above it, because all lengths are in units of the body.
+const FREE: f64 = 1e-11;
+/// The eigenproblem is dense; with more loose blocks than this the check is left to the
+/// factorisation.
+const MOST_BLOCKS: usize = 400;
+
+/// Remedy for a block that nothing holds. Whoever knows how supports are written may put it more plainly.
+pub const HOLD: &str =
+    "hold the block by a support or a fixed point, or give the fractures around it stiffness";
+
+const MOTIONS: [&str; 6] = [
+    "translation along x",
+    "translation along y",
+    "translation along z",
+    "rotation about x",
+    "rotation about y",
+    "rotation about z",
+];
+
+/// What the walls of a facet resist.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tie {
+    /// Moving apart and together.
+    pub(crate) across: bool,
+    /// Sliding.
+    pub(crate) along: bool,
+}
+
+/// Names every group of blocks that can move freely under any load. Laws with kinks may carry or not, as
+/// the loads have it: what they let go is found in the solve.
+pub(crate) fn find(
+    problem: &Problem,
+    points: &SectorNodes,
+    supports: &Supports,
+    laws: &[FractureLaw],
+) -> Vec<Defect> {
+    let tie = |facet: usize| {
+        let law = &laws[problem.mesh.facets.fracture[facet] as usize];
+        let kinked = !law.is_smooth();
+        Tie {
+            across: kinked || law.closure.normal_stiffness > 0.0,
+            along: kinked || law.shear_stiffness > 0.0,
+        }
+    };
+    let facets = 0..problem.mesh.facets.elements.len();
+    let ties: Vec<Tie> = facets.map(tie).collect();
+    find_with(problem, points, supports, &ties, HOLD)
+}
+
+/// Names every group of blocks that can move freely with what `ties` hold, one for each facet.
+pub(crate) fn find_with(
+    problem: &Problem,
+    points: &SectorNodes,
+    supports: &Supports,
+    ties: &[Tie],
+    remedy: &str,
+) -> Vec<Defect> {
+    let mesh = &problem.mesh;
+    let (body_of_block, body_count) = tie_blocks(mesh, ties);
+    if body_count > MOST_BLOCKS {
+        return Vec::new();
+    }
+    let body_of_point = bodies_of_points(mesh, points, &body_of_block);
+    let constraints = Constraints {
+        problem,
+        points,
+        ties,
+        body_of_block: &body_of_block,
+        body_of_point: &body_of_point,
+        bounds: mesh.bounds(),
+    };
+    let resistance = constraints.resistance(supports, body_count);
+    let Ok(eigen) = apart(|| resistance.self_adjoint_eigen(Side::Lower)) else {
+        return Vec::new();
+    };
+    let values = eigen.S().column_vector();
+    let largest = (0..values.nrows()).map(|i| values[i]).fold(0.0, f64::max);
+    let free: Vec<usize> = (0..values.nrows())
+        .filter(|&i| values[i] <= FREE * largest)
+        .collect();
+    let share = |body: usize, motion: usize| -> f64 {
+        free.iter()
+            .map(|&i| eigen.U()[(6 * body + motion, i)].powi(2))
+            .sum()
+    };
+    (0..body_count)
+        .filter_map(|body| {
+            let shares: Vec<f64> = (0..6).map(|motion| share(body, motion)).collect();
+            describe(mesh, &body_of_block, body, &shares, remedy)
+        })
+        .collect()
+}
+
+/// Blocks joined by fractures stiff in normal and shear move as one body.
+fn tie_blocks(mesh: &Mesh, ties: &[Tie]) -> (Vec<u32>, usize) {
+    let mut body: Vec<u32> = (0..mesh.block_count as u32).collect();
+    loop {
+        let mut changed = false;
+        for (facet, tie) in ties.iter().enumerate() {
+            let stiff = tie.across && tie.along;
+            let [a, b] = blocks_at(mesh, facet);
+            if stiff && body[a] != body[b] {
+                let low = body[a].min(body[b]);
+                (body[a], body[b]) = (low, low);
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    let mut names = body.clone();
+    names.sort_unstable();
+    names.dedup();
+    for body in &mut body {
+        *body = names.partition_point(|name| name < body) as u32;
+    }
+    (body, names.len())
+}
+
+/// Blocks on the plus and the minus side of a facet.
+fn blocks_at(mesh: &Mesh, facet: usize) -> [usize; 2] {
+    let cells = [mesh.facets.plus[facet], mesh.facets.minus[facet]];
+    cells.map(|cell| mesh.block[cell as usize] as usize)
+}
+
+fn bodies_of_points(mesh: &Mesh, points: &SectorNodes, body_of_block: &[u32]) -> Vec<u32> {
+    let mut body = vec![0; points.len()];
+    for cell in 0..mesh.cells.len() {
+        for &point in &points.of_cell_node[mesh.cells.range(cell)] {
+            body[point as usize] = body_of_block[mesh.block[cell] as usize];
+        }
+    }
+    body
+}
+
+struct Constraints<'a> {
+    problem: &'a Problem,
+    points: &'a SectorNodes,
+    ties: &'a [Tie],
+    body_of_block: &'a [u32],
+    body_of_point: &'a [u32],
+    bounds: (DVec3, DVec3),
+}
+
+impl Constraints<'_> {
+    /// Sum over all constraints of `v v^T`, `v` being what each rigid motion does against one.
+    fn resistance(&self, supports: &Supports, bodies: usize) -> Mat<f64> {
+        let mut sum = Mat::zeros(6 * bodies, 6 * bodies);
+        for point in 0..self.points.len() {
+            if let Some(constraint) = supports.constraint(point) {
+                let at = self.problem.mesh.nodes[self.points.node[point] as usize];
+                let body = self.body_of_point[point] as usize;
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    add(
+                        &mut sum,
+                        &[(body, self.motion(at, axis - constraint.free * axis))],
+                    );
+                }
+            }
+        }
+        for facet in 0..self.problem.mesh.facets.elements.len() {
+            self.add_facet(facet, &mut sum);
+        }
+        sum
+    }
+
+    /// A facet resists relative motion of the bodies on its sides at each of its corners.
+    fn add_facet(&self, facet: usize, sum: &mut Mat<f64>) {
+        let mesh = &self.problem.mesh;
+        let [plus, minus] = blocks_at(mesh, facet).map(|block| self.body_of_block[block] as usize);
+        if plus == minus {
+            return;
+        }
+        let tie = self.ties[facet];
+        let corners = mesh.corners(&mesh.facets.elements, facet);
+        let normal = facet_area_vector(&corners).normalize();
+        for at in corners {
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let across = axis.dot(normal) * normal;
+                let mut resisted = DVec3::ZERO;
+                if tie.across {
+                    resisted += across;
+                }
+                if tie.along {
+                    resisted += axis - across;
+                }
+                let motion = |body: usize, direction: DVec3| (body, self.motion(at, direction));
+                add(sum, &[motion(plus, resisted), motion(minus, -resisted)]);
+            }
+        }
+    }
+
+    /// What the six rigid motions do along `direction` at a position; rotations about the middle of
+    /// the mesh, lengths in units of its size.
+    fn motion(&self, at: DVec3, direction: DVec3) -> [f64; 6] {
+        let (low, high) = self.bounds;
+        let arm = (at - 0.5 * (low + high)) / (high - low).length();
+        let (d, turn) = (direction, arm.cross(direction));
+        [d.x, d.y, d.z, turn.x, turn.y, turn.z]
+    }
+}
+
+fn add(sum: &mut Mat<f64>, parts: &[(usize, [f64; 6])]) {
+    for (body, row) in parts {
+        for (other, column) in parts {
+            for (i, a) in row.iter().enumerate() {
+                for (j, b) in column.iter().enumerate() {
+                    sum[(6 * body + i, 6 * other + j)] += a * b;
+                }
+            }
+        }
+    }
+}
+
+/// A motion is named if half of it or more is free; if none is, the block turns about some other
+/// axis.
+fn describe(
+    mesh: &Mesh,
+    body_of_block: &[u32],
+    body: usize,
+    shares: &[f64],
+    remedy: &str,
+) -> Option<Defect> {
+    if shares.iter().all(|share| *share < 1e-6) {
+        return None;
+    }
+    let named: Vec<&str> = std::iter::zip(MOTIONS, shares)
+        .filter(|(_, share)| **share > 0.5)
+        .map(|(name, _)| name)
+        .collect();
+    let motions = if named.is_empty() {
+        "rotation about an axis through its supports".to_owned()
+    } else {
+        named.join(", ")
+    };
+    let cells = (0..mesh.cells.len())
+        .filter(|&cell| body_of_block[mesh.block[cell] as usize] as usize == body);
+    let nodes = cells.flat_map(|cell| mesh.cells.nodes_of(cell).iter());
+    let (low, high) = nodes.fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), &node| {
+            let x = mesh.nodes[node as usize];
+            (low.min(x), high.max(x))
+        },
+    );
+    Some(Defect::new(
+        format!(
+            "the rock between ({:.4}, {:.4}, {:.4}) and ({:.4}, {:.4}, {:.4})",
+            low.x, low.y, low.z, high.x, high.y, high.z
+        ),
+        format!("nothing holds it: {motions} is free"),
+        remedy,
+    ))
+}

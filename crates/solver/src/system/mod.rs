@@ -1,0 +1,270 @@
+//! The discrete problem: unknowns, stiffness, loads, and what they make of a state.
+
+mod discretisation;
+mod state;
+
+use glam::{DMat3, DVec3};
+use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, norm};
+use lie_core::{FractureLaw, JointHistory, Response, TrialState};
+use rayon::prelude::*;
+
+use crate::assembly::facet_point::FacetPoint;
+use crate::assembly::loads::Loads;
+use crate::assembly::rock;
+use crate::problem::{Load, Problem};
+
+pub use discretisation::Discretisation;
+pub(crate) use state::Sizes;
+pub use state::{FacetPointState, State};
+
+/// The discrete problem, assembled.
+#[derive(Debug, Clone)]
+pub struct System<'a> {
+    /// What is solved.
+    pub(crate) problem: &'a Problem,
+    /// Numbering and topology, and the laws.
+    pub(crate) discretisation: Discretisation,
+    /// Stiffness of the rock over all unknowns; it never changes.
+    rock: BlockMatrix,
+    /// Forces.
+    loads: Loads,
+    /// How often the laws were changed.
+    generation: u32,
+}
+
+/// Share of the forces of prescribed displacements that counts even if they cancel: rounding.
+const CANCELLING: f64 = 1e-3;
+
+impl<'a> System<'a> {
+    /// Assembles rock and loads.
+    pub fn assemble(problem: &'a Problem, discretisation: Discretisation) -> Self {
+        let space = discretisation.space(problem);
+        let rock = rock::rock_stiffness(space);
+        let loads = Loads::of(space, &discretisation.interface);
+        Self {
+            problem,
+            rock,
+            loads,
+            generation: 0,
+            discretisation,
+        }
+    }
+
+    /// Gives the fractures other laws, one each. Rock and loads stay, and with them whatever a solver
+    /// prepared. A state reached with the former laws serves as a first guess for a step with the new
+    /// ones.
+    pub fn set_laws(&mut self, laws: Vec<FractureLaw>) {
+        self.generation += 1;
+        self.discretisation.interface.set_laws(self.problem, laws);
+    }
+
+    /// Takes other forces instead of those of the problem.
+    pub fn set_loads(&mut self, loads: Loads) {
+        self.loads = loads;
+    }
+
+    /// What is solved. Its laws are those that the run began with; see [`Self::laws`].
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
+    }
+
+    /// Numbering and topology.
+    pub fn discretisation(&self) -> &Discretisation {
+        &self.discretisation
+    }
+
+    /// Forces.
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
+    /// Law of each fracture.
+    pub fn laws(&self) -> &[FractureLaw] {
+        self.discretisation.interface.laws()
+    }
+
+    /// Whether a step may need more than one linear solve.
+    pub fn is_nonlinear(&self) -> bool {
+        self.laws().iter().any(|law| !law.is_linear())
+    }
+
+    /// Whether the tangent changes gradually: no fracture slides, breaks or ends a contact.
+    pub fn is_smooth(&self) -> bool {
+        self.laws().iter().all(FractureLaw::is_smooth)
+    }
+
+    /// Whether a state depends on how its load was reached.
+    pub fn is_path_dependent(&self) -> bool {
+        self.laws().iter().any(FractureLaw::is_path_dependent)
+    }
+
+    /// The state before any load: no displacement, apertures and shear as the initial stress
+    /// leaves them.
+    pub fn initial_state(&self) -> State {
+        let points = self.discretisation.interface.points.iter();
+        let facet_points = points.map(|point| FacetPointState {
+            joint: point.initial,
+            jump_residual: DVec3::ZERO,
+            history: JointHistory::default(),
+        });
+        State {
+            load: self.problem.schedule.start(),
+            unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
+            facet_points: facet_points.collect(),
+            reached: Sizes::default(),
+            generation: self.generation,
+        }
+    }
+
+    /// Restates a state that was reached with other laws: apertures stay, the rest follows from the
+    /// jumps and the present laws.
+    pub(crate) fn restate(&self, state: &mut State) {
+        if state.generation == self.generation {
+            return;
+        }
+        state.generation = self.generation;
+        let interface = &self.discretisation.interface;
+        let jumps = interface.jumps(&state.unknowns, &state.load);
+        let points = interface.points.iter().zip(jumps);
+        for ((point, jump), state) in points.zip(&mut state.facet_points) {
+            let law = self.law(point);
+            let seen = point.initial_jump() + jump;
+            let opening = seen.dot(point.normal);
+            let aperture = state.joint.separation.aperture;
+            let landing = TrialState {
+                separation: law.closure.opened(aperture - law.closure.aperture),
+                slip: seen - opening * point.normal,
+                normal_traction: state.joint.normal_traction,
+                shear: state.joint.shear,
+            };
+            state.joint = if law.is_smooth() {
+                law.state_at(&landing)
+            } else {
+                law.return_map(&landing, point.rock_stiffness(), &state.history)
+            };
+            let beyond = opening - state.joint.separation.opening;
+            state.jump_residual = beyond * point.normal + landing.slip - state.joint.slip;
+        }
+    }
+
+    /// Law of a facet point.
+    pub fn law(&self, point: &FacetPoint) -> &FractureLaw {
+        &self.laws()[point.fracture as usize]
+    }
+
+    /// Tractions of the laws of all facet points in a state (Pa).
+    pub fn law_tractions(&self, state: &State) -> Vec<DVec3> {
+        let points = self.discretisation.interface.points.par_iter();
+        points
+            .zip(&state.facet_points)
+            .map(|(point, state)| state.joint.traction(point.normal))
+            .collect()
+    }
+
+    /// Responses of the laws to the jumps of `unknowns`.
+    pub fn responses(&self, unknowns: &[DVec3], load: &Load) -> Vec<Response> {
+        let interface = &self.discretisation.interface;
+        let jumps = interface.jumps(unknowns, load);
+        let points = interface.points.par_iter().zip(jumps);
+        points
+            .map(|(point, jump)| {
+                let seen = point.initial_jump() + jump;
+                self.law(point).response(seen, point.normal)
+            })
+            .collect()
+    }
+
+    /// Displacement of all points (m) under a load.
+    pub fn displacements(&self, unknowns: &[DVec3], load: &Load) -> Vec<DVec3> {
+        let Discretisation {
+            points, supports, ..
+        } = &self.discretisation;
+        (0..points.len())
+            .into_par_iter()
+            .map(|point| supports.apply(point, points.displacement(unknowns, point), load))
+            .collect()
+    }
+
+    /// Forces of the loads on all unknowns (N).
+    pub fn load_forces(&self, load: &Load) -> Vec<DVec3> {
+        let cases = || self.loads.cases().iter().zip(&load.factors);
+        let initial = self.loads.initial().par_iter().enumerate();
+        initial
+            .map(|(i, initial)| {
+                let forces = cases().map(|(case, f)| *f * (case.applied[i] + case.prescribed[i]));
+                forces.reduce(|a, b| a + b).unwrap_or_default() + *initial
+            })
+            .collect()
+    }
+
+    /// The stiffness of the rock, row by row.
+    pub fn rock_rows(&self) -> BlockRows<'_> {
+        self.rock.rows(&self.discretisation.pattern.blocks)
+    }
+
+    /// Forces by which the rock resists the unknowns (N), `K y`.
+    pub fn rock_forces(&self, unknowns: &[DVec3]) -> Vec<DVec3> {
+        self.rock
+            .times(&self.discretisation.pattern.blocks, unknowns)
+    }
+
+    /// Out-of-balance forces `loads - rock - fractures` (N) for given forces of the rock and
+    /// tractions of the fractures.
+    pub fn residual(&self, rock_forces: &[DVec3], tractions: &[DVec3], load: &Load) -> Vec<DVec3> {
+        let mut residual = self.load_forces(load);
+        residual
+            .par_iter_mut()
+            .zip(rock_forces)
+            .for_each(|(force, rock)| *force -= *rock);
+        self.discretisation
+            .interface
+            .add_forces(tractions, -1.0, &mut residual);
+        residual
+    }
+
+    /// Largest of the forces that must balance (N), as Euclidean norms over all unknowns: the
+    /// measure for "small" in a residual.
+    pub fn force_scale(&self, rock_forces: &[DVec3], tractions: &[DVec3], load: &Load) -> f64 {
+        let mut fractures = vec![DVec3::ZERO; rock_forces.len()];
+        self.discretisation
+            .interface
+            .add_forces(tractions, 1.0, &mut fractures);
+        let sizes = || self.loads.case_sizes().iter().zip(&load.factors);
+        let of_cases = sizes().map(|(size, f)| f.abs() * size.applied);
+        let prescribed = sizes().map(|(size, f)| f.abs() * size.prescribed);
+        let prescribed = prescribed.fold(0.0, f64::max);
+        // Moving a body as a whole asks for large forces that cancel: what counts is what is left.
+        let mut internal = rock_forces.to_vec();
+        for (case, f) in self.loads.cases().iter().zip(&load.factors) {
+            let pairs = internal.par_iter_mut().zip(&case.prescribed);
+            pairs.for_each(|(force, prescribed)| *force -= *f * *prescribed);
+        }
+        let others = [
+            self.loads.initial_size(),
+            norm(&internal),
+            norm(&fractures),
+            CANCELLING * prescribed,
+        ];
+        of_cases.chain(others).fold(0.0, f64::max)
+    }
+
+    /// What of the tangent stays: the stiffness of the rock, and where the fractures add to it.
+    pub fn fixed_part(&self) -> FixedPart<'_> {
+        FixedPart {
+            matrix: self.rock_rows(),
+            interface: self.discretisation.interface.pattern(),
+        }
+    }
+
+    /// `K + fractures`: the whole tangent for given tangents of the fractures.
+    pub fn tangent(&self, tangents: &[DMat3]) -> BlockMatrix {
+        let mut whole = self.rock.clone();
+        let stiffness = self.discretisation.interface.stiffness(tangents);
+        let row_offset = &self.discretisation.pattern.blocks.row_offset;
+        let fixed = self.fixed_part();
+        for (row, place, block) in fixed.blocks(&fixed.places(), &stiffness) {
+            whole.blocks[row_offset[row] + place] = block;
+        }
+        whole
+    }
+}

@@ -1,0 +1,59 @@
+//! What a load step starts from and leaves behind.
+
+use glam::DVec3;
+use lie_core::{JointHistory, JointState};
+use serde::{Deserialize, Serialize};
+
+use crate::problem::Load;
+
+/// The state of a run: what a load step starts from and leaves behind.
+///
+/// Apertures and tractions are kept beside the unknowns and follow them by increments. Computed
+/// anew from displacements, a stiff fracture would multiply the rounding of the displacements by
+/// its stiffness.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct State {
+    /// Load under which the state stands.
+    pub load: Load,
+    /// Unknown 3-vectors (m).
+    pub unknowns: Vec<DVec3>,
+    /// State of each facet point.
+    pub facet_points: Vec<FacetPointState>,
+    /// Largest sizes of the states on the way to it.
+    pub(crate) reached: Sizes,
+    /// Which laws of the system it was reached with.
+    pub(super) generation: u32,
+}
+
+/// How large the quantities of a state are: what "small" is measured against.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Sizes {
+    /// Largest of the forces that must balance (N).
+    pub(crate) force: f64,
+    /// Largest displacement or opening (m).
+    pub(crate) displacement: f64,
+    /// Largest normal traction of a fracture (Pa).
+    pub(crate) traction: f64,
+}
+
+impl Sizes {
+    /// The larger of each, where the other counts with a `share`.
+    pub(crate) fn or_share(self, share: f64, other: Self) -> Self {
+        Self {
+            force: self.force.max(share * other.force),
+            displacement: self.displacement.max(share * other.displacement),
+            traction: self.traction.max(share * other.traction),
+        }
+    }
+}
+
+/// State of one facet point.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct FacetPointState {
+    /// Where the law is linearised, which is where the walls are once converged.
+    pub joint: JointState,
+    /// Jump of the walls beyond that (m); rounding once converged.
+    pub jump_residual: DVec3,
+    /// What former steps left behind.
+    pub history: JointHistory,
+}
