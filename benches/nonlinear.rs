@@ -3,14 +3,13 @@
 //!     cargo bench --bench nonlinear -- [CUBES [METHOD [once] [uneven]]]
 #![allow(clippy::print_stdout, reason = "the table is what it is run for")]
 
-mod block;
-
 use std::time::Instant;
 
 use glam::DVec3;
 use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, SurfaceLoad, System,
 };
+use kluft_verification::scenes::block;
 use lie_core::FractureLaw;
 
 /// Seconds that `work` takes, and what it gives.

@@ -5,8 +5,6 @@
     reason = "the bandwidth is printed beside the kernels"
 )]
 
-mod block;
-
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -18,7 +16,7 @@ use kluft_solver::{
 };
 use rayon::prelude::*;
 
-use block::{THREE_PLANES, draft, mesh, problem};
+use kluft_verification::scenes::block::{THREE_PLANES, draft, mesh, problem};
 
 /// Cubes along an edge: 9, 34 and 111 thousand unknowns.
 const SIZES: [usize; 3] = [12, 20, 32];

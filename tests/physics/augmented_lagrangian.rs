@@ -1,10 +1,10 @@
-//! The augmented Lagrangian of `benches/closures` against statics.
+//! The augmented Lagrangian against statics.
 
 use kluft_solver::{Discretisation, NewtonSettings, System};
 use lie_core::Closure;
 
-use crate::augmented::augmented;
-use crate::pressed::{inclined, inclined_traction};
+use kluft_verification::methods::augmented_lagrangian::augmented;
+use kluft_verification::scenes::pressed::{inclined, inclined_traction};
 
 /// The fixed point of Uzawa's iteration does not depend on `r`. The stress of the scene is uniaxial, so the
 /// traction is known; 1e-9 is the tolerance of both iterations.

@@ -1,12 +1,12 @@
-//! B2: the table of the logarithmic law by simulation. B3: the single joint of OpenGeoSys.
+//! Laws by simulation: the table of the logarithmic one, and the single joint of OpenGeoSys.
 
 use glam::DVec3;
 use kluft_solver::{Fracture, Problem, Solution, Support};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 
-use crate::closing::column;
-use crate::oracles::{LOG_LAW_TABLE, closed_aperture};
-use crate::scenes::{self, EXACT};
+use kluft_verification::oracles::{LOG_LAW_TABLE, closed_aperture};
+use kluft_verification::scenes::closing::column;
+use kluft_verification::scenes::{self, EXACT};
 
 #[test]
 fn log_law_table_by_simulation_of_a_column() {

@@ -8,9 +8,9 @@ use kluft_solver::{
 };
 use lie_core::ClosureKind;
 
-use crate::closing::column;
-use crate::oracles::closed_aperture;
-use crate::scenes::{self, EXACT, joint};
+use kluft_verification::oracles::closed_aperture;
+use kluft_verification::scenes::closing::column;
+use kluft_verification::scenes::{self, EXACT, joint};
 
 fn vertical_joint() -> Problem {
     let middle = |x: [f64; 3]| x[0] == 0.5;

@@ -7,8 +7,8 @@ use kluft_solver::{
 };
 use lie_core::{Closure, FractureLaw, Tension};
 
-use crate::pressed;
-use crate::scenes::{self, EXACT};
+use kluft_verification::scenes::pressed;
+use kluft_verification::scenes::{self, EXACT};
 
 const FREE: Option<f64> = None;
 const HELD: Option<f64> = Some(0.0);

@@ -10,7 +10,7 @@ use kluft_solver::{
 };
 use lie_core::{ClosureKind, Rock, kernel, recovery_rule};
 
-use crate::scenes::{self, ROCK, joint};
+use kluft_verification::scenes::{self, ROCK, joint};
 
 /// A cube of cells; `bump` moves nodes inside, so that cells have no special form.
 fn cube(shape: Shape, cubes: usize, bump: f64) -> Problem {

@@ -6,7 +6,7 @@ use kluft_solver::{
 };
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
 
-use crate::scenes::{self, EXACT};
+use kluft_verification::scenes::{self, EXACT};
 
 fn rubbing(closure: Closure, shear_stiffness: f64, degrees: f64, cohesion: f64) -> Fracture {
     Fracture {

@@ -5,8 +5,8 @@ use glam::{DMat3, DVec3};
 use kluft_solver::{Problem, Solution, Support};
 use lie_core::ClosureKind;
 
-use crate::oracles::closed_aperture;
-use crate::scenes::{self, EXACT, joint};
+use kluft_verification::oracles::closed_aperture;
+use kluft_verification::scenes::{self, EXACT, joint};
 
 /// Uniform stress: exact wherever the jumps that it asks for are rigid motions of the blocks.
 /// 1e-9 is the tolerance of Newton's method.

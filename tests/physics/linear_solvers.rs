@@ -8,8 +8,8 @@ use kluft_solver::{
 };
 use lie_core::Friction;
 
-use crate::networks;
-use crate::scenes::{self, EXACT, joint};
+use kluft_verification::scenes::networks;
+use kluft_verification::scenes::{self, EXACT, joint};
 
 fn settings(method: LinearMethod) -> NewtonSettings {
     NewtonSettings {

@@ -11,8 +11,8 @@ use kluft_solver::{
 };
 use lie_core::ClosureKind;
 
-use crate::closing::column;
-use crate::scenes::{self, EXACT, joint};
+use kluft_verification::scenes::closing::column;
+use kluft_verification::scenes::{self, EXACT, joint};
 
 /// Loads that grow, hold, turn and vanish, each case for itself: time and factors.
 const PATH: [[f64; 3]; 9] = [

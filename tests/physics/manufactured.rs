@@ -13,7 +13,7 @@ use kluft_solver::{
 };
 use lie_core::{kernel, rule};
 
-use crate::scenes::{self, ROCK, joint};
+use kluft_verification::scenes::{self, ROCK, joint};
 
 const AMPLITUDE: DVec3 = DVec3::new(1.0, 2.0, -1.0);
 

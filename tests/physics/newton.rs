@@ -8,8 +8,8 @@ use glam::DVec3;
 use kluft_solver::{Linearisation, NewtonSettings, Problem, StepRecord, Support};
 use lie_core::ClosureKind;
 
-use crate::closing::{column, inclined_joint, three_planes};
-use crate::scenes::{self, EXACT};
+use kluft_verification::scenes::closing::{column, inclined_joint, three_planes};
+use kluft_verification::scenes::{self, EXACT};
 
 const LOADS: [f64; 9] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
 const CUTOFFS: [Option<f64>; 12] = [

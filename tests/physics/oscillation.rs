@@ -1,9 +1,9 @@
-//! B11: traction behind a crack front in a stiff joint, nodes and control points against Gauss points.
+//! Traction behind a crack front in a stiff joint, nodes and control points against Gauss points.
 
 use kluft_mesh::Shape;
 use lie_core::FacetQuadrature;
 
-use crate::crack_front::tractions;
+use kluft_verification::scenes::crack_front::tractions;
 
 const STIFFNESS: [f64; 3] = [1.0, 1e4, 1e8];
 

@@ -3,9 +3,9 @@
 
 use kluft_mesh::Draft;
 
-use crate::networks;
-use crate::scenes;
-use crate::split_nodes::{TOLERANCE, compare};
+use kluft_verification::methods::split_nodes::{TOLERANCE, compare};
+use kluft_verification::scenes;
+use kluft_verification::scenes::networks;
 
 fn seeds() -> u64 {
     let asked = std::env::var("KLUFT_SEEDS")

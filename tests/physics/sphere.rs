@@ -2,8 +2,8 @@
 
 use lie_core::ClosureKind;
 
-use crate::scenes::{self, EXACT, ROCK};
-use crate::spherical_joint::{self, Exact, sphere};
+use kluft_verification::oracles::spherical_joint::{self, Exact, sphere};
+use kluft_verification::scenes::{self, EXACT, ROCK};
 
 /// Relative errors of the default solution: traction, opening, core, shell.
 fn errors(kind: ClosureKind, h: f64, order: u32) -> [f64; 4] {

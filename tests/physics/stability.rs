@@ -1,20 +1,22 @@
-//! Short forms of the studies of the stability map: what docs/stability.md says must hold.
+//! Short forms of the studies of the stability map: what docs/verification/stability.md says must hold.
 
-use crate::studies::{Effort, Finding, Study};
-use crate::studies::{contact, contrast, cutoff, cycles, front, hopeless, increments};
-use crate::studies::{locking, opening, sliding, slivers, steps, units};
+use kluft_verification::report::{Effort, Finding, Study};
+use kluft_verification::stability::{
+    contact, contrast, cutoff, cycles, front, hopeless, increments,
+};
+use kluft_verification::stability::{locking, opening, sliding, slivers, steps, units};
 
 /// Runs a study; what it promises must hold, and its charts must be drawn.
 fn hold(study: &Study) -> Finding {
     let finding = (study.run)(Effort::Quick);
-    println!("{}: {}; {}", study.name, finding.breaks, finding.ours);
+    println!("{}: {}", study.name, finding.summary.join("; "));
     assert!(
         finding.misses.is_empty(),
         "{}: {:#?}",
         study.name,
         finding.misses
     );
-    for (name, chart) in &finding.charts {
+    for (name, chart) in finding.all_charts() {
         let svg = chart.svg();
         assert!(
             svg.contains(&chart.x.title) && !svg.contains("NaN"),
@@ -26,9 +28,9 @@ fn hold(study: &Study) -> Finding {
 
 /// Numbers of a column.
 fn column(finding: &Finding, head: &str) -> Vec<f64> {
-    let place = finding.table.head.iter().position(|other| *other == head);
-    let place = place.unwrap_or_else(|| panic!("no column {head}"));
-    let entries = finding.table.rows.iter().map(|row| &row[place]);
+    let table = finding.first_table();
+    let place = table.column(head);
+    let entries = table.rows.iter().map(|row| &row[place]);
     entries
         .map(|entry| entry.parse().unwrap_or(f64::NAN))
         .collect()
@@ -56,7 +58,7 @@ fn stiff_joints_spoil_split_nodes_and_not_jumps() {
 fn gauss_points_change_signs_behind_a_front_and_nodes_do_not() {
     let finding = hold(&front::STUDY);
     let ratios = column(&finding, "smallest / largest");
-    let rules = finding.table.rows.iter().map(|row| &row[1]);
+    let rules = finding.first_table().rows.iter().map(|row| &row[1]);
     let wrong = |rule: &str| {
         let pairs = ratios.iter().zip(rules.clone());
         pairs
@@ -71,7 +73,9 @@ fn gauss_points_change_signs_behind_a_front_and_nodes_do_not() {
 #[test]
 fn the_incremental_law_depends_on_the_number_of_steps() {
     hold(&increments::STUDY);
-    let closure = crate::scenes::joint(crate::scenes::EXACT).law.closure;
+    let closure = kluft_verification::scenes::joint(kluft_verification::scenes::EXACT)
+        .law
+        .closure;
     let table = [
         (1, 7.577),
         (2, 3.974),
@@ -144,7 +148,7 @@ fn friction_converges_and_keeps_its_limit() {
 #[test]
 fn a_block_that_its_joint_lets_go_is_named() {
     let finding = hold(&hopeless::STUDY);
-    for scene in &finding.table.rows {
+    for scene in &finding.first_table().rows {
         assert_eq!(scene[1], "1", "{scene:?}");
         assert!(scene[2].contains("`joint`"), "{scene:?}");
     }

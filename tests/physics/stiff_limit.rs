@@ -3,8 +3,8 @@
 use kluft_mesh::SurfaceRole;
 use kluft_solver::{NewtonSettings, Problem, SectorNodes};
 
-use crate::networks;
-use crate::scenes;
+use kluft_verification::scenes;
+use kluft_verification::scenes::networks;
 
 /// Cell size of the networks (m).
 const SIZE: f64 = 0.25;

@@ -7,7 +7,7 @@ use kluft_solver::{
 };
 use lie_core::ClosureKind;
 
-use crate::scenes::{self, EXACT, joint};
+use kluft_verification::scenes::{self, EXACT, joint};
 
 fn three_planes(kind: ClosureKind) -> Problem {
     let planes: [&dyn Fn([f64; 3]) -> bool; 3] =

@@ -1,0 +1,115 @@
+//! The stability map: parameters swept over many decades beside methods that break, one study a file.
+//!
+//! A new study is a file here, an entry of [`report`] and a test in `tests/physics/stability.rs`.
+
+mod blocks;
+pub mod contact;
+pub mod contrast;
+pub mod cutoff;
+pub mod cycles;
+pub mod front;
+pub mod hopeless;
+pub mod increments;
+pub mod locking;
+pub mod opening;
+pub mod sliding;
+pub mod slivers;
+pub mod steps;
+pub mod units;
+
+use kluft_solver::StepRecord;
+
+use crate::report::{Effort, Finding, Layout, Report, Study, Table, largest};
+
+/// Most Newton iterations of a load step without friction: the promise of the map.
+pub const PROMISE: usize = 12;
+/// The same with friction.
+pub const PROMISE_WITH_FRICTION: usize = 25;
+
+const HEAD: &str = "# Stability map
+
+Written by `cargo run --release -p kluft-verification --bin verify -- stability`: every parameter is swept over \
+many decades, beside a method that breaks, on small meshes and with default settings. Nothing here is typed in: \
+numbers come from the run, and stand in `docs/verification/stability/*.csv`. Short forms of all studies are tests \
+(`tests/physics/stability.rs`).";
+
+/// All studies, in the order of the map.
+pub fn report() -> Report {
+    Report {
+        name: "stability",
+        head: HEAD,
+        columns: &["study", "sweep", "what breaks", "Kluft"],
+        studies: vec![
+            cutoff::STUDY,
+            contrast::STUDY,
+            front::STUDY,
+            increments::STUDY,
+            contact::STUDY,
+            opening::STUDY,
+            sliding::STUDY,
+            hopeless::STUDY,
+            cycles::STUDY,
+            locking::STUDY,
+            slivers::STUDY,
+            units::STUDY,
+            steps::STUDY,
+        ],
+        layout: Layout::OnePage { promise: promise() },
+    }
+}
+
+fn promise() -> String {
+    format!(
+        "Promised is: every case with a solution converges with default settings in at most {PROMISE} Newton iterations \
+         a step, {PROMISE_WITH_FRICTION} with friction in each part that it divides a step into; every case without one \
+         ends with exit code 1 and the name of a fracture or block; and what the studies compare agrees as they say."
+    )
+}
+
+/// Newton iterations of a step; none if it did not converge.
+pub fn count(record: &StepRecord) -> Option<usize> {
+    record.converged().then_some(record.iterations.len())
+}
+
+/// The largest of some counts; none if one of them is none.
+pub fn most(counts: impl IntoIterator<Item = Option<usize>>) -> Option<usize> {
+    let mut counts = counts.into_iter();
+    counts.try_fold(0, |most, count| Some(most.max(count?)))
+}
+
+/// The step that failed, or took the most iterations.
+pub fn worst_step(records: &[StepRecord]) -> &StepRecord {
+    let rank = |record: &&StepRecord| (!record.converged(), record.iterations.len());
+    records.iter().max_by_key(rank).expect("steps")
+}
+
+/// A count for a chart: failures become crosses.
+pub fn height(count: Option<usize>) -> f64 {
+    count.map_or(f64::NAN, |count| count as f64)
+}
+
+/// A count for a table.
+pub fn entry(count: Option<usize>) -> String {
+    count.map_or("failed".to_owned(), |count| count.to_string())
+}
+
+/// Notes a step that did not converge within the promise.
+pub fn hold_promise(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
+    match count(record) {
+        Some(count) if count <= PROMISE => {}
+        Some(count) => misses.push(format!("{case}: {count} Newton iterations")),
+        None => misses.push(format!("{case}: {:?}", record.outcome)),
+    }
+}
+
+/// Notes a step with friction that did not converge within the promise: each of the parts that the
+/// program divides it into is a step of its own.
+pub fn hold_promise_with_friction(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
+    match record.parts.iter().max() {
+        Some(&most) if record.converged() && most > PROMISE_WITH_FRICTION => {
+            misses.push(format!("{case}: {most} Newton iterations in one part"));
+        }
+        _ if record.converged() => {}
+        _ => misses.push(format!("{case}: {:?}", record.outcome)),
+    }
+}
