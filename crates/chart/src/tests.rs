@@ -1,5 +1,8 @@
-use quick_xml::Reader;
+//! A chart as others read it: well-formed, with all its texts, finite.
+
+use quick_xml::escape::unescape;
 use quick_xml::events::Event;
+use quick_xml::{Reader, XmlVersion};
 
 use super::*;
 
@@ -37,17 +40,23 @@ fn sample() -> Chart {
 fn parsed(svg: &str) -> (Vec<String>, Vec<(String, String)>) {
     let mut reader = Reader::from_str(svg);
     let (mut texts, mut attributes) = (Vec::new(), Vec::new());
+    let mut text = String::new();
     loop {
         match reader.read_event().expect("well-formed XML") {
             Event::Start(tag) | Event::Empty(tag) => {
                 for attribute in tag.attributes() {
                     let attribute = attribute.expect("an attribute");
-                    let name = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
-                    let value = attribute.unescape_value().expect("a value").into_owned();
-                    attributes.push((name, value));
+                    let name = attribute.key.as_ref().to_owned();
+                    let value = attribute.normalized_value(XmlVersion::Implicit1_0);
+                    attributes.push((name, value.expect("a value").into_owned()));
                 }
             }
-            Event::Text(text) => texts.push(text.unescape().expect("text").trim().to_owned()),
+            Event::Text(part) => text += &part.xml10_content(),
+            Event::GeneralRef(name) => {
+                let entity = format!("&{};", name.into_inner());
+                text += &unescape(&entity).expect("an entity");
+            }
+            Event::End(_) => texts.push(std::mem::take(&mut text).trim().to_owned()),
             Event::Eof => return (texts, attributes),
             _ => {}
         }
