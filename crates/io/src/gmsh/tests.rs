@@ -1,3 +1,5 @@
+//! gmsh played by scripts that behave as it does, well or badly.
+
 use std::path::PathBuf;
 
 use super::*;
