@@ -46,6 +46,6 @@ pub use roles::{Faces, SurfaceRole};
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};
 pub use survey::{
-    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, Orientation, Survey,
+    BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, MeanOrientation, Survey,
     UnresolvedPatch, cell_angles,
 };

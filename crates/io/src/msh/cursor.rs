@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use kluft_mesh::Defect;
 
-use super::source::{Encoding, Source, is_space};
+use super::source::{Encoding, MshSource, is_space};
 
 /// No writer needs more for a number, and decimal parsers are at risk with less usual input.
 const LONGEST_NUMBER: usize = 64;
@@ -23,7 +23,7 @@ pub(super) struct ItemRange {
 
 /// A place in the body of a section.
 pub(super) struct Cursor<'a> {
-    source: Source<'a>,
+    source: MshSource<'a>,
     encoding: Encoding,
     at: usize,
     end: usize,
@@ -31,7 +31,7 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     /// At the start of a section's body, which must lie inside the file.
-    pub(super) fn new(source: Source<'a>, encoding: Encoding, body: Range<usize>) -> Self {
+    pub(super) fn new(source: MshSource<'a>, encoding: Encoding, body: Range<usize>) -> Self {
         Self {
             source,
             encoding,
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     fn cursor(bytes: &[u8], encoding: Encoding) -> Cursor<'_> {
-        let source = Source { name: "t", bytes };
+        let source = MshSource { name: "t", bytes };
         Cursor::new(source, encoding, 0..bytes.len())
     }
 

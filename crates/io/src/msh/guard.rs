@@ -11,12 +11,12 @@ use super::elements::{self, Block};
 use super::entities::{EntityGroups, walk_entities, walk_partitioned};
 use super::names;
 use super::nodes::{self, NodeSurvey};
-use super::sections::{Section, optional, required, split};
-use super::source::{Encoding, Source};
+use super::sections::{MshSection, optional, required, split};
+use super::source::{Encoding, MshSource};
 
 /// What the walk has found. All counts agree with the bytes of the file.
 pub(super) struct FileSurvey<'a> {
-    pub(super) source: Source<'a>,
+    pub(super) source: MshSource<'a>,
     pub(super) encoding: Encoding,
     pub(super) names: Vec<Group>,
     pub(super) entities: EntityGroups,
@@ -35,7 +35,7 @@ impl FileSurvey<'_> {
 
 /// Walks the sections that matter. A section that is damaged gives one defect.
 pub(super) fn survey(
-    source: Source<'_>,
+    source: MshSource<'_>,
     encoding: Encoding,
 ) -> Result<FileSurvey<'_>, Vec<Defect>> {
     let sections = split(source).map_err(|defect| vec![defect])?;
@@ -44,14 +44,14 @@ pub(super) fn survey(
     let entities = keep(&mut defects, entity_groups(source, encoding, &sections));
     let nodes_at = keep(&mut defects, required(source, &sections, "Nodes"));
     let elements_at = keep(&mut defects, required(source, &sections, "Elements"));
-    let cursor = |at: &Section| Cursor::new(source, encoding, at.body.clone());
+    let cursor = |at: &MshSection| Cursor::new(source, encoding, at.body.clone());
     let nodes = nodes_at.and_then(|at| keep(&mut defects, nodes::walk(cursor(at))));
     let blocks = elements_at.and_then(|at| keep(&mut defects, elements::walk(cursor(at))));
     let (Some(names), Some(entities), Some(nodes), Some(blocks)) = (names, entities, nodes, blocks)
     else {
         return Err(defects);
     };
-    let body = |at: Option<&Section>| at.map_or(&[][..], |at| &source.bytes[at.body.clone()]);
+    let body = |at: Option<&MshSection>| at.map_or(&[][..], |at| &source.bytes[at.body.clone()]);
     Ok(FileSurvey {
         source,
         encoding,
@@ -64,7 +64,7 @@ pub(super) fn survey(
 }
 
 /// Whether the file holds elements of dimension 3; looks at nothing else.
-pub(super) fn holds_cells(source: Source, encoding: Encoding) -> Result<bool, Defect> {
+pub(super) fn holds_cells(source: MshSource, encoding: Encoding) -> Result<bool, Defect> {
     let sections = split(source)?;
     let body = required(source, &sections, "Elements")?.body.clone();
     let blocks = elements::walk(Cursor::new(source, encoding, body))?;
@@ -78,20 +78,22 @@ pub(super) fn keep<T>(defects: &mut Vec<Defect>, result: Result<T, Defect>) -> O
     result.map_err(|defect| defects.push(defect)).ok()
 }
 
-fn physical_names(source: Source, sections: &[Section]) -> Result<Vec<Group>, Defect> {
+fn physical_names(source: MshSource, sections: &[MshSection]) -> Result<Vec<Group>, Defect> {
     match optional(sections, "PhysicalNames") {
         None => Ok(Vec::new()),
-        Some(Section { body, .. }) => names::read(source, &source.bytes[body.clone()], body.start),
+        Some(MshSection { body, .. }) => {
+            names::read(source, &source.bytes[body.clone()], body.start)
+        }
     }
 }
 
 fn entity_groups(
-    source: Source,
+    source: MshSource,
     encoding: Encoding,
-    sections: &[Section],
+    sections: &[MshSection],
 ) -> Result<EntityGroups, Defect> {
     let mut found = EntityGroups::new();
-    let cursor = |at: &Section| Cursor::new(source, encoding, at.body.clone());
+    let cursor = |at: &MshSection| Cursor::new(source, encoding, at.body.clone());
     if let Some(at) = optional(sections, "Entities") {
         walk_entities(cursor(at), &mut found)?;
     }

@@ -2,7 +2,7 @@
 
 use kluft_mesh::Defect;
 
-use super::source::{Encoding, Source, is_space};
+use super::source::{Encoding, MshSource, is_space};
 
 /// What kind of file this is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub(super) enum Format {
 const REMEDY: &str = "write it with gmsh: `gmsh GEO -3 -format msh41 -bin -o OUT.msh`";
 
 /// Reads the head of the file; never looks beyond `$EndMeshFormat`.
-pub(super) fn read(source: Source) -> Result<Format, Defect> {
+pub(super) fn read(source: MshSource) -> Result<Format, Defect> {
     let start = source.bytes.iter().take_while(|&&b| is_space(b)).count();
     let bytes = &source.bytes[start..];
     if bytes.is_empty() {
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     fn read_bytes(bytes: &[u8]) -> Result<Format, Defect> {
-        read(Source { name: "t", bytes })
+        read(MshSource { name: "t", bytes })
     }
 
     #[test]

@@ -22,7 +22,7 @@ use kluft_mesh::{Defect, Draft};
 use rayon::prelude::*;
 
 use header::Format;
-use source::Source;
+use source::MshSource;
 
 /// Reads an MSH 4.1 file, text or binary; coordinates are taken as metres.
 ///
@@ -39,7 +39,7 @@ pub fn read_msh(path: &Path) -> Result<Draft, Vec<Defect>> {
 /// # Errors
 /// As [`read_msh`].
 pub fn parse_msh(bytes: &[u8], source: &str) -> Result<Draft, Vec<Defect>> {
-    let source = Source {
+    let source = MshSource {
         name: source,
         bytes,
     };
@@ -52,7 +52,7 @@ pub fn parse_msh(bytes: &[u8], source: &str) -> Result<Draft, Vec<Defect>> {
 
 /// The version of an MSH file if it is before 4.1; `name` names the file in messages.
 pub(crate) fn older_version(bytes: &[u8], name: &str) -> Result<Option<f64>, Defect> {
-    let format = header::read(Source { name, bytes })?;
+    let format = header::read(MshSource { name, bytes })?;
     Ok(match format {
         Format::Current(_) => None,
         Format::Older(version) => Some(version),
@@ -63,7 +63,7 @@ pub(crate) fn older_version(bytes: &[u8], name: &str) -> Result<Option<f64>, Def
 pub(crate) fn holds_cells(path: &Path) -> Result<bool, Defect> {
     let bytes = bytes_of(path)?;
     let name = path.display().to_string();
-    let source = Source {
+    let source = MshSource {
         name: &name,
         bytes: &bytes,
     };
@@ -73,7 +73,7 @@ pub(crate) fn holds_cells(path: &Path) -> Result<bool, Defect> {
     }
 }
 
-fn older(source: Source, version: f64) -> Defect {
+fn older(source: MshSource, version: f64) -> Defect {
     source.defect(
         format!("this is an MSH file of version {version}, not 4.1"),
         "convert it: `gmsh IN.msh -save -save_all -format msh41 -bin -o OUT.msh`",

@@ -6,11 +6,11 @@ use kluft_mesh::Defect;
 use mshio::{Element, ElementType, MshData, MshParserError, Nodes};
 
 use super::cursor::ItemRange;
-use super::source::{Encoding, Source};
+use super::source::{Encoding, MshSource};
 
 /// Parses the body of `$Nodes`.
 pub(super) fn nodes(
-    source: Source,
+    source: MshSource,
     encoding: Encoding,
     body: &[u8],
 ) -> Result<Nodes<u64, i32, f64>, Defect> {
@@ -21,7 +21,7 @@ pub(super) fn nodes(
 
 /// Parses elements of one type in a text file, as many as the guard has counted.
 pub(super) fn elements(
-    source: Source,
+    source: MshSource,
     kind: ElementType,
     range: &ItemRange,
 ) -> Result<Vec<Element<u64>>, Defect> {
@@ -36,7 +36,7 @@ pub(super) fn elements(
 
 /// The body of a section with this range for its only block. Only the type and the number of the
 /// elements matter.
-fn lone_block(source: Source, kind: ElementType, range: &ItemRange) -> Vec<u8> {
+fn lone_block(source: MshSource, kind: ElementType, range: &ItemRange) -> Vec<u8> {
     let kind = match kind {
         // mshio takes the 18-node prism for one of 28 nodes; this is another type of 18 nodes.
         ElementType::Pri18 => ElementType::Tri18,
@@ -51,7 +51,7 @@ fn lone_block(source: Source, kind: ElementType, range: &ItemRange) -> Vec<u8> {
 
 /// Only this section is handed on: mshio searches the end of others in quadratic time.
 fn parse(
-    source: Source,
+    source: MshSource,
     encoding: Encoding,
     section: &str,
     body: &[u8],
@@ -82,7 +82,7 @@ fn alone(encoding: Encoding, section: &str, body: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-fn refused(source: Source, section: &str, reason: &str) -> Defect {
+fn refused(source: MshSource, section: &str, reason: &str) -> Defect {
     source.defect(
         format!("mshio refuses ${section}: {reason}"),
         "open the file in gmsh and save it again as MSH 4.1",

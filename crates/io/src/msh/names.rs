@@ -2,10 +2,10 @@
 
 use kluft_mesh::{Defect, Group};
 
-use super::source::{Encoding, Source};
+use super::source::{Encoding, MshSource};
 
 /// The named groups in file order. `offset` is where `body` begins in the file.
-pub(super) fn read(source: Source, body: &[u8], offset: usize) -> Result<Vec<Group>, Defect> {
+pub(super) fn read(source: MshSource, body: &[u8], offset: usize) -> Result<Vec<Group>, Defect> {
     let defect = |problem: String| source.defect_at(offset, Encoding::Text, problem);
     let mut lines = body
         .split(|&byte| byte == b'\n')
@@ -54,7 +54,7 @@ fn group_of(line: &[u8]) -> Result<Group, String> {
     })
 }
 
-fn check_repeated(source: Source, groups: &[Group]) -> Result<(), Defect> {
+fn check_repeated(source: MshSource, groups: &[Group]) -> Result<(), Defect> {
     let mut seen = std::collections::HashSet::new();
     match groups
         .iter()
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     fn names(body: &[u8]) -> Result<Vec<Group>, Defect> {
-        let source = Source {
+        let source = MshSource {
             name: "t",
             bytes: body,
         };

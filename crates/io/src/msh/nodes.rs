@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use kluft_mesh::{Defect, sample};
 
 use super::cursor::Cursor;
-use super::source::Source;
+use super::source::MshSource;
 
 /// What the walk over `$Nodes` has found; all counts agree with the bytes of the section.
 #[derive(Debug, Default)]
@@ -88,7 +88,7 @@ fn walk_node(cursor: &mut Cursor, parameters: i32) -> Result<bool, Defect> {
 }
 
 /// Everything about the nodes that a file must not have.
-pub(super) fn defects(source: Source, survey: &NodeSurvey) -> Vec<Defect> {
+pub(super) fn defects(source: MshSource, survey: &NodeSurvey) -> Vec<Defect> {
     let mut found = Vec::new();
     if survey.parametric {
         let remedy = "write it again without them: Mesh.SaveParametric = 0";

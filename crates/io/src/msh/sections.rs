@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use kluft_mesh::Defect;
 
-use super::source::{Encoding, Source, is_space};
+use super::source::{Encoding, MshSource, is_space};
 
 /// The body of one `$Name` ... `$EndName` section.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Section {
+pub(super) struct MshSection {
     pub(super) name: String,
     /// From behind the line break of `$Name` up to the `$` of `$EndName`.
     pub(super) body: Range<usize>,
@@ -25,7 +25,7 @@ const UNIQUE: [&str; 6] = [
 ];
 
 /// All sections in file order. Only white space may stand between them.
-pub(super) fn split(source: Source) -> Result<Vec<Section>, Defect> {
+pub(super) fn split(source: MshSource) -> Result<Vec<MshSection>, Defect> {
     let mut sections = Vec::new();
     let mut at = skip_space(source.bytes, 0);
     while at < source.bytes.len() {
@@ -39,10 +39,10 @@ pub(super) fn split(source: Source) -> Result<Vec<Section>, Defect> {
 
 /// The section of that name, or a defect that says it is missing.
 pub(super) fn required<'s>(
-    source: Source,
-    sections: &'s [Section],
+    source: MshSource,
+    sections: &'s [MshSection],
     name: &str,
-) -> Result<&'s Section, Defect> {
+) -> Result<&'s MshSection, Defect> {
     optional(sections, name).ok_or_else(|| {
         let remedy = "write the file again, with the mesh: `gmsh GEO -3 -format msh41 -o OUT.msh`";
         source.defect(format!("there is no ${name} section"), remedy)
@@ -50,11 +50,11 @@ pub(super) fn required<'s>(
 }
 
 /// The section of that name.
-pub(super) fn optional<'s>(sections: &'s [Section], name: &str) -> Option<&'s Section> {
+pub(super) fn optional<'s>(sections: &'s [MshSection], name: &str) -> Option<&'s MshSection> {
     sections.iter().find(|section| section.name == name)
 }
 
-fn check_unique(source: Source, sections: &[Section]) -> Result<(), Defect> {
+fn check_unique(source: MshSource, sections: &[MshSection]) -> Result<(), Defect> {
     let occurs = |name: &str| sections.iter().filter(|s| s.name == name).count();
     match UNIQUE.iter().find(|name| occurs(name) > 1) {
         None => Ok(()),
@@ -66,7 +66,7 @@ fn check_unique(source: Source, sections: &[Section]) -> Result<(), Defect> {
 }
 
 /// The section whose `$` is at `at`, and the offset behind its end marker.
-fn section_at(source: Source, at: usize) -> Result<(Section, usize), Defect> {
+fn section_at(source: MshSource, at: usize) -> Result<(MshSection, usize), Defect> {
     let (name, name_end) = section_name(source, at)?;
     let line_end = memchr::memchr(b'\n', &source.bytes[name_end..])
         .map_or(source.bytes.len(), |length| name_end + length + 1);
@@ -76,10 +76,10 @@ fn section_at(source: Source, at: usize) -> Result<(Section, usize), Defect> {
     })?;
     let marker_end = end + "$End".len() + name.len();
     let body = line_end..end;
-    Ok((Section { name, body }, marker_end))
+    Ok((MshSection { name, body }, marker_end))
 }
 
-fn section_name(source: Source, at: usize) -> Result<(String, usize), Defect> {
+fn section_name(source: MshSource, at: usize) -> Result<(String, usize), Defect> {
     let rest = &source.bytes[at..];
     let length = rest.iter().position(|&b| is_space(b)).unwrap_or(rest.len());
     let name = rest[..length].strip_prefix(b"$").unwrap_or_default();
@@ -114,9 +114,9 @@ fn skip_space(bytes: &[u8], from: usize) -> usize {
 mod tests {
     use super::*;
 
-    fn split_text(text: &str) -> Result<Vec<Section>, Defect> {
+    fn split_text(text: &str) -> Result<Vec<MshSection>, Defect> {
         let bytes = text.as_bytes();
-        split(Source { name: "t", bytes })
+        split(MshSource { name: "t", bytes })
     }
 
     #[test]

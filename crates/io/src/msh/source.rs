@@ -4,7 +4,7 @@ use kluft_mesh::Defect;
 
 /// A file in memory under the name that messages give it.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
+pub(super) struct MshSource<'a> {
     pub(super) name: &'a str,
     pub(super) bytes: &'a [u8],
 }
@@ -17,7 +17,7 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-impl Source<'_> {
+impl MshSource<'_> {
     /// Something about the file as a whole.
     pub(super) fn defect(&self, problem: impl Into<String>, remedy: &str) -> Defect {
         Defect::new(self.name, problem, remedy)

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::orientation::{self, Orientation};
+use super::orientation::{self, MeanOrientation};
 use crate::fracture_edges::FracturesAtNodes;
 use crate::geometry::{facet_area_vector, facet_centre};
 use crate::mesh::Mesh;
@@ -15,7 +15,7 @@ pub struct FractureSurvey {
     /// Area between the corners of the facets (m^2).
     pub area: f64,
     /// How it lies in space.
-    pub orientation: Orientation,
+    pub orientation: MeanOrientation,
     /// Lowest and highest coordinates (m).
     pub bounds: (DVec3, DVec3),
     /// Number of surfaces that do not share an edge.
@@ -41,7 +41,7 @@ impl FractureSurvey {
         Self {
             facets: 0,
             area: 0.0,
-            orientation: Orientation::default(),
+            orientation: MeanOrientation::default(),
             bounds: (DVec3::INFINITY, DVec3::NEG_INFINITY),
             components: 0,
             closed: true,

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 /// Mean orientation of a fracture, by area.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Orientation {
+pub struct MeanOrientation {
     /// Unit normal of the mean plane, upwards.
     pub normal: DVec3,
     /// Angle between the mean plane and the horizontal, 0 to 90 (degrees).
@@ -19,14 +19,18 @@ pub struct Orientation {
 /// Orientations of all fractures from the area vectors of the facets, whatever their signs.
 ///
 /// The mean normal is the axis of `sum_f A_f n_f n_f^T` with the largest eigenvalue.
-pub(super) fn of_fractures(areas: &[DVec3], fracture: &[u32], count: usize) -> Vec<Orientation> {
+pub(super) fn of_fractures(
+    areas: &[DVec3],
+    fracture: &[u32],
+    count: usize,
+) -> Vec<MeanOrientation> {
     let mut tensors = vec![DMat3::ZERO; count];
     for (&area, &fracture) in areas.iter().zip(fracture) {
         let normal = area.normalize_or_zero();
         tensors[fracture as usize] +=
             DMat3::from_cols(area * normal.x, area * normal.y, area * normal.z);
     }
-    let mut orientations: Vec<Orientation> = tensors.into_iter().map(of_tensor).collect();
+    let mut orientations: Vec<MeanOrientation> = tensors.into_iter().map(of_tensor).collect();
     for (&area, &fracture) in areas.iter().zip(fracture) {
         let entry = &mut orientations[fracture as usize];
         let normal = area.normalize_or_zero();
@@ -38,7 +42,7 @@ pub(super) fn of_fractures(areas: &[DVec3], fracture: &[u32], count: usize) -> V
     orientations
 }
 
-fn of_tensor(tensor: DMat3) -> Orientation {
+fn of_tensor(tensor: DMat3) -> MeanOrientation {
     let axis = leading_axis(tensor);
     let up = match [axis.z, axis.y, axis.x]
         .into_iter()
@@ -53,7 +57,7 @@ fn of_tensor(tensor: DMat3) -> Orientation {
     } else {
         0.0
     };
-    Orientation {
+    MeanOrientation {
         normal: up,
         dip: level.length().atan2(up.z.abs()).to_degrees(),
         dip_direction,
