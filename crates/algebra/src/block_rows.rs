@@ -39,7 +39,8 @@ impl<'a> BlockRows<'a> {
         found.map_or(DMat3::ZERO, |at| self.blocks[range.start + at])
     }
 
-    /// Entry `row` of `A vector`. Two sums run side by side, so that one need not wait for the other.
+    /// Entry `row` of `A vector`. Two sums run side by side, so that one need not wait for the
+    /// other.
     pub fn row_product(&self, row: usize, vector: &[DVec3]) -> DVec3 {
         let range = self.row_offset[row]..self.row_offset[row + 1];
         let (columns, blocks) = (&self.columns[range.clone()], &self.blocks[range]);
@@ -56,8 +57,8 @@ impl<'a> BlockRows<'a> {
         even + odd
     }
 
-    /// `product = A vector`, both of one entry a block row, without allocating. Each row is summed by
-    /// one thread in a fixed order, so the result does not depend on the number of threads.
+    /// `product = A vector`, both of one entry a block row, without allocating. Each row is summed
+    /// by one thread in a fixed order, so the result does not depend on the number of threads.
     ///
     /// # Panics
     /// If `vector` or `product` has not one entry for each block row.

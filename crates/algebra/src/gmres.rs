@@ -1,7 +1,7 @@
 //! Preconditioned GMRES, for systems that are not symmetric.
 //!
-//! Y. Saad, "A flexible inner-outer preconditioned GMRES algorithm", SIAM J. Sci. Comput. 14 (1993): the
-//! preconditioner may itself be an iteration.
+//! Y. Saad, "A flexible inner-outer preconditioned GMRES algorithm", SIAM J. Sci. Comput. 14
+//! (1993): the preconditioner may itself be an iteration.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -18,9 +18,9 @@ const RESTART: usize = 60;
 /// Share of the residual that a whole cycle may leave.
 const STAGNANT: f64 = 0.3;
 
-/// Solves `A x = b`: `product` computes `A v`, `precondition` an approximation of `A^-1 r`, each into
-/// its second argument. `solution` is the initial guess on entry and the last iterate on return. Sums
-/// have a fixed order.
+/// Solves `A x = b`: `product` computes `A v`, `precondition` an approximation of `A^-1 r`, each
+/// into its second argument. `solution` is the initial guess on entry and the last iterate on
+/// return. Sums have a fixed order.
 pub fn gmres(
     mut product: impl FnMut(&[DVec3], &mut [DVec3]),
     mut precondition: impl FnMut(&[DVec3], &mut [DVec3]),
@@ -148,7 +148,8 @@ impl Krylov {
         self.triangle.push(column);
     }
 
-    /// Adds the best of the space to `solution`; false if the space holds a direction without effect.
+    /// Adds the best of the space to `solution`; false if the space holds a direction without
+    /// effect.
     fn add_to(&self, solution: &mut [DVec3]) -> bool {
         let count = self.triangle.len();
         let mut shares = self.rhs[..count].to_vec();

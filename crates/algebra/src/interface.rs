@@ -1,4 +1,5 @@
-//! A matrix that is the sum of a large fixed one and of blocks that change, as those of an interface do.
+//! A matrix that is the sum of a large fixed one and of blocks that change, as those of an
+//! interface do.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -75,7 +76,8 @@ impl<'a> FixedPart<'a> {
         InterfaceBlocks { pattern, blocks }.add_product(vector, product);
     }
 
-    /// Where the blocks of the interface belong in the matrix: block row and number of the block in it.
+    /// Where the blocks of the interface belong in the matrix: block row and number of the block in
+    /// it.
     ///
     /// # Panics
     /// If the fixed matrix has no block somewhere.
@@ -99,8 +101,8 @@ impl<'a> FixedPart<'a> {
         .collect()
     }
 
-    /// The blocks of the sum that the interface has a part in: block row, number of the block in it, and
-    /// the block. `places` are [`Self::places`].
+    /// The blocks of the sum that the interface has a part in: block row, number of the block in
+    /// it, and the block. `places` are [`Self::places`].
     pub fn blocks(
         &self,
         places: &[(usize, usize)],

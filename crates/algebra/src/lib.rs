@@ -1,4 +1,67 @@
-//! Linear algebra on matrices of 3x3 blocks.
+//! Linear algebra on sparse symmetric matrices of 3x3 blocks, as elasticity makes them, with nothing
+//! of meshes or fractures in it. What depends on these is handed in: the graph of nodes, the rows of
+//! each node, motions that cost next to nothing, the blocks of an interface.
+//!
+//! No result depends on the number of threads: every sum has a fixed order. All vectors have one
+//! 3-vector a block row.
+//!
+//! # Rooms
+//!
+//! | files | what they hold |
+//! |---|---|
+//! | `lists`, `ownership`, `vectors`, `small`, `dense_kernels` | compressed rows, who owns which rows, sums over vectors, small dense blocks, dense kernels on threads of their own |
+//! | `block_matrix`, `block_rows`, `interface` | a block matrix, its view row by row, and what an interface adds to it |
+//! | `conjugate_gradients`, `gmres` | iterations, with any preconditioner |
+//! | `cholesky/`, `schur` | nested dissection, symbolic analysis, factor, substitution; the dense problem that is left of it |
+//! | `multigrid/` | smoothed aggregation, a preconditioner |
+//!
+//! # Example
+//!
+//! A chain of springs of stiffness 1, held at both ends, is pulled in its middle.
+//!
+//! ```
+//! use glam::{DMat3, DVec3};
+//! use kluft_algebra::{
+//!     Analysis, BlockMatrix, BlockPattern, Cholesky, ConjugateGradientOutcome,
+//!     ConjugateGradientSettings, Lists, NodeOrder, conjugate_gradients,
+//! };
+//!
+//! let beside: Vec<Vec<u32>> = vec![vec![0, 1], vec![0, 1, 2], vec![1, 2]];
+//! let graph = Lists::collect(&beside);
+//! let pattern = BlockPattern {
+//!     row_offset: graph.offset.clone(),
+//!     columns: graph.entries.clone(),
+//! };
+//! let (own, other) = (2.0 * DMat3::IDENTITY, -DMat3::IDENTITY);
+//! let matrix = BlockMatrix {
+//!     blocks: vec![own, other, other, own, other, other, own],
+//! };
+//! let rows = matrix.rows(&pattern);
+//! let rhs = [DVec3::ZERO, DVec3::X, DVec3::ZERO];
+//!
+//! // Every node has one row.
+//! let order = NodeOrder::of(&graph, &[0, 1, 2, 3])?.all(&[0, 1, 2, 3]);
+//! let mut cholesky = Cholesky::new(Analysis::of(rows.row_offset, rows.columns, order)?, rows);
+//! cholesky.factorise()?;
+//! let direct = cholesky.solve(&rhs);
+//! assert!((direct[1] - DVec3::X).length() < 1e-14);
+//!
+//! let mut solution = [DVec3::ZERO; 3];
+//! let report = conjugate_gradients(
+//!     |vector, product| rows.multiply(vector, product),
+//!     |residual, correction| correction.copy_from_slice(residual),
+//!     &rhs,
+//!     &mut solution,
+//!     ConjugateGradientSettings {
+//!         tolerance: 1e-12,
+//!         max_iterations: 10,
+//!     },
+//! );
+//! assert_eq!(report.outcome, ConjugateGradientOutcome::Converged);
+//! assert!((solution[0] - direct[0]).length() < 1e-12);
+//! # Ok::<(), kluft_algebra::LinearFailure>(())
+//! ```
+
 mod block_matrix;
 mod block_rows;
 mod cholesky;

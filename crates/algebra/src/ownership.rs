@@ -4,12 +4,12 @@ use std::ops::Range;
 
 /// The parts that rows are divided into: part `p` owns the rows `starts[p]..starts[p + 1]`.
 ///
-/// The ranges ascend and cover all rows, so every row has one owner. A part is the work of one task; of
-/// one process, where rows are divided over many.
+/// The ranges ascend and cover all rows, so every row has one owner. A part is the work of one
+/// task; of one process, where rows are divided over many.
 ///
-/// What assembly and set-up promise with it: a part writes the rows that it owns and no others, and adds
-/// what contributes to a row in ascending order of the contributors. So there are no locks, and no value
-/// depends on how many threads there are, nor on how the rows are divided.
+/// What assembly and set-up promise with it: a part writes the rows that it owns and no others, and
+/// adds what contributes to a row in ascending order of the contributors. So there are no locks,
+/// and no value depends on how many threads there are, nor on how the rows are divided.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RowOwnership {
     starts: Vec<usize>,
@@ -70,7 +70,8 @@ impl RowOwnership {
         self.starts.windows(2).map(|pair| pair[0]..pair[1])
     }
 
-    /// Cuts the entries of all rows, row `r` having `offset[r]..offset[r + 1]`, into what each part owns.
+    /// Cuts the entries of all rows, row `r` having `offset[r]..offset[r + 1]`, into what each part
+    /// owns.
     ///
     /// # Panics
     /// If `offset` has not one entry more than there are rows.

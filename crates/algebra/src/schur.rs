@@ -1,8 +1,8 @@
 //! The problem that is left when all other unknowns are eliminated: `(S + C) w = g` with the Schur
 //! complement `S` and a matrix `C` that changes.
 //!
-//! `S` is dense and never changes; `C` is block-sparse and does. A change of `C` alone rarely needs a
-//! new factorisation: conjugate gradients with the last one as preconditioner are cheaper as long
+//! `S` is dense and never changes; `C` is block-sparse and does. A change of `C` alone rarely needs
+//! a new factorisation: conjugate gradients with the last one as preconditioner are cheaper as long
 //! as no stiffness changed by much.
 
 use faer::dyn_stack::{MemBuffer, MemStack};

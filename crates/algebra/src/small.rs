@@ -71,7 +71,8 @@ pub fn add<const M: usize, const L: usize>(
     pairs.for_each(|(sum, entry)| *sum += factor * entry);
 }
 
-/// `S += A B`, with `A` as columns and `B` as rows: line by line, so that a line stays in registers.
+/// `S += A B`, with `A` as columns and `B` as rows: line by line, so that a line stays in
+/// registers.
 #[inline(always)]
 pub fn add_columns<const M: usize, const N: usize>(
     sum: &mut [[f64; 6]; M],

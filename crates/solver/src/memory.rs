@@ -7,8 +7,8 @@ use crate::linear::{ExtraMemory, Workload};
 use crate::newton::subspace_bytes;
 
 impl Workload {
-    /// Counts in what estimates of errors and moves of former steps take, on a mesh with this number of
-    /// unknown 3-vectors.
+    /// Counts in what estimates of errors and moves of former steps take, on a mesh with this
+    /// number of unknown 3-vectors.
     pub fn with_extra_memory(self, mesh: &Mesh, unknowns: usize) -> Self {
         let recycles = self.is_smooth && self.steps > 1;
         let iterative = if recycles {

@@ -56,8 +56,8 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Results at the nodes of the facets, in the order of their flat node list: the jump is that of the
-    /// walls there, traction and state are those of the facet point of the node.
+    /// Results at the nodes of the facets, in the order of their flat node list: the jump is that
+    /// of the walls there, traction and state are those of the facet point of the node.
     pub fn facet_nodes(&self, problem: &Problem, interface: &Interface) -> Vec<FacetResult> {
         let facets = &problem.mesh.facets;
         let mut results = self.facet_points[..facets.elements.nodes.len()].to_vec();

@@ -28,8 +28,8 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Analyses a symmetric pattern of blocks (start of each row, and columns ascending in each row)
-    /// that is eliminated in the given order.
+    /// Analyses a symmetric pattern of blocks (start of each row, and columns ascending in each
+    /// row) that is eliminated in the given order.
     ///
     /// # Errors
     /// If the analysis fails.

@@ -1,9 +1,9 @@
 //! The finest matrix in scaled unknowns.
 //!
-//! With `A_CC = L_C L_C^T` for each cluster `C` of unknowns, the matrix `L_C^-1 A_CD L_D^-T` has the
-//! identity in its diagonal blocks. In these unknowns the block Jacobi method is Richardson's, the
-//! diagonal needs no storage, and single precision suffices whatever the units, however strongly
-//! stiffness is graded, and however stiff an interface is.
+//! With `A_CC = L_C L_C^T` for each cluster `C` of unknowns, the matrix `L_C^-1 A_CD L_D^-T` has
+//! the identity in its diagonal blocks. In these unknowns the block Jacobi method is Richardson's,
+//! the diagonal needs no storage, and single precision suffices whatever the units, however
+//! strongly stiffness is graded, and however stiff an interface is.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -19,8 +19,9 @@ use crate::small::{Modes, Packed, add, add_columns, narrow, product, rows_of, tr
 /// Clusters that one task factorises.
 const PER_TASK: usize = 1024;
 
-/// The diagonal blocks `R` of the clusters in the fixed matrix, and the inverses `L^-1` of the Cholesky
-/// factors of those of the whole one: lower triangles, row by row, one cluster behind the other.
+/// The diagonal blocks `R` of the clusters in the fixed matrix, and the inverses `L^-1` of the
+/// Cholesky factors of those of the whole one: lower triangles, row by row, one cluster behind the
+/// other.
 pub(super) struct Factors {
     offset: Vec<usize>,
     /// `R`.
@@ -253,13 +254,14 @@ fn single_neighbours(rows: &SumRows<'_>, clusters: &Clusters, row: usize) -> Opt
     (others == 0).then_some(count)
 }
 
-/// Sets `prolongator` to that of scaled unknowns, `L^T P'`, after a block Jacobi step on the interface.
+/// Sets `prolongator` to that of scaled unknowns, `L^T P'`, after a block Jacobi step on the
+/// interface.
 ///
-/// What `P` moves, it moves as if the interface had no stiffness `S`. The step is that of the unknowns of
-/// each cluster, those of all others being held: `P' = P - A^-1 S P = A^-1 R P`, with `A = R + S = L L^T` and
-/// `R` of the fixed matrix, hence `L^T P' = L^-1 R P`. Motions that would strain a stiff interface strain
-/// what lies beside it instead, so that the next level is as stiff as the fixed matrix, however stiff the
-/// interface is. Rigid motions, where `S P = 0`, stay.
+/// What `P` moves, it moves as if the interface had no stiffness `S`. The step is that of the
+/// unknowns of each cluster, those of all others being held: `P' = P - A^-1 S P = A^-1 R P`, with
+/// `A = R + S = L L^T` and `R` of the fixed matrix, hence `L^T P' = L^-1 R P`. Motions that would
+/// strain a stiff interface strain what lies beside it instead, so that the next level is as stiff
+/// as the fixed matrix, however stiff the interface is. Rigid motions, where `S P = 0`, stay.
 pub(super) fn smooth_by_blocks(
     prolongator: &mut Sparse<3, 6>,
     basis: &Sparse<3, 6>,
@@ -292,7 +294,8 @@ pub(super) fn smooth_by_blocks(
     );
 }
 
-/// Modes in scaled unknowns, `L^T B = L^-1 R B`, where every cluster is a single row of the fixed matrix.
+/// Modes in scaled unknowns, `L^T B = L^-1 R B`, where every cluster is a single row of the fixed
+/// matrix.
 pub(super) fn modes(factors: &Factors, modes: &[[DVec3; 6]]) -> Vec<Modes<3>> {
     let scaled = |(cluster, modes): (usize, &[DVec3; 6])| {
         let left = transpose(&factors.smoothing_block(cluster as u32, 0, 0));

@@ -1,15 +1,16 @@
 //! Clusters: unknowns whose mutual stiffness the smoother inverts exactly.
 //!
-//! The unknowns of one node form a cluster, and so do nodes much nearer to each other than to others, as
-//! across a sliver. Such nodes move together at almost no cost, which a smoother that looks at one node
-//! after the other cannot see, and which is too local for the next level.
+//! The unknowns of one node form a cluster, and so do nodes much nearer to each other than to
+//! others, as across a sliver. Such nodes move together at almost no cost, which a smoother that
+//! looks at one node after the other cannot see, and which is too local for the next level.
 
 use rayon::prelude::*;
 
 use super::sparse::Sparse;
 use crate::lists::Lists;
 
-/// Nodes tied by a block of this norm belong together; the blocks of both are scaled to the identity.
+/// Nodes tied by a block of this norm belong together; the blocks of both are scaled to the
+/// identity.
 const TIED: f32 = 0.8;
 /// Most nodes of a cluster.
 const MOST_NODES: usize = 6;
@@ -35,9 +36,9 @@ impl Clusters {
         }
     }
 
-    /// Clusters of a matrix whose nodes have the rows `node_offset[node]..node_offset[node + 1]`; the
-    /// first of them is the mean motion. `means` is the scaled matrix of those, with one row for each of
-    /// `nodes`.
+    /// Clusters of a matrix whose nodes have the rows `node_offset[node]..node_offset[node + 1]`;
+    /// the first of them is the mean motion. `means` is the scaled matrix of those, with one row
+    /// for each of `nodes`.
     pub(super) fn of(means: &Sparse<3, 3>, nodes: &[u32], node_offset: &[u32]) -> Self {
         let mut ties = ties(means, nodes);
         ties.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
@@ -122,8 +123,8 @@ impl Groups {
     }
 }
 
-/// Norms of the blocks between mean motions, and their nodes, where they are large. `means` is their
-/// scaled matrix, with one row for each of `nodes`.
+/// Norms of the blocks between mean motions, and their nodes, where they are large. `means` is
+/// their scaled matrix, with one row for each of `nodes`.
 fn ties(means: &Sparse<3, 3>, nodes: &[u32]) -> Vec<(f32, u32, u32)> {
     let tied = |row: usize| {
         let blocks = means.row(row).filter(move |(column, _)| *column > row);

@@ -16,7 +16,8 @@ pub(super) struct Coarse {
     pub(super) modes: Vec<Modes<6>>,
 }
 
-/// The next level of `P^T A P`, whose nodes have these modes; scales the columns of `P` to its unknowns.
+/// The next level of `P^T A P`, whose nodes have these modes; scales the columns of `P` to its
+/// unknowns.
 pub(super) fn coarse<const N: usize>(
     whole: &PartialProduct,
     prolongator: &mut Sparse<N, 6>,

@@ -26,8 +26,8 @@ pub struct MeanField {
 }
 
 impl MeanField {
-    /// Aggregates rows that are all clusters of their own, the first ones of `nodes` among `node_count`;
-    /// and their scaled matrix.
+    /// Aggregates rows that are all clusters of their own, the first ones of `nodes` among
+    /// `node_count`; and their scaled matrix.
     pub(super) fn of(
         rows: &SumRows<'_>,
         modes: &[[DVec3; 6]],
@@ -67,8 +67,8 @@ impl MeanField {
         self.transpose.columns()
     }
 
-    /// The modes of each aggregate in its own six unknowns: upper triangular, with a zero on the diagonal
-    /// where a mode depends on those before it.
+    /// The modes of each aggregate in its own six unknowns: upper triangular, with a zero on the
+    /// diagonal where a mode depends on those before it.
     pub fn modes(&self) -> &[Modes<6>] {
         &self.modes
     }
@@ -106,8 +106,8 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// A basis of `rows` unknowns and one node for each of `modes`. `motions` tells the nodes that move an
-    /// unknown, ascending, and how: blocks as rows. It is called twice a row.
+    /// A basis of `rows` unknowns and one node for each of `modes`. `motions` tells the nodes that
+    /// move an unknown, ascending, and how: blocks as rows. It is called twice a row.
     pub fn new(
         rows: usize,
         modes: Vec<Modes<6>>,

@@ -3,10 +3,10 @@
 //!
 //! Each level groups its nodes into aggregates. The motions that cost next to nothing, which are
 //! the rigid ones, are kept exactly on every aggregate and smoothed at its edges; they are the six
-//! unknowns of one node of the next level. Where an aggregate is to fall into parts that move apart, the
-//! basis of the next level is handed in: [`Multigrid::with_basis`]. All levels are stored in single
-//! precision, in unknowns that scale their diagonal to the identity; sums of the set-up are in double
-//! precision. No result depends on the number of threads.
+//! unknowns of one node of the next level. Where an aggregate is to fall into parts that move
+//! apart, the basis of the next level is handed in: [`Multigrid::with_basis`]. All levels are
+//! stored in single precision, in unknowns that scale their diagonal to the identity; sums of the
+//! set-up are in double precision. No result depends on the number of threads.
 
 mod aggregation;
 mod block_jacobi;
@@ -97,10 +97,10 @@ impl Multigrid {
         })
     }
 
-    /// Prepares the hierarchy of a matrix whose node `n` has the rows `first_row[n]..first_row[n + 1]`,
-    /// which may be none, the first of them being its mean motion; it stands after [`Self::rebuild`].
-    /// `modes` has one entry for each node with rows. `basis` makes the motions of the next level of
-    /// those of the means.
+    /// Prepares the hierarchy of a matrix whose node `n` has the rows `first_row[n]..first_row[n +
+    /// 1]`, which may be none, the first of them being its mean motion; it stands after
+    /// [`Self::rebuild`]. `modes` has one entry for each node with rows. `basis` makes the motions
+    /// of the next level of those of the means.
     ///
     /// # Errors
     /// If a diagonal block is not positive definite, or an entry not finite.

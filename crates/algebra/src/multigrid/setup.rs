@@ -31,7 +31,8 @@ const MOST_NEAR: f64 = 0.5;
 pub(super) struct FixedHierarchy {
     pub(super) clusters: Clusters,
     pub(super) basis: Basis,
-    /// What the rows far from the interface give to the matrix of the next level, once that is known.
+    /// What the rows far from the interface give to the matrix of the next level, once that is
+    /// known.
     far: Option<PartialProduct>,
 }
 
@@ -69,7 +70,8 @@ impl LevelBuffers {
 }
 
 impl FixedHierarchy {
-    /// Prepares the hierarchy of a fixed matrix, with the basis that `split` makes of the mean motions.
+    /// Prepares the hierarchy of a fixed matrix, with the basis that `split` makes of the mean
+    /// motions.
     pub(super) fn of(
         nodes: NodeMatrix<'_>,
         split: impl FnOnce(MeanField) -> Basis,
@@ -112,7 +114,8 @@ impl FixedHierarchy {
         3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
     }
 
-    /// The finest level of a sum, in the buffers of a former one, and the next one if it is worth having.
+    /// The finest level of a sum, in the buffers of a former one, and the next one if it is worth
+    /// having.
     pub(super) fn finest(
         &mut self,
         rows: &SumRows<'_>,
@@ -258,7 +261,8 @@ fn below(
     Ok((Below::Level(transfer), Some(coarse)))
 }
 
-/// The way to the level of `P^T A P`, whose nodes have these modes, and that level. `restrictor` is storage.
+/// The way to the level of `P^T A P`, whose nodes have these modes, and that level. `restrictor` is
+/// storage.
 fn descend<const N: usize>(
     product: PartialProduct,
     mut prolongator: Sparse<N, 6>,

@@ -66,8 +66,8 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
     }
 
     /// A matrix whose rows `fill` writes, once for their number of blocks and once for the blocks.
-    /// `scratch` is what a task keeps from row to row; it must not influence the result. `fill` runs with
-    /// the widest vectors of the machine as far as it is inlined.
+    /// `scratch` is what a task keeps from row to row; it must not influence the result. `fill`
+    /// runs with the widest vectors of the machine as far as it is inlined.
     pub(super) fn build<S>(
         rows: usize,
         rows_per_task: usize,
@@ -80,8 +80,8 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
         matrix
     }
 
-    /// The same in the storage of a matrix that is needed no more: mapping fresh memory costs more than
-    /// filling it.
+    /// The same in the storage of a matrix that is needed no more: mapping fresh memory costs more
+    /// than filling it.
     pub(super) fn rebuild<S>(
         &mut self,
         rows: usize,

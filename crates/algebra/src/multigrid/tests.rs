@@ -47,8 +47,8 @@ impl Case {
     }
 }
 
-/// A cube of `edge^3` nodes joined by springs to all nodes around each; the nodes of one face are tied to
-/// where they are.
+/// A cube of `edge^3` nodes joined by springs to all nodes around each; the nodes of one face are
+/// tied to where they are.
 fn lattice(edge: usize) -> Case {
     let place = |node: usize| [node % edge, node / edge % edge, node / edge / edge];
     let at = |node: usize| DVec3::from_array(place(node).map(|x| x as f64));

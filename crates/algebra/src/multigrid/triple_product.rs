@@ -38,8 +38,8 @@ impl PartialProduct {
         Self::sum(transpose.columns(), &parts)
     }
 
-    /// What rows of `A`, which has the identity as its diagonal, give to `P^T A P`: those that `is_wanted`, in
-    /// batches.
+    /// What rows of `A`, which has the identity as its diagonal, give to `P^T A P`: those that
+    /// `is_wanted`, in batches.
     pub(super) fn of_rows<const N: usize>(
         matrix: &Sparse<N, N>,
         prolongator: &Sparse<N, 6>,

@@ -1,8 +1,8 @@
 //! Forces that cells exert on their nodes: weight, initial stress, prescribed displacements.
 //!
-//! Each cell is integrated once, in waves that bound the memory. Every thread owns a range of points
-//! and adds what the cells of the wave have for them, in ascending order, so no sum depends on the
-//! number of threads.
+//! Each cell is integrated once, in waves that bound the memory. Every thread owns a range of
+//! points and adds what the cells of the wave have for them, in ascending order, so no sum depends
+//! on the number of threads.
 
 use glam::{DMat3, DVec3};
 use lie_core::kernel::{self, MAX_NODES};
@@ -98,8 +98,8 @@ fn of_cells(
     forces
 }
 
-/// Forces (N) by which the rock resists the prescribed displacements of a load case alone, `f = K g`, if it
-/// prescribes any.
+/// Forces (N) by which the rock resists the prescribed displacements of a load case alone, `f = K
+/// g`, if it prescribes any.
 pub(crate) fn prescribed(space: Space<'_>, case: usize) -> Option<Vec<DVec3>> {
     if !space.supports.prescribe(case) {
         return None;

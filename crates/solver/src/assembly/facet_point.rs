@@ -8,6 +8,7 @@ const SHEAR_SHARE: f64 = 0.3;
 
 /// One point of one facet.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct FacetPoint {
     /// Facet it belongs to.
     pub facet: u32,

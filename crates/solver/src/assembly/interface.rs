@@ -1,11 +1,12 @@
 //! The fractures as the solver sees them: facet points, each with a jump and a law.
 //!
-//! The jump of a facet point is `w = sum_i J_i y_i + sum_c f_c w_c`, over the unknowns `y_i` of its nodes,
-//! with `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))`, and over the load cases `c` with their
-//! factors `f_c` and the jumps `w_c` of their prescribed displacements.
-//! Facets are integrated at their nodes, so with few exceptions (facets of second order, see
-//! `lie_core::facet_points`) a facet point couples the unknowns of one node only. Without supports the coefficient of a
-//! continuous displacement is zero and left out: the fractures act on the jumps alone.
+//! The jump of a facet point is `w = sum_i J_i y_i + sum_c f_c w_c`, over the unknowns `y_i` of its
+//! nodes, with `J_i = N (c(plus, i) P(plus) - c(minus, i) P(minus))`, and over the load cases `c`
+//! with their factors `f_c` and the jumps `w_c` of their prescribed displacements. Facets are
+//! integrated at their nodes, so with few exceptions (facets of second order, see
+//! `lie_core::facet_points`) a facet point couples the unknowns of one node only. Without supports
+//! the coefficient of a continuous displacement is zero and left out: the fractures act on the
+//! jumps alone.
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists};
@@ -42,8 +43,9 @@ struct PrescribedJump {
 /// All facet points and how the unknowns move them.
 #[derive(Debug, Clone)]
 pub struct Interface {
-    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
-    /// in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points follow.
+    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the
+    /// facets, in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points
+    /// follow.
     pub(crate) points: Vec<FacetPoint>,
     /// Law of each fracture.
     laws: Vec<FractureLaw>,
@@ -132,8 +134,8 @@ impl Interface {
         self.unknowns = unknowns;
     }
 
-    /// Gives the fractures other laws, one each, which carry the initial stress from now on. The facet
-    /// points stay.
+    /// Gives the fractures other laws, one each, which carry the initial stress from now on. The
+    /// facet points stay.
     pub(crate) fn set_laws(&mut self, problem: &Problem, laws: Vec<FractureLaw>) {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
@@ -142,8 +144,9 @@ impl Interface {
         self.laws = laws;
     }
 
-    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the facets,
-    /// in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points follow.
+    /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the
+    /// facets, in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points
+    /// follow.
     pub fn points(&self) -> &[FacetPoint] {
         &self.points
     }
@@ -237,7 +240,8 @@ impl Interface {
         self.stiffness(&springs)
     }
 
-    /// Stiffness of the fractures, one block for each of [`Self::columns`]: `K_ij = sum A J_i^T D J_j`.
+    /// Stiffness of the fractures, one block for each of [`Self::columns`]: `K_ij = sum A J_i^T D
+    /// J_j`.
     pub fn stiffness(&self, tangents: &[DMat3]) -> Vec<DMat3> {
         let rows: Vec<Vec<DMat3>> = (0..self.unknowns.len())
             .into_par_iter()
@@ -350,7 +354,8 @@ impl Drawing<'_> {
             terms.extend(jump_terms(points, supports, plus, minus, value));
         }
         let fracture = facets.fracture[facet];
-        // At the tip of a quarter-point facet the share of the tip is negative or nothing; nothing moves there.
+        // At the tip of a quarter-point facet the share of the tip is negative or nothing; nothing
+        // moves there.
         let own = rule.area.length();
         let (area, normal) = match own > TURNED * mean.length() && rule.area.dot(mean) > 0.0 {
             true => (own, rule.area / own),

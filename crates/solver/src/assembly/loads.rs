@@ -45,7 +45,8 @@ pub struct Loads {
 }
 
 impl Loads {
-    /// Those of each load case, and what the initial stress of the rock does, which is never scaled.
+    /// Those of each load case, and what the initial stress of the rock does, which is never
+    /// scaled.
     pub fn new(cases: Vec<CaseLoads>, initial: Vec<DVec3>) -> Self {
         Self {
             case_sizes: cases.iter().map(CaseLoads::sizes).collect(),

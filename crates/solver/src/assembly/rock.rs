@@ -4,8 +4,9 @@
 //! the cells. One thread owns one row, so there are no locks and no colours, and the values do not
 //! depend on the number of threads.
 //!
-//! Nodes in linear tetrahedra only are served by [`Tetrahedra`]. Where there are other cells, matrices cost
-//! more to compute than to store and to read, so they are computed once, in waves that bound the memory.
+//! Nodes in linear tetrahedra only are served by [`Tetrahedra`]. Where there are other cells,
+//! matrices cost more to compute than to store and to read, so they are computed once, in waves
+//! that bound the memory.
 
 use std::ops::Range;
 
@@ -23,7 +24,7 @@ use crate::space::sector_nodes::SectorNodes;
 
 /// Nodes that one task assembles; small enough to balance, large enough to amortise.
 const NODES_PER_TASK: usize = 512;
-/// Blocks of cells that are kept at a time (16 MB), unless that makes more than [`MOST_WAVES`].
+/// Blocks of cells that are kept at a time, which take little memory, unless that makes more than [`MOST_WAVES`].
 const BLOCKS_PER_WAVE: usize = 1 << 18;
 /// Nodes of a linear tetrahedron; no other cell has as many.
 const TETRAHEDRON: usize = 4;
@@ -41,7 +42,8 @@ pub(crate) fn rock_stiffness(space: Space<'_>) -> BlockMatrix {
 /// The stiffness, where [`Tetrahedra`] serves the nodes `in_tetrahedra`.
 fn assemble(space: Space<'_>, in_tetrahedra: &[bool]) -> BlockMatrix {
     let is_plain = plain(space);
-    // Zeros of the allocator: memory that nobody has touched, as touching it costs more than all sums.
+    // Zeros of the allocator: memory that nobody has touched, as touching it costs more than all
+    // sums.
     let mut blocks: Vec<DMat3> = bytemuck::zeroed_vec(space.pattern.blocks.columns.len());
     let first_block: Vec<usize> = space
         .points
@@ -78,7 +80,8 @@ fn plain(space: Space<'_>) -> Vec<bool> {
         .collect()
 }
 
-/// Source of the rows of cells, for the cells of one wave; nodes in linear tetrahedra only are passed over.
+/// Source of the rows of cells, for the cells of one wave; nodes in linear tetrahedra only are
+/// passed over.
 struct Rock<'a> {
     space: Space<'a>,
     /// Lamé's constants of each rock (Pa).
@@ -187,7 +190,8 @@ impl<'a> Rock<'a> {
             points, pattern, ..
         } = self.space;
         let Scratch { place, visits } = scratch;
-        // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for them.
+        // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
+        // them.
         visits.clear();
         for node in nodes.clone().filter(|&node| !self.in_tetrahedra[node]) {
             let slots = self.space.slots(node, &self.slots).iter();
@@ -335,9 +339,9 @@ mod tests {
 
     const CUBES: usize = 6;
 
-    /// A box of two rocks in layers that cross the cells' rows, on rollers at one side, clamped below
-    /// and held at a corner; a fracture that ends in the rock crosses another that cuts through, and the
-    /// nodes off the planes are moved.
+    /// A box of two rocks in layers that cross the cells' rows, on rollers at one side, clamped
+    /// below and held at a corner; a fracture that ends in the rock crosses another that cuts
+    /// through, and the nodes off the planes are moved.
     fn problem(cut: impl Fn([usize; 3]) -> Cut) -> Problem {
         type Plane = fn([f64; 3]) -> bool;
         let planes: [Plane; 4] = [
@@ -400,8 +404,8 @@ mod tests {
         of(discretisation.space(problem))
     }
 
-    /// Largest entry of the matrix, and of its difference from the one without [`Tetrahedra`], which
-    /// integrates, projects and scatters cell by cell.
+    /// Largest entry of the matrix, and of its difference from the one without [`Tetrahedra`],
+    /// which integrates, projects and scatters cell by cell.
     fn compare(problem: &Problem) -> (f64, f64) {
         let largest = |block: DMat3| block.to_cols_array().map(f64::abs).into_iter();
         with_space(problem, |space| {

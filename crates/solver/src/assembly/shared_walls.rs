@@ -1,10 +1,11 @@
-//! What facet points between the same two walls, which have one jump, have in common: a spring, and the normal
-//! of their plane.
+//! What facet points between the same two walls, which have one jump, have in common: a spring, and
+//! the normal of their plane.
 //!
-//! Walls in contact, or stuck, are as stiff as their springs say: springs that differ would share a uniform
-//! traction unevenly among the facets around a node. Facets of one plane have normals that differ by the rounding
-//! of coordinates. Where the jump is a slip they open by different amounts, and no state but an open one closes all of
-//! them: walls in contact would trade their tractions, more with every iteration.
+//! Walls in contact, or stuck, are as stiff as their springs say: springs that differ would share a
+//! uniform traction unevenly among the facets around a node. Facets of one plane have normals that
+//! differ by the rounding of coordinates. Where the jump is a slip they open by different amounts,
+//! and no state but an open one closes all of them: walls in contact would trade their tractions,
+//! more with every iteration.
 
 use kluft_mesh::{Mesh, facet_area_vector};
 

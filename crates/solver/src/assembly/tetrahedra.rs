@@ -1,9 +1,10 @@
 //! Rows of the rock's stiffness at nodes in linear tetrahedra only.
 //!
-//! With `w = sqrt(V) grad N`, a tetrahedron adds `M_ab = w_a (x) w_b` between its nodes, and
-//! `K_ab = lambda M_ab + mu M_ab^T + mu tr(M_ab) I`. Each task computes the `w` of the cells around its nodes
-//! once, where they stay in the cache, and then sums up row after row, cells ascending. Sums run between
-//! points; what sectors and holds make of them is linear, so it waits until the sums stand.
+//! With `w = sqrt(V) grad N`, a tetrahedron adds `M_ab = w_a (x) w_b` between its nodes, and `K_ab
+//! = lambda M_ab + mu M_ab^T + mu tr(M_ab) I`. Each task computes the `w` of the cells around its
+//! nodes once, where they stay in the cache, and then sums up row after row, cells ascending. Sums
+//! run between points; what sectors and holds make of them is linear, so it waits until the sums
+//! stand.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -97,14 +98,15 @@ impl<'a> Tetrahedra<'a> {
         }
     }
 
-    /// Writes the rows of those of consecutive nodes that are in tetrahedra only, and zeros into the
-    /// others.
+    /// Writes the rows of those of consecutive nodes that are in tetrahedra only, and zeros into
+    /// the others.
     pub(crate) fn set_share(&self, nodes: Range<usize>, rows: &mut [DMat3], scratch: &mut Scratch) {
         let Space {
             points, pattern, ..
         } = self.space;
         let served = nodes.clone().filter(|&node| self.in_tetrahedra[node]);
-        // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for them.
+        // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
+        // them.
         scratch.gather(self, served);
         let (mut rest, mut visits) = (rows, scratch.visits.as_slice());
         for node in nodes {
@@ -157,8 +159,8 @@ impl<'a> Tetrahedra<'a> {
         }
     }
 
-    /// Turns blocks between the points of the rows' node and of another one into blocks between their
-    /// unknowns: `T^T (P K P + s (I - P)) T`.
+    /// Turns blocks between the points of the rows' node and of another one into blocks between
+    /// their unknowns: `T^T (P K P + s (I - P)) T`.
     fn enrich(&self, (node, other): (usize, usize), rows: &mut Rows<'_>) {
         let points = self.space.points;
         let (own, others) = (points.of_node(node), points.of_node(other));
@@ -283,7 +285,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Sets the diagonal, which is symmetric: a row adds up to zero, because translations cost nothing.
+    /// Sets the diagonal, which is symmetric: a row adds up to zero, because translations cost
+    /// nothing.
     fn close(&mut self) {
         for (row, point) in self.blocks.chunks_mut(self.length).zip(self.first..) {
             let sum: DMat3 = row.iter().copied().sum();
@@ -309,8 +312,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Combines the blocks between the points of the node itself, which share no cell: only those of
-    /// each with itself are not zero.
+    /// Combines the blocks between the points of the node itself, which share no cell: only those
+    /// of each with itself are not zero.
     fn transform_diagonal(&mut self, start: usize) {
         let sectors = self.blocks.len() / self.length;
         let own: Vec<DMat3> = (0..sectors)
@@ -328,8 +331,9 @@ impl Rows<'_> {
     }
 }
 
-/// The transposed table of enrichment, applied in place to blocks of all sectors of a node, `stride` apart:
-/// `r_k = sum_i coefficient(s, i, k) f_i`, which is the sum of all for `k = 0` and else `f_k` less their mean.
+/// The transposed table of enrichment, applied in place to blocks of all sectors of a node,
+/// `stride` apart: `r_k = sum_i coefficient(s, i, k) f_i`, which is the sum of all for `k = 0` and
+/// else `f_k` less their mean.
 fn transform(blocks: &mut [DMat3], stride: usize) {
     let sum: DMat3 = blocks.iter().step_by(stride).copied().sum();
     let mean = sum * (1.0 / blocks.len().div_ceil(stride) as f64);

@@ -1,10 +1,10 @@
 //! How wrong a solution is, estimated from itself.
 //!
-//! The error of the stress is taken for the difference between the stress of the elements and a smoother
-//! one recovered from it (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 24, 1987). What it does
-//! to jumps follows from the solution `z` under a unit traction on their walls: with `e` and `e_z` the errors of
-//! both solutions, the error of the mean jump is `a(e, e_z) / A <= sum |e|_K |e_z|_K / A`, in energy norms
-//! (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
+//! The error of the stress is taken for the difference between the stress of the elements and a
+//! smoother one recovered from it (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 24,
+//! 1987). What it does to jumps follows from the solution `z` under a unit traction on their walls:
+//! with `e` and `e_z` the errors of both solutions, the error of the mean jump is `a(e, e_z) / A <=
+//! sum |e|_K |e_z|_K / A`, in energy norms (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
 
 mod nearest_fracture;
 mod patches;
@@ -24,12 +24,12 @@ use patches::Patches;
 
 pub use sizes::target_sizes;
 
-/// Error of the linear solve for `z`, as a share of its forces: the errors of the means are then hardly
-/// different from those of an exact `z`, which takes several times the iterations.
+/// Error of the linear solve for `z`, as a share of its forces: the errors of the means are then
+/// hardly different from those of an exact `z`, which takes several times the iterations.
 const ROUGH: f64 = 0.1;
 
-/// Memory (bytes) that estimates on a mesh take: patches, samples, polynomials, and what is known of each cell of
-/// two states.
+/// Memory (bytes) that estimates on a mesh take: patches, samples, polynomials, and what is known
+/// of each cell of two states.
 pub(crate) fn estimate_bytes(mesh: &Mesh) -> usize {
     const OF_SLOT: usize = 8;
     const OF_SAMPLE: usize = size_of::<DVec3>() + size_of::<SymmetricStress>();
@@ -56,8 +56,8 @@ pub struct Estimator {
 /// Error of the stress of one state.
 #[derive(Debug, Clone)]
 pub struct StressError {
-    /// `|e|_K^2`, the square of the energy norm of the error in each cell (J), twice the energy that it
-    /// would store.
+    /// `|e|_K^2`, the square of the energy norm of the error in each cell (J), twice the energy
+    /// that it would store.
     pub of_cell: Vec<f64>,
     /// Volume of each cell (m^3).
     pub volumes: Vec<f64>,
@@ -66,8 +66,8 @@ pub struct StressError {
 }
 
 impl StressError {
-    /// Gives cells at crack fronts the density of error of the cells next to them: no polynomial follows the
-    /// stresses of quarter-point elements.
+    /// Gives cells at crack fronts the density of error of the cells next to them: no polynomial
+    /// follows the stresses of quarter-point elements.
     fn take_over_at_fronts(&mut self, mesh: &Mesh) {
         let is_at_front = mesh.front_cells();
         let (at_front, beside): (Vec<usize>, Vec<usize>) =
@@ -163,9 +163,9 @@ impl Estimator {
         error
     }
 
-    /// Estimates the error of the mean over each fracture of the jump along `directions`, one for each
-    /// facet point: with normals of the mean opening, with those of slip of the mean slip. It costs one
-    /// rough linear solve with the tangent that `newton` used last.
+    /// Estimates the error of the mean over each fracture of the jump along `directions`, one for
+    /// each facet point: with normals of the mean opening, with those of slip of the mean slip. It
+    /// costs one rough linear solve with the tangent that `newton` used last.
     ///
     /// # Errors
     /// If that solve fails.

@@ -7,8 +7,8 @@ use kluft_algebra::Lists;
 /// No fracture.
 const NONE: u32 = u32::MAX;
 
-/// The fracture that the fewest cells lie between it and each cell, the first of several; beyond all
-/// numbers where there is none.
+/// The fracture that the fewest cells lie between it and each cell, the first of several; beyond
+/// all numbers where there is none.
 pub(super) fn nearest_fracture(mesh: &Mesh) -> Vec<u32> {
     let facets = &mesh.facets;
     let mut of_node = vec![NONE; mesh.nodes.len()];

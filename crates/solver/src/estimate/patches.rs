@@ -1,6 +1,7 @@
-//! Recovered stresses: around each corner of the cells a polynomial is fitted to the stresses sampled in
-//! the cells there that are of one rock and in one sector, so that stresses may jump at fractures and
-//! between rocks (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 33, 1992).
+//! Recovered stresses: around each corner of the cells a polynomial is fitted to the stresses
+//! sampled in the cells there that are of one rock and in one sector, so that stresses may jump at
+//! fractures and between rocks (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 33,
+//! 1992).
 
 use std::ops::Range;
 
@@ -20,13 +21,13 @@ use kluft_algebra::{Lists, RowOwnership};
 /// Terms of a complete linear and a complete quadratic polynomial in space.
 const LINEAR: usize = 4;
 const QUADRATIC: usize = 10;
-/// A term that depends on the ones before it but for this share is left out: what is extrapolated with it
-/// would be noise.
+/// A term that depends on the ones before it but for this share is left out: what is extrapolated
+/// with it would be noise.
 const DEPENDENT: f64 = 1e-4;
 /// Cells whose samples one task takes.
 const CELLS_PER_TASK: usize = 1024;
-/// Samples for each term, below which cells farther away help, and then a polynomial of lower degree is
-/// fitted.
+/// Samples for each term, below which cells farther away help, and then a polynomial of lower
+/// degree is fitted.
 const SAMPLES_PER_TERM: f64 = 1.5;
 
 /// The corner of a cell belongs to one patch.
@@ -37,7 +38,8 @@ pub(super) struct Patches {
     cells: Lists,
     /// Middle (m) and size (m) of each patch.
     frames: Vec<(DVec3, f64)>,
-    /// Where the stress of each cell is sampled (m); start of each cell's samples, and their number.
+    /// Where the stress of each cell is sampled (m); start of each cell's samples, and their
+    /// number.
     samples: Vec<DVec3>,
     sample_offset: Vec<usize>,
     /// Number of terms of the polynomials: quadratic ones if any cell is quadratic.
@@ -174,8 +176,8 @@ impl Patches {
         Recovered { coefficients }
     }
 
-    /// The cells whose stresses a patch is fitted to, and the terms that they suffice for: its own, and at
-    /// corners of the body those of the patches beside it too.
+    /// The cells whose stresses a patch is fitted to, and the terms that they suffice for: its own,
+    /// and at corners of the body those of the patches beside it too.
     fn around(&self, cells: &Elements, patch: usize) -> (Vec<usize>, usize) {
         let mut around: Vec<usize> = self.cells_of(patch).collect();
         let quadratic = around.iter().any(|&cell| cells.shapes[cell].is_quadratic());
@@ -229,8 +231,8 @@ impl Patches {
         [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z]
     }
 
-    /// Recovered stress (Pa) at a place in the cell whose first slot is `first`: the polynomials of its
-    /// corners, blended by the linear shape functions `shares`.
+    /// Recovered stress (Pa) at a place in the cell whose first slot is `first`: the polynomials of
+    /// its corners, blended by the linear shape functions `shares`.
     pub(super) fn stress(
         &self,
         recovered: &Recovered,
@@ -270,8 +272,8 @@ fn sample_offset(cells: &Elements) -> Vec<usize> {
     offset
 }
 
-/// `A c = b` for positive semidefinite `A`, given by its lower triangle, with zeros for terms that depend
-/// on those before them.
+/// `A c = b` for positive semidefinite `A`, given by its lower triangle, with zeros for terms that
+/// depend on those before them.
 fn solve<const TERMS: usize>(
     normal: &[[f64; TERMS]; TERMS],
     right: &[[f64; 6]; TERMS],

@@ -1,15 +1,18 @@
 //! Cell sizes that would meet a tolerance with the fewest cells.
 //!
-//! Where the solution is smooth, the errors `e_K` of cells fall with the factor `s_K` on their size as `s_K^(2 p)`, and the
-//! number of cells grows as `s_K^-3`. Cells that touch a crack front are different: per length of the front their error is a share
-//! of `K^2 s / E` that their form gives and not their size, because quarter points follow the square root of the distance but no
-//! polynomial follows how stresses turn around the front. So their errors fall as `s` only, whatever `p`, and their number grows
-//! as `s^-1`. The fewest cells for `E_f s + sum e_K s_K^(2 p) = T`, with `N_f` cells and the errors `E_f` at fronts, have
-//! `s = sqrt(N_f / (m E_f))` and `s_K^(2 p + 3) = 3 / (2 p m e_K)`, with one multiplier `m`: sizes go as the density of the error to
-//! the power of `-1 / (2 p + d)` (R. Becker and R. Rannacher, Acta Numerica 10, 2001, who have `-1/4` for `p = 1` in the plane).
+//! Where the solution is smooth, the errors `e_K` of cells fall with the factor `s_K` on their size
+//! as `s_K^(2 p)`, and the number of cells grows as `s_K^-3`. Cells that touch a crack front are
+//! different: per length of the front their error is a share of `K^2 s / E` that their form gives
+//! and not their size, because quarter points follow the square root of the distance but no
+//! polynomial follows how stresses turn around the front. So their errors fall as `s` only,
+//! whatever `p`, and their number grows as `s^-1`. The fewest cells for `E_f s + sum e_K s_K^(2 p)
+//! = T`, with `N_f` cells and the errors `E_f` at fronts, have `s = sqrt(N_f / (m E_f))` and
+//! `s_K^(2 p + 3) = 3 / (2 p m e_K)`, with one multiplier `m`: sizes go as the density of the error
+//! to the power of `-1 / (2 p + d)` (R. Becker and R. Rannacher, Acta Numerica 10, 2001, who have
+//! `-1/4` for `p = 1` in the plane).
 //!
-//! Cells one layer away from a front count as smooth: with the stress `r^(-1/2)` their errors fall as `s^4 r^-5`, of which the optimal
-//! sizes, as `r^(5/7)`, leave little near the front.
+//! Cells one layer away from a front count as smooth: with the stress `r^(-1/2)` their errors fall
+//! as `s^4 r^-5`, of which the optimal sizes, as `r^(5/7)`, leave little near the front.
 
 use glam::DVec3;
 use kluft_mesh::Mesh;
@@ -23,8 +26,8 @@ const AT_ONCE: f64 = 0.1;
 /// Part of the tolerance that is aimed at, so that the next mesh meets it.
 const AIM: f64 = 0.8;
 
-/// Sizes (m) at all nodes, from errors of cells that should add up to `tolerance` for each group of cells
-/// (`groups` numbers them; cells in none may grow).
+/// Sizes (m) at all nodes, from errors of cells that should add up to `tolerance` for each group of
+/// cells (`groups` numbers them; cells in none may grow).
 pub fn target_sizes(mesh: &Mesh, errors: &[f64], groups: &[u32], tolerance: f64) -> Vec<f64> {
     let rate = if mesh.cells.has_quadratic() { 4.0 } else { 2.0 };
     let at_front = mesh.front_cells();
@@ -107,8 +110,8 @@ fn smooth_factor(error: f64, multiplier: f64, rate: f64) -> f64 {
     (3.0 / (rate * multiplier * error)).powf(1.0 / (rate + 3.0))
 }
 
-/// Median distance of the corners of a cell (m): in a layer of flat or slender cells the size in its
-/// plane.
+/// Median distance of the corners of a cell (m): in a layer of flat or slender cells the size in
+/// its plane.
 fn cell_size(mesh: &Mesh, cell: usize) -> f64 {
     let corners = mesh.cells.shapes[cell].corner_count();
     let nodes = &mesh.cells.nodes_of(cell)[..corners];

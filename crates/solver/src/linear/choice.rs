@@ -1,5 +1,5 @@
-//! Which linear solver a problem gets: the one with the least predicted time among those that fit, and a
-//! direct one, because it is exact, where that takes next to no time.
+//! Which linear solver a problem gets: the one with the least predicted time among those that fit,
+//! and a direct one, because it is exact, where that takes next to no time.
 
 use kluft_algebra::{Analysis, LinearFailure, NodeOrder};
 
@@ -12,7 +12,8 @@ use crate::linear::iterative::Iterative;
 use crate::linear::tangent_solver::TangentSolver;
 use crate::system::System;
 
-/// A direct solver is not even analysed if in a solid body it would lose by this factor; in thin ones it takes less.
+/// A direct solver is not even analysed if in a solid body it would lose by this factor; in thin
+/// ones it takes less.
 const HOPELESS: f64 = 20.0;
 
 /// The chosen solver and what is known of it before any value is computed.

@@ -21,8 +21,8 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Factorises the rock together with `reference`, blocks of springs on all facet points; `analysis` has
-    /// the unknowns of the interface last.
+    /// Factorises the rock together with `reference`, blocks of springs on all facet points;
+    /// `analysis` has the unknowns of the interface last.
     ///
     /// # Errors
     /// If the rock is not positive definite or memory runs out.

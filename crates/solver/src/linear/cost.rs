@@ -1,7 +1,7 @@
 //! What linear solvers cost, predicted before any value is computed.
 //!
-//! Times are predicted from operations and bytes moved, at fixed rates of an ordinary machine, so the
-//! predictions are the same everywhere; only their ratios matter.
+//! Times are predicted from operations and bytes moved, at fixed rates of an ordinary machine, so
+//! the predictions are the same everywhere; only their ratios matter.
 
 use std::fmt;
 use std::str::FromStr;
@@ -34,7 +34,8 @@ pub enum LinearMethod {
     Direct,
     /// Cholesky factorisation of the rock, once; what changes is solved for the jumps alone.
     Condensed,
-    /// Conjugate gradients, preconditioned by a multigrid of rock and fractures; the part of the rock is set up once.
+    /// Conjugate gradients, preconditioned by a multigrid of rock and fractures; the part of the
+    /// rock is set up once.
     Iterative,
 }
 
@@ -106,8 +107,8 @@ pub struct Workload {
     pub is_nonlinear: bool,
     /// Whether tangents change gradually, so that a step can be made of the moves of former ones.
     pub is_smooth: bool,
-    /// Whether tractions depend on the way, as with friction: each step is walked in one part and in
-    /// two, and the tangents are not symmetric.
+    /// Whether tractions depend on the way, as with friction: each step is walked in one part and
+    /// in two, and the tangents are not symmetric.
     pub is_path_dependent: bool,
     /// Factor on the iterations of the multigrid, 1 for cells of about equal edges.
     pub difficulty: f64,
@@ -137,7 +138,8 @@ impl Workload {
         }
     }
 
-    /// One step of closing fractures without friction, in a mesh of which the rocks may not be known.
+    /// One step of closing fractures without friction, in a mesh of which the rocks may not be
+    /// known.
     pub fn one_step(mesh: &Mesh, rocks: &[Rock]) -> Self {
         Self {
             steps: 1,
@@ -187,8 +189,8 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// The time that counts: direct solvers are exact to rounding, so one that is over in no time is as
-    /// good as any.
+    /// The time that counts: direct solvers are exact to rounding, so one that is over in no time
+    /// is as good as any.
     pub(super) fn effective_seconds(&self) -> f64 {
         let is_exact = self.method != LinearMethod::Iterative;
         if is_exact && self.seconds < QUICK {
@@ -275,8 +277,8 @@ pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Predictio
     }
 }
 
-/// How many times the iterations of regular cells flat or slender ones and nearly incompressible rocks ask
-/// of the multigrid: fitted to layers of flat prisms and to Poisson's ratios near 1/2.
+/// How many times the iterations of regular cells flat or slender ones and nearly incompressible
+/// rocks ask of the multigrid: fitted to layers of flat prisms and to Poisson's ratios near 1/2.
 fn difficulty(mesh: &Mesh, rocks: &[Rock]) -> f64 {
     /// Cells looked at.
     const SAMPLE: usize = 5000;

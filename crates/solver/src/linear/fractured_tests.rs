@@ -17,8 +17,8 @@ const CUBES: usize = 10;
 /// Young's modulus (Pa); the block has edges of 1 m.
 const YOUNG: f64 = 1.0;
 
-/// A block that stands on its clamped bottom, cut through by a level plane; an upright one ends on it.
-/// `height` moves the planes of nodes.
+/// A block that stands on its clamped bottom, cut through by a level plane; an upright one ends on
+/// it. `height` moves the planes of nodes.
 pub(crate) fn problem(height: fn(f64) -> f64) -> Problem {
     let patches = [
         Patch {
@@ -108,7 +108,8 @@ fn forces(system: &System<'_>) -> Vec<DVec3> {
         .collect()
 }
 
-/// Iterations to 1e-8 with these stiffnesses (Pa/m) of the facet points; the residual is computed anew.
+/// Iterations to 1e-8 with these stiffnesses (Pa/m) of the facet points; the residual is computed
+/// anew.
 fn iterations(system: &System<'_>, stiffness: impl Fn(usize) -> f64) -> usize {
     iterations_along(system, |point| DVec3::splat(stiffness(point)))
 }
@@ -183,7 +184,8 @@ fn a_sliver_beside_a_fracture_costs_no_iterations() {
     assert!(count <= 20, "{count}");
 }
 
-/// The upper part moving alone, by one: a motion of the next level, as far as the clamped bottom is away.
+/// The upper part moving alone, by one: a motion of the next level, as far as the clamped bottom is
+/// away.
 #[test]
 fn parts_move_apart_exactly_on_the_next_level() {
     let problem = problem(|z| z);

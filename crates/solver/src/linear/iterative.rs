@@ -1,6 +1,6 @@
-//! The iterative solver: conjugate gradients on all unknowns, preconditioned by a multigrid of rock and
-//! fractures. What it knows of the rock is set up once a run; a new stiffness of the fractures changes
-//! the diagonal blocks of the nodes on them and the levels below.
+//! The iterative solver: conjugate gradients on all unknowns, preconditioned by a multigrid of rock
+//! and fractures. What it knows of the rock is set up once a run; a new stiffness of the fractures
+//! changes the diagonal blocks of the nodes on them and the levels below.
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::multigrid::{Multigrid, Workspace, rigid_modes};
@@ -26,8 +26,8 @@ const WIDENING: f64 = 1.4;
 /// Steps of the first guess, and the factor by which each must reduce the residual.
 const MOST_GUESSES: usize = 6;
 const HELPS: f64 = 0.3;
-/// Factor by which the stiffness of a fracture may change in any direction; and the share of the stiffness of
-/// the rock beside it which that stiffness is added to, because less does not matter.
+/// Factor by which the stiffness of a fracture may change in any direction; and the share of the
+/// stiffness of the rock beside it which that stiffness is added to, because less does not matter.
 const FACTOR_OF_CHANGE: f64 = 2.0;
 const BESIDE: f64 = 0.1;
 /// Share of the fractures' unknowns that may change so much before the multigrid is made anew.
@@ -37,7 +37,8 @@ const TOLERATED: f64 = 0.02;
 pub struct Iterative {
     multigrid: Multigrid,
     workspace: Workspace,
-    /// Stiffness of the fractures, one block for each of the interface's columns; none before the first.
+    /// Stiffness of the fractures, one block for each of the interface's columns; none before the
+    /// first.
     stiffness: Option<Vec<DMat3>>,
     /// The one that the multigrid was made with.
     built_for: Option<Vec<DMat3>>,
@@ -85,7 +86,8 @@ impl Iterative {
         Ok(())
     }
 
-    /// Whether the multigrid was made with a stiffness of the fractures that is much like `stiffness`.
+    /// Whether the multigrid was made with a stiffness of the fractures that is much like
+    /// `stiffness`.
     fn is_current(&self, fixed: FixedPart<'_>, stiffness: &[DMat3]) -> bool {
         let Some(built_for) = &self.built_for else {
             return false;
@@ -103,8 +105,9 @@ impl Iterative {
     }
 }
 
-/// Whether the stiffness of a fracture changes by less than a factor of [`FACTOR_OF_CHANGE`] in every direction, when `rock`
-/// is added to it. A sum of entries would not tell that walls begin to slide in one direction.
+/// Whether the stiffness of a fracture changes by less than a factor of [`FACTOR_OF_CHANGE`] in
+/// every direction, when `rock` is added to it. A sum of entries would not tell that walls begin to
+/// slide in one direction.
 fn is_spectrally_close(old: DMat3, new: DMat3, rock: f64) -> bool {
     let [old, new] = [old, new].map(|block| block + rock * DMat3::IDENTITY);
     is_positive(FACTOR_OF_CHANGE * old - new) && is_positive(FACTOR_OF_CHANGE * new - old)
@@ -289,7 +292,8 @@ mod tests {
     use crate::linear::fractured_tests::{problem, remaining, system};
     use crate::linear::nonsymmetric::NonsymmetricSolver;
 
-    /// What a multigrid for walls glued at random cannot solve for loose ones is solved with one of their own.
+    /// What a multigrid for walls glued at random cannot solve for loose ones is solved with one of
+    /// their own.
     #[test]
     fn a_multigrid_that_does_not_serve_is_made_anew() {
         let problem = problem(|z| z);

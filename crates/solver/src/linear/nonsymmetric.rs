@@ -8,7 +8,8 @@ use crate::system::System;
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 240;
-/// Residual, as a share of the right-hand side, that an iteration which gains nothing more may leave.
+/// Residual, as a share of the right-hand side, that an iteration which gains nothing more may
+/// leave.
 const ROUNDED: f64 = 1e-3;
 
 /// Solves with the exact tangents: directly where they are symmetric and positive, and by GMRES,

@@ -1,12 +1,13 @@
 //! Split aggregates: the motions of aggregates that fractures cut, one for each part.
 //!
 //! An aggregate of the intact rock moves nodes on both sides of a fracture. Cut along the facets,
-//! its motion falls into parts; each becomes a motion of its own, as a node falls into points. So the
-//! next level knows smooth jumps as the finest one knows jumps, which nothing else can take care of
-//! at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one whose sides
-//! follow it to the distance `L`. Small parts have no motions of their own but follow those beside them,
-//! so that whatever moves rigidly on the finest level still does so exactly on the next one. What stiff
-//! walls make of these motions is left to the multigrid, see [`kluft_algebra::multigrid`].
+//! its motion falls into parts; each becomes a motion of its own, as a node falls into points. So
+//! the next level knows smooth jumps as the finest one knows jumps, which nothing else can take
+//! care of at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one
+//! whose sides follow it to the distance `L`. Small parts have no motions of their own but follow
+//! those beside them, so that whatever moves rigidly on the finest level still does so exactly on
+//! the next one. What stiff walls make of these motions is left to the multigrid, see
+//! [`kluft_algebra::multigrid`].
 
 use kluft_algebra::multigrid::{Basis, MeanField};
 use kluft_algebra::small::{Modes, add, product, rows_of, widen};
@@ -29,7 +30,8 @@ pub(super) struct SplitAggregates<'a> {
     means: &'a MeanField,
     /// First split aggregate of each aggregate; one entry more than there are aggregates.
     offset: Vec<u32>,
-    /// Part of each point that an aggregate moves, or [`FOLLOWS`], points ascending; empty if it is whole.
+    /// Part of each point that an aggregate moves, or [`FOLLOWS`], points ascending; empty if it is
+    /// whole.
     parts: Vec<Vec<(u32, u32)>>,
     /// `R^-1` of the modes of each aggregate, if they do not depend on each other.
     inverse: Vec<Option<Modes<6>>>,
@@ -68,8 +70,9 @@ impl<'a> SplitAggregates<'a> {
         split
     }
 
-    /// Numbers the parts of an aggregate that become motions of their own, and tells how many they are: those that are not
-    /// small, or have a point that no other aggregate could move in their stead.
+    /// Numbers the parts of an aggregate that become motions of their own, and tells how many they
+    /// are: those that are not small, or have a point that no other aggregate could move in their
+    /// stead.
     fn numbered(&self, cuts: &[Cut], aggregate: usize) -> (u32, Vec<(u32, u32)>) {
         let Cut { parts, is_small } = &cuts[aggregate];
         let mut has_own_motion: Vec<bool> = is_small.iter().map(|small| !small).collect();
@@ -130,8 +133,8 @@ impl<'a> SplitAggregates<'a> {
         most.map(|(aggregate, _)| aggregate)
     }
 
-    /// SplitAggregates that move a point, and how, as far as it is not held. A motion that follows that of a host is
-    /// the same rigid one: `R_i R_j^-1`.
+    /// SplitAggregates that move a point, and how, as far as it is not held. A motion that follows
+    /// that of a host is the same rigid one: `R_i R_j^-1`.
     fn motions(&self, point: usize) -> Vec<(u32, [[f64; 6]; 3])> {
         let constraint = self.space.supports.constraint(point);
         let free = constraint.map(|constraint| rows_of(&constraint.free));
@@ -150,8 +153,8 @@ impl<'a> SplitAggregates<'a> {
         self.entries(point).filter_map(motion).collect()
     }
 
-    /// The motions of all unknowns: the mean displacement is the mean of the motions of the points of its
-    /// node, jump `k` the motion of sector `k` less that of sector 0.
+    /// The motions of all unknowns: the mean displacement is the mean of the motions of the points
+    /// of its node, jump `k` the motion of sector `k` less that of sector 0.
     pub(super) fn basis(&self) -> Basis {
         Basis::new(self.space.points.len(), self.modes(), |unknown| {
             self.motion(unknown)

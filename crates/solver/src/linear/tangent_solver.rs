@@ -23,7 +23,8 @@ pub struct SolverHistory {
     pub(super) stiffness: Option<Vec<DMat3>>,
     /// Blocks of the fractures that its preconditioner was made with.
     pub(super) preconditioned: Option<Vec<DMat3>>,
-    /// Factor by which the spectrum of the preconditioner turned out to reach further than estimated.
+    /// Factor by which the spectrum of the preconditioner turned out to reach further than
+    /// estimated.
     pub(super) margin: Option<f64>,
 }
 
@@ -55,8 +56,8 @@ impl From<Vec<DMat3>> for Tangents {
     }
 }
 
-/// Solves with the tangent of a system: a fixed part, which is that of the rock, and the blocks of the
-/// fractures. All calls get the same fixed part.
+/// Solves with the tangent of a system: a fixed part, which is that of the rock, and the blocks of
+/// the fractures. All calls get the same fixed part.
 pub trait TangentSolver: Send + Sync {
     /// Takes over the blocks of the fractures, one for each of the interface's columns.
     ///
@@ -75,7 +76,8 @@ pub trait TangentSolver: Send + Sync {
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure>;
 
-    /// What later solves depend on beside the blocks and the forces; nothing, if the solver is exact.
+    /// What later solves depend on beside the blocks and the forces; nothing, if the solver is
+    /// exact.
     fn history(&self) -> SolverHistory {
         SolverHistory::default()
     }
@@ -88,7 +90,8 @@ pub trait TangentSolver: Send + Sync {
         Ok(())
     }
 
-    /// Makes anew for the tangent at hand what was kept from another one, if anything was; whether it was.
+    /// Makes anew for the tangent at hand what was kept from another one, if anything was; whether
+    /// it was.
     ///
     /// # Errors
     /// If the tangent is not positive definite.

@@ -29,7 +29,7 @@ use kluft_algebra::{LinearFailure, norm};
 use crate::assembly::interface::Interface;
 use crate::linear::{LinearMethod, NonsymmetricSolver, Plan, Unknowns, Workload};
 use crate::problem::Load;
-use crate::system::{Sizes, State, System};
+use crate::system::{State, StateScales, System};
 use extrapolation::Path;
 use subspace::{LastMove, Subspace};
 use walls::Landed;
@@ -80,8 +80,8 @@ struct Trial {
     landed: Vec<Landed>,
     /// Forces by which the rock resists the unknowns (N).
     rock_forces: Vec<DVec3>,
-    /// Sizes that its errors are measured against.
-    sizes: Sizes,
+    /// StateScales that its errors are measured against.
+    sizes: StateScales,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     looseness: f64,
     /// Errors after the last iteration, see `line_search`.
@@ -277,7 +277,7 @@ impl Newton {
             landed,
             guess: last,
             moves: Vec::new(),
-            sizes: Sizes {
+            sizes: StateScales {
                 force: force.max(REMEMBERED * guess.reached.force),
                 ..guess.reached
             },
@@ -422,13 +422,13 @@ fn assess(
 }
 
 /// How large the quantities of a state are.
-fn sizes(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> Sizes {
+fn sizes(system: &System<'_>, trial: &Trial, tractions: &[DVec3]) -> StateScales {
     let state = &trial.state;
     let displacements = system.displacements(&state.unknowns, &state.load);
     // A body that does not move may still hold joints closed by its initial stress.
     let openings = state.facet_points.iter();
     let openings = openings.map(|point| point.joint.separation.opening.abs());
-    Sizes {
+    StateScales {
         force: system.force_scale(&trial.rock_forces, tractions, &state.load),
         displacement: openings.fold(largest(&displacements), f64::max),
         traction: largest(tractions).max(OPEN * rebound(system, state)),

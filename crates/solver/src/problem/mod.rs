@@ -42,8 +42,8 @@ pub struct Problem {
     pub initial_stress: Option<InitialStress>,
     /// Load cases and load steps.
     pub schedule: Schedule,
-    /// How fractures are integrated over their facets. Fractures whose laws have kinks are integrated
-    /// at control points where this says nodes.
+    /// How fractures are integrated over their facets. Fractures whose laws have kinks are
+    /// integrated at control points where this says nodes.
     pub facet_quadrature: FacetQuadrature,
 }
 
@@ -69,8 +69,9 @@ impl Problem {
         &self.rocks[self.rock_of_cell[cell] as usize]
     }
 
-    /// How a fracture is integrated: at control points instead of nodes if its law has kinks, because
-    /// walls that may be rigid at more points than there are jumps do not know how to share a load.
+    /// How a fracture is integrated: at control points instead of nodes if its law has kinks,
+    /// because walls that may be rigid at more points than there are jumps do not know how to share
+    /// a load.
     pub(crate) fn rule_of(&self, fracture: u32) -> FacetQuadrature {
         match self.facet_quadrature {
             FacetQuadrature::Nodal if !self.fractures[fracture as usize].law.is_smooth() => {

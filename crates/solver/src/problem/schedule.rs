@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 /// How far the loads have grown: a time and one factor for each load case.
 ///
-/// A factor scales the loads (surface loads, gravity, fluid pressure) and the prescribed displacements
-/// of its case. A case without a factor does not act. The initial stress is a state and not a load:
-/// nothing scales it.
+/// A factor scales the loads (surface loads, gravity, fluid pressure) and the prescribed
+/// displacements of its case. A case without a factor does not act. The initial stress is a state
+/// and not a load: nothing scales it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Load {
     /// Time, in the unit that the user chose.

@@ -56,6 +56,7 @@ impl CellOfSlot {
 
 /// The pattern of the block matrix, symmetric and stored whole. It is fixed for a run.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Pattern {
     /// For each node the slots (positions in the cells' flat node list) where it occurs, ascending.
     pub slots: Lists,

@@ -20,7 +20,8 @@ const FREE: f64 = 1e-11;
 /// factorisation.
 const MOST_BLOCKS: usize = 400;
 
-/// Remedy for a block that nothing holds. Whoever knows how supports are written may put it more plainly.
+/// Remedy for a block that nothing holds. Whoever knows how supports are written may put it more
+/// plainly.
 pub const HOLD: &str =
     "hold the block by a support or a fixed point, or give the fractures around it stiffness";
 
@@ -42,8 +43,8 @@ pub(crate) struct Tie {
     pub(crate) along: bool,
 }
 
-/// Names every group of blocks that can move freely under any load. Laws with kinks may carry or not, as
-/// the loads have it: what they let go is found in the solve.
+/// Names every group of blocks that can move freely under any load. Laws with kinks may carry or
+/// not, as the loads have it: what they let go is found in the solve.
 pub(crate) fn find(
     problem: &Problem,
     points: &SectorNodes,

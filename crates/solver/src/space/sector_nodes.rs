@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 /// Numbering of points and unknowns.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SectorNodes {
     /// First point of each node; one entry more than there are nodes.
     pub offset: Vec<u32>,

@@ -24,10 +24,12 @@ const CONTRADICTION: f64 = 1e-9;
 
 /// How a held point may move.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Constraint {
     /// Projector on the free directions, `P`.
     pub free: DMat3,
-    /// Prescribed displacement at load factor 1, `g_c` (m), of each load case that prescribes any but 0.
+    /// Prescribed displacement at load factor 1, `g_c` (m), of each load case that prescribes any
+    /// but 0.
     pub prescribed: Vec<(usize, DVec3)>,
 }
 
@@ -37,7 +39,7 @@ pub struct Supports {
     index: Vec<u32>,
     constraints: Vec<Constraint>,
     /// Number of scalar unknowns that the supports remove.
-    pub held_directions: usize,
+    pub(crate) held_directions: usize,
 }
 
 /// One prescribed direction of a point, and who prescribes it.

@@ -90,8 +90,8 @@ impl Discretisation {
         self.interface
     }
 
-    /// Gives each facet point another unit normal, from minus to plus, as one that the mesh gives its facet.
-    /// The jumps stay what they are; what of them opens the fracture changes.
+    /// Gives each facet point another unit normal, from minus to plus, as one that the mesh gives
+    /// its facet. The jumps stay what they are; what of them opens the fracture changes.
     pub fn set_normals(&mut self, normal: impl Fn(&FacetPoint) -> DVec3) {
         for point in &mut self.interface.points {
             point.normal = normal(point);

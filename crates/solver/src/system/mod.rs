@@ -14,7 +14,7 @@ use crate::assembly::rock;
 use crate::problem::{Load, Problem};
 
 pub use discretisation::Discretisation;
-pub(crate) use state::Sizes;
+pub(crate) use state::StateScales;
 pub use state::{FacetPointState, State};
 
 /// The discrete problem, assembled.
@@ -50,9 +50,9 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Gives the fractures other laws, one each. Rock and loads stay, and with them whatever a solver
-    /// prepared. A state reached with the former laws serves as a first guess for a step with the new
-    /// ones.
+    /// Gives the fractures other laws, one each. Rock and loads stay, and with them whatever a
+    /// solver prepared. A state reached with the former laws serves as a first guess for a step
+    /// with the new ones.
     pub fn set_laws(&mut self, laws: Vec<FractureLaw>) {
         self.generation += 1;
         self.discretisation.interface.set_laws(self.problem, laws);
@@ -111,7 +111,7 @@ impl<'a> System<'a> {
             load: self.problem.schedule.start(),
             unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
             facet_points: facet_points.collect(),
-            reached: Sizes::default(),
+            reached: StateScales::default(),
             generation: self.generation,
         }
     }

@@ -20,14 +20,14 @@ pub struct State {
     /// State of each facet point.
     pub facet_points: Vec<FacetPointState>,
     /// Largest sizes of the states on the way to it.
-    pub(crate) reached: Sizes,
+    pub(crate) reached: StateScales,
     /// Which laws of the system it was reached with.
     pub(super) generation: u32,
 }
 
 /// How large the quantities of a state are: what "small" is measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct Sizes {
+pub(crate) struct StateScales {
     /// Largest of the forces that must balance (N).
     pub(crate) force: f64,
     /// Largest displacement or opening (m).
@@ -36,7 +36,7 @@ pub(crate) struct Sizes {
     pub(crate) traction: f64,
 }
 
-impl Sizes {
+impl StateScales {
     /// The larger of each, where the other counts with a `share`.
     pub(crate) fn or_share(self, share: f64, other: Self) -> Self {
         Self {
