@@ -81,8 +81,9 @@ fn bandwidth() -> f64 {
     1e-9 * (0..8).map(pass).fold(0.0, f64::max)
 }
 
-/// Seconds that all threads together take to write so many bytes into memory fresh from the system, and to
-/// read them back: the best of some passes. Whatever is assembled into fresh memory pays for its pages.
+/// Seconds that all threads together take to write so many bytes into memory fresh from the system,
+/// and to read them back: the best of some passes. Whatever is assembled into fresh memory pays for
+/// its pages.
 fn write_and_read(bytes: usize) -> f64 {
     let pass = |_| {
         let start = Instant::now();

@@ -6,8 +6,8 @@ use lie_core::Closure;
 use kluft_verification::methods::augmented_lagrangian::augmented;
 use kluft_verification::scenes::pressed::{inclined, inclined_traction};
 
-/// The fixed point of Uzawa's iteration does not depend on `r`. The stress of the scene is uniaxial, so the
-/// traction is known; 1e-9 is the tolerance of both iterations.
+/// The fixed point of Uzawa's iteration does not depend on `r`. The stress of the scene is
+/// uniaxial, so the traction is known; 1e-9 is the tolerance of both iterations.
 #[test]
 fn its_fixed_point_is_the_traction_of_statics() {
     let scene = inclined();

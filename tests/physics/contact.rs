@@ -150,8 +150,8 @@ fn a_block_that_floats_settles_if_the_loads_allow_it() {
 }
 
 /// The block rests on the lower joint by its weight alone, the upper one open by anything from less
-/// than what the weight closes to many apertures. With shear stiffness the upper joint lets go of the
-/// little slip that it has and pushes, by less than 1e-4 of the weight.
+/// than what the weight closes to many apertures. With shear stiffness the upper joint lets go of
+/// the little slip that it has and pushes, by less than 1e-4 of the weight.
 #[test]
 fn a_block_rests_on_its_weight_under_any_lift() {
     for (exponent, (stiffness, allowed)) in
@@ -240,8 +240,8 @@ fn opening_and_closing_leaves_nothing_behind() {
     }
 }
 
-/// Walls in contact slip to and fro on an inclined joint. Statics knows the traction of every facet (uniaxial
-/// stress), and steps must not add to its error: 1e-12 is round-off.
+/// Walls in contact slip to and fro on an inclined joint. Statics knows the traction of every facet
+/// (uniaxial stress), and steps must not add to its error: 1e-12 is round-off.
 #[test]
 fn contact_that_slips_keeps_its_traction_over_many_steps() {
     let problem = pressed::inclined().with(Closure::contact(0.0));
@@ -256,8 +256,8 @@ fn contact_that_slips_keeps_its_traction_over_many_steps() {
     }
 }
 
-/// A bar with a bond of 1 MPa and 100 J/m^2 is pulled apart, let back and pulled on: the series of a
-/// bar of stiffness E/H and the bond in closed form.
+/// A bar with a bond of 1 MPa and 100 J/m^2 is pulled apart, let back and pulled on: the series of
+/// a bar of stiffness E/H and the bond in closed form.
 #[test]
 fn a_bond_breaks_in_a_bar() {
     let between = |x: [f64; 3]| x[2] == 1.0;

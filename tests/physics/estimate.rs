@@ -25,8 +25,8 @@ fn cube(shape: Shape, cubes: usize, bump: f64) -> Problem {
     problem
 }
 
-/// Estimated error and true error, in the energy norm, of a field interpolated at the nodes; `gradient` is
-/// that of the field.
+/// Estimated error and true error, in the energy norm, of a field interpolated at the nodes;
+/// `gradient` is that of the field.
 fn errors(
     problem: &Problem,
     field: impl Fn(DVec3) -> DVec3,

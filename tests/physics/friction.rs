@@ -52,9 +52,9 @@ fn column(fracture: Fracture, axial: f64) -> Problem {
     problem
 }
 
-/// Jaeger's plane of weakness: sliding starts at
-/// `s1 = s3 + 2 (c + s3 tan(phi)) / ((1 - tan(phi) cot(beta)) sin(2 beta))`; for c = 1 MPa, phi = 30
-/// and beta = 60 degrees, s3 = 0: 3.4641 MPa. Nothing holds the upper block then.
+/// Jaeger's plane of weakness: sliding starts at `s1 = s3 + 2 (c + s3 tan(phi)) / ((1 - tan(phi)
+/// cot(beta)) sin(2 beta))`; for c = 1 MPa, phi = 30 and beta = 60 degrees, s3 = 0: 3.4641 MPa.
+/// Nothing holds the upper block then.
 #[test]
 fn a_plane_of_weakness_slides_at_jaegers_load() {
     let jaeger = 3.4641e6;
@@ -79,10 +79,10 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
     }
 }
 
-/// A closed crack of half-length 1 under 100 MPa at 20 degrees to it slides against a friction of 30
-/// degrees (Phan et al. 2003): `4 (1 - nu^2)/E p sin psi (cos psi - sin psi tan phi) sqrt(1 - x^2)`,
-/// 3.807850e-3 m in the middle, under a normal traction of -11.697778 MPa. Within 1 % outside the outer
-/// fifth at each front, where quadratic prisms of 0.03 do not follow the root.
+/// A closed crack of half-length 1 under 100 MPa at 20 degrees to it slides against a friction of
+/// 30 degrees (Phan et al. 2003): `4 (1 - nu^2)/E p sin psi (cos psi - sin psi tan phi) sqrt(1 -
+/// x^2)`, 3.807850e-3 m in the middle, under a normal traction of -11.697778 MPa. Within 1 %
+/// outside the outer fifth at each front, where quadratic prisms of 0.03 do not follow the root.
 #[test]
 fn an_inclined_crack_slides_as_far_as_in_closed_form() {
     let draft = scenes::geometry_of_order("line-crack", &[("h", 0.03)], 2);

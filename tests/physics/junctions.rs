@@ -1,4 +1,5 @@
-//! Orthogonal joint sets as an equivalent continuum, exact for crossings; and a T-junction under uniform stress.
+//! Orthogonal joint sets as an equivalent continuum, exact for crossings; and a T-junction under
+//! uniform stress.
 
 use glam::{DMat3, DVec3};
 use kluft_mesh::structured::Patch;

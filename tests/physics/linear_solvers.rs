@@ -159,7 +159,8 @@ fn a_hundred_steps_or_fifty_stiffnesses_take_few_linear_iterations() {
     assert!(error < 1e-9, "{error:e}");
 }
 
-/// Steps that need no linear solve are as good as those of a solver that is exact, whatever the joints.
+/// Steps that need no linear solve are as good as those of a solver that is exact, whatever the
+/// joints.
 #[test]
 fn guesses_in_the_space_of_former_steps_are_exact() {
     for factor in [1e-3, 1.0, 1e3] {
@@ -257,8 +258,9 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
 const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
 const STARTS: [usize; 4] = [0, 1, 4, 7];
 
-/// Runs that go on in a new solver from the bytes of a bookmark, against the one that does not stop;
-/// returns the iterations of the linear solver, and whether a bookmark is shorter than one before.
+/// Runs that go on in a new solver from the bytes of a bookmark, against the one that does not
+/// stop; returns the iterations of the linear solver, and whether a bookmark is shorter than one
+/// before.
 fn interrupt(
     problem: &Problem,
     method: LinearMethod,
@@ -300,8 +302,8 @@ fn interrupt(
     (iterations, shrinks)
 }
 
-/// Whatever the solver has learnt before counts: factors of former tangents, paths that turn. Blocks
-/// smaller than these never reuse a factor.
+/// Whatever the solver has learnt before counts: factors of former tangents, paths that turn.
+/// Blocks smaller than these never reuse a factor.
 #[test]
 fn bookmarks_continue_to_the_last_bit() {
     let direct = interrupt(&t_block(4), LinearMethod::Direct, &FACTORS, STARTS);

@@ -1,7 +1,8 @@
 //! Load cases with histories of their own: superposition, unloading, and steps that are divided.
 //!
-//! Laws here are linear unless a test says otherwise, so the oracle of a step is the sum of the closed
-//! forms of its cases, each times its factor. Tolerances are those of Newton's test of the forces.
+//! Laws here are linear unless a test says otherwise, so the oracle of a step is the sum of the
+//! closed forms of its cases, each times its factor. Tolerances are those of Newton's test of the
+//! forces.
 
 use glam::{DMat3, DVec3};
 use kluft_mesh::structured::Patch;
@@ -103,8 +104,8 @@ fn pressure_and_shear_superpose() {
     }
 }
 
-/// The top is moved by one case and the joint is filled under pressure by the other. With `sigma` the
-/// stress of the column, `u = sigma L / E + w` and `sigma = K_n w - p`.
+/// The top is moved by one case and the joint is filled under pressure by the other. With `sigma`
+/// the stress of the column, `u = sigma L / E + w` and `sigma = K_n w - p`.
 #[test]
 fn displacement_and_fluid_pressure_superpose() {
     let (shortening, pressure) = (-1e-4, 2e6);

@@ -44,8 +44,9 @@ fn cube(shape: Shape) -> Problem {
     problem
 }
 
-/// Pressed by 10 MPa and sheared by 8 MPa the crack slides, and bends with the cube: part of it opens.
-/// Walls overlap nowhere, and the second half of the way takes no more iterations than the first.
+/// Pressed by 10 MPa and sheared by 8 MPa the crack slides, and bends with the cube: part of it
+/// opens. Walls overlap nowhere, and the second half of the way takes no more iterations than the
+/// first.
 #[test]
 fn walls_rub_on_facets_of_second_order() {
     let shapes = Shape::CELLS
@@ -80,9 +81,10 @@ fn walls_rub_on_facets_of_second_order() {
     }
 }
 
-/// A disc in a box a hundred times as wide carries little of the loads. Everything slides from the start,
-/// so the second half of the way is the first once more and the first correction leads there, as far as
-/// the linear solve is exact: against what the disc carries, not against the loads.
+/// A disc in a box a hundred times as wide carries little of the loads. Everything slides from the
+/// start, so the second half of the way is the first once more and the first correction leads
+/// there, as far as the linear solve is exact: against what the disc carries, not against the
+/// loads.
 #[test]
 fn a_fracture_that_carries_little_of_the_loads_slides_on() {
     let (half, size) = (100.0, [("h", 0.1), ("h_disc", 0.2), ("grow", 0.8)]);

@@ -1,4 +1,5 @@
-//! Patch test: a uniform stress passes through a planar joint of any orientation on a real gmsh mesh.
+//! Patch test: a uniform stress passes through a planar joint of any orientation on a real gmsh
+//! mesh.
 //!
 //! Tractions of a uniform stress act on all faces; the exact solution is an affine displacement
 //! plus a rigid jump with the traction `sigma . n`. It must hold whatever the orientation of the

@@ -1,5 +1,5 @@
-//! Random networks of 3 to 12 polygons that cross, end inside and cut the boundary: the solver against
-//! split nodes.
+//! Random networks of 3 to 12 polygons that cross, end inside and cut the boundary: the solver
+//! against split nodes.
 
 use kluft_mesh::Draft;
 

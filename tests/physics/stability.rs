@@ -1,4 +1,5 @@
-//! Short forms of the studies of the stability map: what docs/verification/stability.md says must hold.
+//! Short forms of the studies of the stability map: what docs/verification/stability.md says must
+//! hold.
 
 use kluft_verification::report::{Effort, Finding, Study};
 use kluft_verification::stability::{
@@ -94,8 +95,8 @@ fn cycles_leave_nothing() {
     hold(&cycles::STUDY);
 }
 
-/// Where linear cells lock (an error of nearly everything), quadratic ones on a mesh of twice the size
-/// keep most of the answer.
+/// Where linear cells lock (an error of nearly everything), quadratic ones on a mesh of twice the
+/// size keep most of the answer.
 #[test]
 fn quadratic_cells_hardly_lock() {
     let finding = hold(&locking::STUDY);

@@ -1,4 +1,5 @@
-//! The verification book: its pages in the sources and in `docs/verification/book` are the same, and nothing is lost.
+//! The verification book: its pages in the sources and in `docs/verification/book` are the same,
+//! and nothing is lost.
 
 use std::collections::BTreeSet;
 use std::fs;

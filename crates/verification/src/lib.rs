@@ -1,7 +1,8 @@
-//! What Kluft is verified with: scenes, oracles, methods to compare it with, and studies that write pages.
+//! What Kluft is verified with: scenes, oracles, methods to compare it with, and studies that write
+//! pages.
 //!
-//! The tests of physics use its scenes and oracles. The program `verify` runs the studies and writes
-//! `docs/verification`:
+//! The tests of physics use its scenes and oracles. The program `verify` runs the studies and
+//! writes `docs/verification`:
 //!
 //!     cargo run --release -p kluft-verification --bin verify -- stability|closures|book [--quick] [NAME...]
 

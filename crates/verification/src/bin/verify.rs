@@ -9,7 +9,8 @@ use kluft_verification::{book, closures, root, stability};
 
 #[derive(Parser)]
 #[command(
-    about = "Runs studies of Kluft beside closed forms and other methods, and writes their pages"
+    about = "Runs studies of Kluft beside closed forms and other methods, and writes their \
+                   pages"
 )]
 struct Cli {
     #[command(subcommand)]

@@ -9,16 +9,19 @@ use crate::report::{Effort, Finding, Study, Table, count, digits, percent, reach
 pub const PAGE: Study = Study {
     name: "adaptive",
     title: "Adaptive and uniform meshes",
-    subject: "an adaptive solution in the same body, far finer, with the uncertainty that it states; I. N. Sneddon, 1946, for the shape",
+    subject: "an adaptive solution in the same body, far finer, with the uncertainty that it \
+              states; I. N. Sneddon, 1946, for the shape",
     run,
 };
 
 const CLOSED_FORM: &str = "
-None for a disc in a cube. Volume and opening at the centre are compared with those of the reference, and the opening in L2 with
+None for a disc in a cube. Volume and opening at the centre are compared with those of the
+reference, and the opening in L2 with
 
     w(r) = c sqrt(1 - r²/a²)        c such that the volume is that of the reference
 
-The faces of the cube change this shape a little; how much more the reference is open at the centre says by how much.";
+The faces of the cube change this shape a little; how much more the reference is open at the centre
+says by how much.";
 
 /// Half the side of the body (m): with more, 1 % is out of reach of uniform meshes.
 const HALF: &str = "3.0";
@@ -65,7 +68,8 @@ impl Family {
         self.cases.iter().map(of).collect()
     }
 
-    /// Order of the opening in L2 in the third root of the unknowns, over all but the coarsest mesh.
+    /// Order of the opening in L2 in the third root of the unknowns, over all but the coarsest
+    /// mesh.
     fn order(&self) -> f64 {
         let curve = self.curve(0);
         order(curve[1], curve[curve.len() - 1])
@@ -97,8 +101,8 @@ fn uniform(h: f64, more: &str) -> String {
 
 fn adaptive(tolerance: f64) -> String {
     format!(
-        "parameters = {{ h = 0.4, h_disc = 0.4, grow = 0.6, half = {HALF} }}\norder = 2\n\
-         adapt = {{ tolerance = {tolerance} }}"
+        "parameters = {{ h = 0.4, h_disc = 0.4, grow = 0.6, half = {HALF} }}\norder = 2\nadapt = \
+         {{ tolerance = {tolerance} }}"
     )
 }
 
@@ -214,6 +218,18 @@ fn comparison(families: &[Family], measure: usize) -> String {
     }
 }
 
+fn problem() -> String {
+    format!(
+        "A free crack, the disc r < 1 m, is opened by a fluid pressure of 2 MPa in the middle of a \
+         cube of rock of side 6 m (`geometries/penny` with half = {HALF}). \"Uniform\" meshes have \
+         cells of one size h in the whole body; \"adaptive\" ones come from `[mesh] adapt` with a \
+         tolerance, starting with 0.4 m at the disc. Both are of order 2 with quarter points, \
+         unless named otherwise. The body is that small so that uniform meshes reach 1 %: in a \
+         larger one they need more unknowns, in proportion to its volume, and adaptive ones hardly \
+         any. Orders are in the third root of the unknowns, which is 1/h on uniform meshes."
+    )
+}
+
 fn run(_: Effort) -> Finding {
     let reference = Reference::of(FINEST);
     let families = families(&reference);
@@ -222,42 +238,46 @@ fn run(_: Effort) -> Finding {
     let compared: Vec<String> = (0..3)
         .map(|measure| comparison(&families, measure))
         .collect();
-    Finding::new([format!("for 1 %: {}", compared[0]), (unknowns.expect("cases")).to_string()])
-.text(format!(
-            "A free crack, the disc r < 1 m, is opened by a fluid pressure of 2 MPa in the middle of a cube of rock of \
-             side 6 m (`geometries/penny` with half = {HALF}). \"Uniform\" meshes have cells of one size h in the whole \
-             body; \"adaptive\" ones come from `[mesh] adapt` with a tolerance, starting with 0.4 m at the disc. Both \
-             are of order 2 with quarter points, unless named otherwise. The body is that small so that uniform \
-             meshes reach 1 %: in a larger one they need more unknowns, in proportion to its volume, and adaptive \
-             ones hardly any. Orders are in the third root of the unknowns, which is 1/h on uniform meshes."
-        ))
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![
-            ("adaptive-opening", chart(&families, 0)),
-            ("adaptive-volume", chart(&families, 1)),
-        ])
-.table(table(&families))
-.shows(shows(&families, &reference, &compared))
+    Finding::new([
+        format!("for 1 %: {}", compared[0]),
+        unknowns.expect("cases").to_string(),
+    ])
+    .text(problem())
+    .closed_form(CLOSED_FORM, PAGE.subject)
+    .chart("adaptive-opening", chart(&families, 0))
+    .chart("adaptive-volume", chart(&families, 1))
+    .table(table(&families))
+    .shows(shows(&families, &reference, &compared))
 }
 
 fn shows(families: &[Family], reference: &Reference, compared: &[String]) -> String {
     let plain = families[1].cases.last().expect("meshes");
-    format!(
-        "An error of 1 % takes, every number between two meshes that were solved: {}. Without quarter points no \
-         uniform mesh here comes near: {} are still {} off in L2. The opening in L2 converges with order {:.2} on \
-         uniform meshes of order 1, {:.2} of order 2 without and {:.2} with quarter points, and {:.2} on adaptive ones. \
-         The reference has {} unknowns and says that its \
-         mean opening is off by at most {}; all meshes open too little, so true errors are larger than the listed ones by \
-         up to that, in all families alike. At the centre it is {} more open than the shape to which L2 errors refer.",
-        compared.join("; "),
-        count(plain.unknowns),
-        percent(plain.errors[0]),
-        families[0].order(),
-        families[1].order(),
-        families[2].order(),
-        families[3].order(),
-        count(reference.unknowns),
-        percent(reference.stated),
-        percent(reference.shape),
-    )
+    let orders = families
+        .iter()
+        .map(|family| format!("{:.2}", family.order()));
+    let orders: Vec<String> = orders.collect();
+    [
+        format!(
+            "An error of 1 % takes, every number between two meshes that were solved: {}. Without \
+             quarter points no uniform mesh here comes near: {} are still {} off in L2.",
+            compared.join("; "),
+            count(plain.unknowns),
+            percent(plain.errors[0]),
+        ),
+        format!(
+            "The opening in L2 converges with order {} on uniform meshes of order 1, {} of order 2 \
+             without and {} with quarter points, and {} on adaptive ones.",
+            orders[0], orders[1], orders[2], orders[3],
+        ),
+        format!(
+            "The reference has {} unknowns and says that its mean opening is off by at most {}; \
+             all meshes open too little, so true errors are larger than the listed ones by up to \
+             that, in all families alike. At the centre it is {} more open than the shape to which \
+             L2 errors refer.",
+            count(reference.unknowns),
+            percent(reference.stated),
+            percent(reference.shape),
+        ),
+    ]
+    .join(" ")
 }

@@ -110,8 +110,8 @@ fn chart(cases: &[Case]) -> Chart {
     }
 }
 
-const PROBLEM: &str = "A column of rock of 1 m by 1 m by 2 m with a level hyperbolic joint (b0 = v_m) under nine loads \
-    over five decades, one load step each.";
+const PROBLEM: &str = "A column of rock of 1 m by 1 m by 2 m with a level hyperbolic joint (b0 = \
+    v_m) under nine loads over five decades, one load step each.";
 
 fn run(_: Effort) -> Finding {
     let cases = LOADS.map(case);
@@ -127,8 +127,9 @@ fn run(_: Effort) -> Finding {
         .chart("barton-bandis", chart(&cases))
         .table(table(&cases))
         .shows(format!(
-            "The aperture that is left follows the law to {worst:.0e} at all loads, the secants its tangent to \
-             {slopes:.0e}; under {} MPa the walls are {:.6} of the way together, and never meet.",
+            "The aperture that is left follows the law to {worst:.0e} at all loads, the secants \
+             its tangent to {slopes:.0e}; under {} MPa the walls are {:.6} of the way together, \
+             and never meet.",
             last.mega,
             last.closure / MOST,
         ))

@@ -13,19 +13,20 @@ use crate::scenes::{EXACT, ROCK};
 pub const PAGE: Study = Study {
     name: "estimate",
     title: "Error estimate",
-    subject: "the closed forms of the other pages; of a crack under a pressure p, |e|² = p (V - V_h) in the energy norm",
+    subject: "the closed forms of the other pages; of a crack under a pressure p, |e|² = p (V - \
+              V_h) in the energy norm",
     run,
 };
 
 const CLOSED_FORM: &str = "
-With e the error, u the solution, V the volume in closed form and V_h that of the mesh: |u_h|² = p V_h, so the estimated share s = |e|/|u_h| of
-`summary.json` should be
+With e the error, u the solution, V the volume in closed form and V_h that of the mesh: |u_h|² = p
+V_h, so the estimated share s = |e|/|u_h| of `summary.json` should be
 
     s = sqrt((V - V_h)/V_h)        effectivity: the estimate over this
 
-and the mean opening (of cracks that slide, the mean slip) is off by the difference of the means. `aperture_uncertainty` and
-`slip_uncertainty` are the estimate times 2, or times 3 where cells without quarter points follow a crack front; the effectivity of the mean is without
-these factors.";
+and the mean opening (of cracks that slide, the mean slip) is off by the difference of the means.
+`aperture_uncertainty` and `slip_uncertainty` are the estimate times 2, or times 3 where cells
+without quarter points follow a crack front; the effectivity of the mean is without these factors.";
 
 /// A run beside what is true.
 struct Case {
@@ -206,61 +207,72 @@ fn range(values: impl Iterator<Item = f64>) -> String {
     format!("{low:.2} to {high:.2}")
 }
 
-fn run(_: Effort) -> Finding {
-    let cases = cases();
-    let missed: Vec<&Case> = cases.iter().filter(|case| !case.holds()).collect();
-    let held = cases.len() - missed.len();
-    let energies = range(cases.iter().filter_map(|case| case.energy));
-    let means = range(cases.iter().map(Case::effectivity));
-    let names: Vec<String> = missed
-        .iter()
-        .map(|case| {
-            let [error, stated, _] = case.mean;
-            format!(
-                "{} (states {} of the true error)",
-                case.name,
-                digits(stated / error)
-            )
-        })
-        .collect();
-    let misses = match names.is_empty() {
-        true => String::new(),
-        false => format!(
-            "It does not on: {}. Where facets stand for a curved surface that is an error too, and none that the stress shows.",
-            names.join("; ")
-        ),
-    };
-    let share = |case: &Case, which: usize| case.mean[which] / case.mean[2];
+/// True and stated error of the mean of a case, over the mean.
+fn shares(case: &Case) -> (f64, f64) {
+    let [error, stated, mean] = case.mean;
+    (error / mean, stated / mean)
+}
+
+fn chart(cases: &[Case]) -> Chart {
     let groups = ["disc", "line", "sphere"];
     let series = groups.map(|group| {
         let own = cases.iter().filter(|case| case.name.starts_with(group));
-        Series::scatter(
-            group,
-            own.map(|case| (share(case, 0), share(case, 1))).collect(),
-        )
+        Series::scatter(group, own.map(shares).collect())
     });
-    let ends = cases.iter().map(|case| share(case, 0));
+    let ends = cases.iter().map(|case| shares(case).0);
     let (low, high) = ends.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
-    Finding::new([format!("the uncertainty contains the truth in {held} of {} cases; energy {energies} times the error", cases.len()), (cases.iter().map(|case| case.unknowns).max().unwrap_or(0)).to_string()])
-.text("Every run estimates the error of its stress in the energy norm, and what the mean aperture and slip of each fracture may be \
-                  off. Here are both beside the truth, on cracks under pressure, cracks that slide, and a closed joint on a sphere.")
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![(
-            "estimate",
-            Chart {
-                series: std::iter::once(Series::line("as stated", vec![(low, low), (high, high)])).chain(series).collect(),
-                ..Chart::new(
-                    "Mean opening or slip: stated uncertainty over the true error",
-                    Axis::logarithmic("true error of the mean (relative)"),
-                    Axis::logarithmic("stated uncertainty (relative)"),
-                )
-            },
-        )])
-.table(table(&cases))
-.shows(format!(
-            "In the energy norm the estimate is {energies} times the true error; of the mean jump, without the factor of safety, {means} times. The \
-             stated uncertainty contains the truth in {held} of {} cases. {misses} The closed forms of cracks are for unbounded rock, and what the size \
-             of the body adds counts as error here.",
-            cases.len()
+    let equal = Series::line("as stated", vec![(low, low), (high, high)]);
+    Chart {
+        series: std::iter::once(equal).chain(series).collect(),
+        ..Chart::new(
+            "Mean opening or slip: stated uncertainty over the true error",
+            Axis::logarithmic("true error of the mean (relative)"),
+            Axis::logarithmic("stated uncertainty (relative)"),
+        )
+    }
+}
+
+/// Names the cases whose uncertainty does not contain the truth.
+fn misses(cases: &[Case]) -> String {
+    let missed = cases.iter().filter(|case| !case.holds());
+    let name = |case: &Case| {
+        let [error, stated, _] = case.mean;
+        let share = digits(stated / error);
+        format!("{} (states {share} of the true error)", case.name)
+    };
+    let names: Vec<String> = missed.map(name).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "It does not on: {}. Where facets stand for a curved surface that is an error too, and \
+         none that the stress shows.",
+        names.join("; ")
+    )
+}
+
+const PROBLEM: &str = "Every run estimates the error of its stress in the energy norm, and what \
+    the mean aperture and slip of each fracture may be off. Here are both beside the truth, on \
+    cracks under pressure, cracks that slide, and a closed joint on a sphere.";
+
+fn run(_: Effort) -> Finding {
+    let cases = cases();
+    let held = cases.iter().filter(|case| case.holds()).count();
+    let held = format!("the truth in {held} of {} cases", cases.len());
+    let energies = range(cases.iter().filter_map(|case| case.energy));
+    let means = range(cases.iter().map(Case::effectivity));
+    let misses = misses(&cases);
+    let unknowns = cases.iter().map(|case| case.unknowns).max().unwrap_or(0);
+    let reached = format!("the uncertainty contains {held}; energy {energies} times the error");
+    Finding::new([reached, unknowns.to_string()])
+        .text(PROBLEM)
+        .closed_form(CLOSED_FORM, PAGE.subject)
+        .chart("estimate", chart(&cases))
+        .table(table(&cases))
+        .shows(format!(
+            "In the energy norm the estimate is {energies} times the true error; of the mean jump, \
+             without the factor of safety, {means} times. The stated uncertainty contains {held}. \
+             {misses} The closed forms of cracks are for unbounded rock, and what the size of the \
+             body adds counts as error here."
         ))
 }

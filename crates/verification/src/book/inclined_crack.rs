@@ -10,12 +10,14 @@ use crate::report::{Effort, Finding, Study, Table, percent};
 pub const PAGE: Study = Study {
     name: "inclined-crack",
     title: "Inclined crack with friction",
-    subject: "A.-V. Phan, J. A. L. Napier, L. J. Gray, T. Kaplan, Int. J. Numer. Meth. Engng 57, 2003",
+    subject: "A.-V. Phan, J. A. L. Napier, L. J. Gray, T. Kaplan, Int. J. Numer. Meth. Engng 57, \
+              2003",
     run,
 };
 
 const CLOSED_FORM: &str = "
-With E = 25 GPa, nu = 0.25, p = 100 MPa, psi = 20 degrees, phi = 30 degrees, a = 1 m, in an unbounded plate in plane strain:
+With E = 25 GPa, nu = 0.25, p = 100 MPa, psi = 20 degrees, phi = 30 degrees, a = 1 m, in an
+unbounded plate in plane strain:
 
     normal traction   -p sin²psi                                                    -11.697778 MPa
     slip              4 (1 - nu²)/E p sin psi (cos psi - sin psi tan phi) sqrt(a² - x²)   3.807850e-3 m in the middle";
@@ -89,6 +91,11 @@ pub fn profiles(
     }
 }
 
+const PROBLEM: &str = "A closed crack of half-length 1 m in a plate of side 40 m in plane strain, \
+    pressed by 100 MPa at 20 degrees to the crack, slides against a friction of 30 degrees; its \
+    walls are in contact without a stiffness (`geometries/inclined-crack`). Second-order prisms \
+    with quarter points. \"Inside\" leaves out the tenth next to each front.";
+
 fn run(_: Effort) -> Finding {
     let mesh = |h: f64| format!("parameters = {{ h = {h} }}\norder = 2");
     let cases = SIZES.map(|h| (h, scene::run("inclined-crack", &mesh(h), &[])));
@@ -99,17 +106,15 @@ fn run(_: Effort) -> Finding {
         |x| x.x.abs(),
         &[(*coarsest, coarse), (*finest, fine)],
     );
-    Finding::new([reached(fine), (fine.unknowns()).to_string()])
-.text("A closed crack of half-length 1 m in a plate of side 40 m in plane strain, pressed by 100 MPa at 20 degrees \
-                  to the crack, slides against a friction of 30 degrees; its walls are in contact without a stiffness \
-                  (`geometries/inclined-crack`). Second-order prisms with quarter points. \"Inside\" leaves out the \
-                  tenth next to each front.")
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![("inclined-crack-slip", chart)])
-.table(table(&cases))
-.shows(format!(
-            "The whole crack slides and stays closed. With h = {finest} m the slip is {} off in L2, inside {} at most; with h = \
-             {coarsest} m {} in L2. The normal traction, which no stiffness carries, is {} off in L2 inside.",
+    Finding::new([reached(fine), fine.unknowns().to_string()])
+        .text(PROBLEM)
+        .closed_form(CLOSED_FORM, PAGE.subject)
+        .chart("inclined-crack-slip", chart)
+        .table(table(&cases))
+        .shows(format!(
+            "The whole crack slides and stays closed. With h = {finest} m the slip is {} off in \
+             L2, inside {} at most; with h = {coarsest} m {} in L2. The normal traction, which no \
+             stiffness carries, is {} off in L2 inside.",
             percent(fine.error("slip_l2")),
             percent(fine.error("slip_max_inside")),
             percent(coarse.error("slip_l2")),

@@ -18,11 +18,13 @@ pub const PAGE: Study = Study {
 };
 
 const CLOSED_FORM: &str = "
-Rock (E = 25 GPa, nu = 0.25) with sets of joints of spacing S = 0.5 m, K_n = 50 GPa/m and K_s = 20 GPa/m, across some axes i, j:
+Rock (E = 25 GPa, nu = 0.25) with sets of joints of spacing S = 0.5 m, K_n = 50 GPa/m and K_s = 20
+GPa/m, across some axes i, j:
 
     1/E_i' = 1/E + 1/(K_n S)        1/G_ij' = 1/G + 1/(K_s S) + 1/(K_s S)        nu' = nu E_i'/E
 
-where a set that is not there has no term: E' = 12.5 GPa, G' = 5 GPa (one set of the two) or 3.3333 GPa (both), nu' = 0.125.";
+where a set that is not there has no term: E' = 12.5 GPa, G' = 5 GPa (one set of the two) or 3.3333
+GPa (both), nu' = 0.125.";
 
 const STRESS: f64 = 1e6;
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -97,11 +99,13 @@ fn over_stiffness() -> Vec<(f64, f64, f64)> {
     ratios.map(at).collect()
 }
 
-fn run(_: Effort) -> Finding {
-    let moduli: Vec<Modulus> = (1..=3).flat_map(moduli_of).collect();
-    let sweep = over_stiffness();
+const PROBLEM: &str = "A cube of side 0.5 m, cut through its middle by one, two and three \
+    orthogonal joints, under one component of the stress after the other; 4 cubes of six \
+    tetrahedra along an edge.";
+
+fn table(moduli: &[Modulus]) -> Table {
     let mut table = Table::new(&["sets", "modulus", "closed form (Pa)", "Kluft (Pa)", "error"]);
-    for modulus in &moduli {
+    for modulus in moduli {
         table.push([
             modulus.sets.to_string(),
             modulus.name.clone(),
@@ -110,36 +114,46 @@ fn run(_: Effort) -> Finding {
             format!("{:.0e}", modulus.error()),
         ]);
     }
+    table
+}
+
+fn chart(sweep: &[(f64, f64, f64)]) -> Chart {
+    let closed_form = sweep.iter().map(|(x, exact, _)| (*x, *exact));
+    let found = sweep.iter().map(|(x, _, found)| (*x, *found));
+    Chart {
+        series: vec![
+            Series::line("closed form", closed_form.collect()),
+            Series::scatter("Kluft", found.collect()),
+        ],
+        ..Chart::new(
+            "Three joint sets: Young's modulus over the stiffness of the joints",
+            Axis::logarithmic("K_n S / E"),
+            Axis::logarithmic("E' / E"),
+        )
+    }
+}
+
+fn run(_: Effort) -> Finding {
+    let moduli: Vec<Modulus> = (1..=3).flat_map(moduli_of).collect();
+    let sweep = over_stiffness();
     let worst = largest(moduli.iter().map(Modulus::error));
-    let swept = largest(
-        sweep
-            .iter()
-            .map(|(_, exact, found)| (found / exact - 1.0).abs()),
-    );
+    let errors = sweep.iter().map(|(_, exact, found)| found / exact - 1.0);
+    let swept = largest(errors.map(f64::abs));
     let cube = jointed_cube(3, DMat3::IDENTITY, linear_joint(50e9));
     let sectors = cube.mesh.sectors.count.iter().max().copied().unwrap_or(0);
-    Finding::new([format!("moduli {:.0e}", worst.max(swept)), (Discretisation::of(&cube).expect("supported").unknown_count()).to_string()])
-.text("A cube of side 0.5 m, cut through its middle by one, two and three orthogonal joints, under one component of the \
-                  stress after the other; 4 cubes of six tetrahedra along an edge.")
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![(
-            "joint-sets",
-            Chart {
-                series: vec![
-                    Series::line("closed form", sweep.iter().map(|(x, exact, _)| (*x, *exact)).collect()),
-                    Series::scatter("Kluft", sweep.iter().map(|(x, _, found)| (*x, *found)).collect()),
-                ],
-                ..Chart::new(
-                    "Three joint sets: Young's modulus over the stiffness of the joints",
-                    Axis::logarithmic("K_n S / E"),
-                    Axis::logarithmic("E' / E"),
-                )
-            },
-        )])
-.table(table)
-.shows(format!(
-            "All {} moduli of one, two and three sets are those of the equivalent continuum to {worst:.0e}, also where three \
-             joints cross and {sectors} blocks meet in a point; and over eight decades of stiffness Young's modulus is, to {swept:.0e}.",
+    let unknowns = Discretisation::of(&cube)
+        .expect("supported")
+        .unknown_count();
+    let reached = format!("moduli {:.0e}", worst.max(swept));
+    Finding::new([reached, unknowns.to_string()])
+        .text(PROBLEM)
+        .closed_form(CLOSED_FORM, PAGE.subject)
+        .chart("joint-sets", chart(&sweep))
+        .table(table(&moduli))
+        .shows(format!(
+            "All {} moduli of one, two and three sets are those of the equivalent continuum to \
+             {worst:.0e}, also where three joints cross and {sectors} blocks meet in a point; and \
+             over eight decades of stiffness Young's modulus is, to {swept:.0e}.",
             moduli.len()
         ))
 }

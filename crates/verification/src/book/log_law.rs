@@ -11,7 +11,8 @@ use crate::scenes::{self, EXACT};
 pub const PAGE: Study = Study {
     name: "log-law",
     title: "Logarithmic closure law",
-    subject: "T. Nagel, One-sided incompressibility constraint for fracture models, 2017; inverted by bisection",
+    subject: "T. Nagel, One-sided incompressibility constraint for fracture models, 2017; inverted \
+              by bisection",
     run,
 };
 
@@ -54,8 +55,7 @@ fn case(q: f64) -> Case {
     }
 }
 
-fn run(_: Effort) -> Finding {
-    let cases = LOG_LAW_TABLE.map(|(q, ..)| case(q));
+fn table(cases: &[Case]) -> Table {
     let mut table = Table::new(&[
         "load / (K_n0 b0)",
         "aperture / b0, closed form",
@@ -64,7 +64,7 @@ fn run(_: Effort) -> Finding {
         "tangent / K_n0, closed form",
         "secant over 1e-5 of the load, Kluft",
     ]);
-    for case in &cases {
+    for case in cases {
         table.push([
             case.q.to_string(),
             format!("{:.9e}", case.exact),
@@ -74,36 +74,47 @@ fn run(_: Effort) -> Finding {
             format!("{:.4e}", case.secant),
         ]);
     }
-    let worst = largest(cases.iter().map(|case| case.error));
-    let slopes = largest(
-        cases
-            .iter()
-            .map(|case| (case.secant / case.tangent - 1.0).abs()),
-    );
+    table
+}
+
+fn chart(cases: &[Case]) -> Chart {
     let exponents = (-16..=16).map(|i| 10.0_f64.powf(f64::from(i) / 8.0));
+    let closed_form = exponents.map(|q| (q, closed_aperture(q)));
+    let points = cases.iter().map(|case| (case.q, case.x));
+    Chart {
+        series: vec![
+            Series::line("closed form", closed_form.collect()),
+            Series::scatter("Kluft", points.collect()),
+        ],
+        ..Chart::new(
+            "Logarithmic law: aperture over the load",
+            Axis::logarithmic("load / (K_n0 b0)"),
+            Axis::logarithmic("aperture / b0"),
+        )
+    }
+}
+
+const PROBLEM: &str = "A column of rock of 1 m by 1 m by 2 m with a level joint (b0 = 0.1 mm, K_n0 \
+    = 50 GPa/m) under ten loads, from a hundredth of K_n0 b0 to a hundred times as much; one load \
+    step each.";
+
+fn run(_: Effort) -> Finding {
+    let cases = LOG_LAW_TABLE.map(|(q, ..)| case(q));
+    let worst = largest(cases.iter().map(|case| case.error));
+    let slopes = cases.iter().map(|case| case.secant / case.tangent - 1.0);
+    let slopes = largest(slopes.map(f64::abs));
     let last = &cases[cases.len() - 1];
-    Finding::new([format!("aperture {worst:.0e}"), (Discretisation::of(&column(EXACT, 1.0)).expect("supported").unknown_count()).to_string()])
-.text("A column of rock of 1 m by 1 m by 2 m with a level joint (b0 = 0.1 mm, K_n0 = 50 GPa/m) under ten loads, from a \
-                  hundredth of K_n0 b0 to a hundred times as much; one load step each.")
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![(
-            "log-law",
-            Chart {
-                series: vec![
-                    Series::line("closed form", exponents.map(|q| (q, closed_aperture(q))).collect()),
-                    Series::scatter("Kluft", cases.iter().map(|case| (case.q, case.x)).collect()),
-                ],
-                ..Chart::new(
-                    "Logarithmic law: aperture over the load",
-                    Axis::logarithmic("load / (K_n0 b0)"),
-                    Axis::logarithmic("aperture / b0"),
-                )
-            },
-        )])
-.table(table)
-.shows(format!(
-            "In one load step the joint closes to {:.2e} of its aperture, under {} times K_n0 b0; at all loads the aperture \
-             follows the law to {worst:.0e}, and secants over 1e-5 of the load the law's tangent to {slopes:.0e}. No wall overlaps.",
+    let unknowns = Discretisation::of(&column(EXACT, 1.0)).expect("supported");
+    let unknowns = unknowns.unknown_count();
+    Finding::new([format!("aperture {worst:.0e}"), unknowns.to_string()])
+        .text(PROBLEM)
+        .closed_form(CLOSED_FORM, PAGE.subject)
+        .chart("log-law", chart(&cases))
+        .table(table(&cases))
+        .shows(format!(
+            "In one load step the joint closes to {:.2e} of its aperture, under {} times K_n0 b0; \
+             at all loads the aperture follows the law to {worst:.0e}, and secants over 1e-5 of \
+             the load the law's tangent to {slopes:.0e}. No wall overlaps.",
             last.x, last.q
         ))
 }

@@ -10,13 +10,14 @@ use crate::stability::front;
 pub const PAGE: Study = Study {
     name: "oscillation",
     title: "Traction of a stiff joint",
-    subject: "a joint pulled everywhere is in tension everywhere; J. C. J. Schellekens, R. de Borst, Int. J. Numer. Meth. Engng 36, 1993",
+    subject: "a joint pulled everywhere is in tension everywhere; J. C. J. Schellekens, R. de \
+              Borst, Int. J. Numer. Meth. Engng 36, 1993",
     run,
 };
 
 const CLOSED_FORM: &str = "
-There is no closed form, but a sign: the loads pull, so every traction of the joint is positive. Rules of quadrature that couple the
-nodes of a facet change the sign of some.";
+There is no closed form, but a sign: the loads pull, so every traction of the joint is positive.
+Rules of quadrature that couple the nodes of a facet change the sign of some.";
 
 /// Unknowns of the cells that have most.
 fn unknowns() -> usize {
@@ -28,9 +29,9 @@ fn unknowns() -> usize {
     counts.into_iter().max().unwrap_or(0)
 }
 
-const PROBLEM: &str = "A unit cube is pulled apart; one half of its middle plane is a free crack, the other half a \
-    linear joint of stiffness K = 1e-3 to 1e8 E/h. Facets are integrated at their nodes, which is what the program \
-    does, and at Gauss points.";
+const PROBLEM: &str = "A unit cube is pulled apart; one half of its middle plane is a free crack, \
+    the other half a linear joint of stiffness K = 1e-3 to 1e8 E/h. Facets are integrated at their \
+    nodes, which is what the program does, and at Gauss points.";
 
 fn run(effort: Effort) -> Finding {
     let found = (front::STUDY.run)(effort);
@@ -50,7 +51,7 @@ fn run(effort: Effort) -> Finding {
         .charts(charts.map(|(name, chart)| (name, chart.clone())))
         .table(table.clone())
         .shows(format!(
-            "At nodes no traction has the wrong sign at any stiffness, in any cell; the smallest is {nodal} of the \
-             largest. At Gauss points it falls to {gauss} of the largest."
+            "At nodes no traction has the wrong sign at any stiffness, in any cell; the smallest \
+             is {nodal} of the largest. At Gauss points it falls to {gauss} of the largest."
         ))
 }

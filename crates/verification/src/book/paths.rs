@@ -8,13 +8,15 @@ use crate::stability::{cycles, entry, increments, most, opening, steps};
 pub const PAGE: Study = Study {
     name: "paths",
     title: "Opening, closing and the way there",
-    subject: "laws with a potential: no hysteresis, no influence of the steps; a joint in series with rock",
+    subject: "laws with a potential: no hysteresis, no influence of the steps; a joint in series \
+              with rock",
     run,
 };
 
 const CLOSED_FORM: &str = "
-Without friction the traction is a function of the aperture, so the same loads give the same state whatever came before, and
-one step leads where a hundred do. A column with a level joint, moved by z at its top, H = 2 m high:
+Without friction the traction is a function of the aperture, so the same loads give the same state
+whatever came before, and one step leads where a hundred do. A column with a level joint, moved by z
+at its top, H = 2 m high:
 
     opening w and traction t   of   w(t) + t H/E = z   in compression,   w = z and t = 0   once open without tension";
 
@@ -28,7 +30,8 @@ fn unknowns(effort: Effort) -> usize {
     counts.max().unwrap_or(0)
 }
 
-/// The numbers of a column in the rows that a test of their second entry takes; what failed is not a number.
+/// The numbers of a column in the rows that a test of their second entry takes; what failed is not
+/// a number.
 fn numbers(finding: &Finding, column: &str, rows: fn(&str) -> bool) -> Vec<f64> {
     let table = finding.first_table();
     let place = table.column(column);
@@ -103,9 +106,10 @@ fn summary(findings: &[Finding; 4]) -> Table {
     table
 }
 
-const PROBLEM: &str = "The studies of the stability map on joints without tension that open and close for 20 \
-    cycles, blocks that float in between, junctions and jointed blocks loaded and unloaded for 20 cycles, the same \
-    load in 1 to 100 steps, and the law against its incremental form.";
+const PROBLEM: &str = "The studies of the stability map on joints without tension that open and \
+    close for 20 cycles, blocks that float in between, junctions and jointed blocks loaded and \
+    unloaded for 20 cycles, the same load in 1 to 100 steps, and the law against its incremental \
+    form.";
 
 /// Files of the tables of the studies.
 const FILES: [&str; 4] = [

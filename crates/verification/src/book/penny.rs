@@ -64,12 +64,13 @@ impl Family {
 fn uniform(h: f64, order: u32, quarter_points: bool) -> String {
     let (grow, far) = (1.5 * h, (37.5 * h).min(10.0));
     format!(
-        "parameters = {{ h = {h}, h_disc = {h}, grow = {grow}, h_far = {far} }}\norder = {order}\n\
-         quarter_points = {quarter_points}"
+        "parameters = {{ h = {h}, h_disc = {h}, grow = {grow}, h_far = {far} }}\norder = \
+         {order}\nquarter_points = {quarter_points}"
     )
 }
 
-/// Cells three times as large in the middle of the disc, growing by half their distance away from it.
+/// Cells three times as large in the middle of the disc, growing by half their distance away from
+/// it.
 fn graded(h: f64) -> String {
     let middle = 3.0 * h;
     format!("parameters = {{ h = {h}, h_disc = {middle}, grow = 0.5 }}\norder = 2")
@@ -179,6 +180,12 @@ fn at_aim(family: &Family, measure: &str) -> (String, f64) {
     (format!("{}{how}", count(unknowns)), unknowns)
 }
 
+const PROBLEM: &str = "A free crack, the disc r < 1 m, is opened by a fluid pressure of 2 MPa in \
+    the middle of a cube of rock of side 20 m, free of traction (`geometries/penny`). \"Uniform\" \
+    meshes have all cell sizes proportional to h; \"graded\" ones h at the front, 3 h in the \
+    middle of the disc, growing by 0.5 m a metre; \"adaptive\" ones come from `[mesh] adapt` with \
+    a tolerance, starting at h = 0.4 m.";
+
 fn run(_: Effort) -> Finding {
     let families = families();
     let best = families.iter().flat_map(|family| &family.cases);
@@ -189,54 +196,62 @@ fn run(_: Effort) -> Finding {
     let best = &best.expect("cases").outcome;
     let unknowns = families.iter().flat_map(|family| &family.cases);
     let unknowns = unknowns.map(|case| case.outcome.unknowns()).max();
-    Finding::new([format!(
-            "opening in L2 {}, volume {}",
-            percent(best.error("opening_l2")),
-            percent(best.error("volume"))
-        ), (unknowns.expect("cases")).to_string()])
-.text("A free crack, the disc r < 1 m, is opened by a fluid pressure of 2 MPa in the middle of a cube of rock \
-                  of side 20 m, free of traction (`geometries/penny`). \"Uniform\" meshes have all cell sizes \
-                  proportional to h; \"graded\" ones h at the front, 3 h in the middle of the disc, growing by 0.5 m a \
-                  metre; \"adaptive\" ones come from `[mesh] adapt` with a tolerance, starting at h = 0.4 m.")
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![
-            ("penny-opening", chart(&families, "opening_l2", "opening in L2")),
-            ("penny-volume", chart(&families, "volume", "volume")),
-            ("penny-profile", profile_chart(&families)),
-        ])
-.table(table(&families))
-.shows(shows(&families))
+    let [opening, volume] = ["opening_l2", "volume"].map(|measure| percent(best.error(measure)));
+    let reached = format!("opening in L2 {opening}, volume {volume}");
+    Finding::new([reached, unknowns.expect("cases").to_string()])
+        .text(PROBLEM)
+        .closed_form(CLOSED_FORM, PAGE.subject)
+        .chart(
+            "penny-opening",
+            chart(&families, "opening_l2", "opening in L2"),
+        )
+        .chart("penny-volume", chart(&families, "volume", "volume"))
+        .chart("penny-profile", profile_chart(&families))
+        .table(table(&families))
+        .shows(shows(&families))
 }
 
 fn shows(families: &[Family]) -> String {
-    let measure = "opening_l2";
-    let [one, two, adaptive] = [0, 1, 5].map(|i| at_aim(&families[i], measure));
-    let [volume_two, volume_adaptive] = [1, 5].map(|i| at_aim(&families[i], "volume"));
-    let [quarter, graded] = [2, 4].map(|i| at_aim(&families[i], measure));
-    format!(
-        "The displacements at the front follow the square root of the distance, and no polynomial does: on uniform \
-         meshes the opening converges in L2 with order {:.2} in h for cells of order 1 and {:.2} for order 2, against \
-         {:.2} with quarter points on the same meshes. An opening within 1 % in L2 takes {} unknowns on uniform meshes \
-         of order 1, {} of order 2 and {} with quarter points; graded by hand with quarter points {}; adaptive {}. So \
-         an adaptive mesh has {} of the unknowns of a uniform one of order 2 and {} of order 1, and for a volume \
-         within 1 % {} of order 2 ({} against {}). Numbers called extrapolated continue the line through the last \
-         two meshes, or the first two; no such mesh was solved. \"Uniform\" meshes here still grow away from the disc; \
-         [Adaptive and uniform meshes](adaptive.md) has truly uniform ones, none extrapolated, in a smaller body. Errors below some tenths of a percent also hold what \
-         the cube of 20 m, which is not unbounded, does to the opening.",
-        families[0].order(),
-        families[1].order(),
-        families[2].order(),
-        one.0,
-        two.0,
-        quarter.0,
-        graded.0,
-        adaptive.0,
-        ratio(adaptive.1, two.1),
-        ratio(adaptive.1, one.1),
-        ratio(volume_adaptive.1, volume_two.1),
-        volume_adaptive.0,
-        volume_two.0,
-    )
+    let orders = families
+        .iter()
+        .map(|family| format!("{:.2}", family.order()));
+    let orders: Vec<String> = orders.collect();
+    let [linear, plain, quarter] = [&orders[0], &orders[1], &orders[2]];
+    let reached = |measure: &str| -> Vec<(String, f64)> {
+        let each = families.iter().map(|family| at_aim(family, measure));
+        each.collect()
+    };
+    let (opening, volume) = (reached("opening_l2"), reached("volume"));
+    let [few, many] = [&volume[5], &volume[1]];
+    [
+        format!(
+            "The displacements at the front follow the square root of the distance, and no \
+             polynomial does: on uniform meshes the opening converges in L2 with order {linear} in \
+             h for cells of order 1 and {plain} for order 2, against {quarter} with quarter points \
+             on the same meshes."
+        ),
+        format!(
+            "An opening within 1 % in L2 takes {} unknowns on uniform meshes of order 1, {} of \
+             order 2 and {} with quarter points; graded by hand with quarter points {}; adaptive {}.",
+            opening[0].0, opening[1].0, opening[2].0, opening[4].0, opening[5].0,
+        ),
+        format!(
+            "So an adaptive mesh has {} of the unknowns of a uniform one of order 2 and {} of \
+             order 1, and for a volume within 1 % {} of order 2 ({} against {}).",
+            ratio(opening[5].1, opening[1].1),
+            ratio(opening[5].1, opening[0].1),
+            ratio(few.1, many.1),
+            few.0,
+            many.0,
+        ),
+        "Numbers called extrapolated continue the line through the last two meshes, or the first \
+         two; no such mesh was solved. \"Uniform\" meshes here still grow away from the disc; \
+         [Adaptive and uniform meshes](adaptive.md) has truly uniform ones, none extrapolated, in \
+         a smaller body. Errors below some tenths of a percent also hold what the cube of 20 m, \
+         which is not unbounded, does to the opening."
+            .to_owned(),
+    ]
+    .join(" ")
 }
 
 /// A ratio of unknowns as one over a number.

@@ -18,8 +18,8 @@ pub struct Outcome {
     pub summary: Value,
 }
 
-/// Runs `geometries/SCENE` with these lines in `[mesh]` (beside `geometry`) and these parts of its text
-/// replaced.
+/// Runs `geometries/SCENE` with these lines in `[mesh]` (beside `geometry`) and these parts of its
+/// text replaced.
 pub fn run(scene: &str, mesh: &str, replaced: &[(&str, &str)]) -> Outcome {
     let own = root().join("geometries").join(scene);
     let text = fs::read_to_string(own.join("scene.toml")).expect("a scene");

@@ -11,12 +11,14 @@ use crate::scenes;
 pub const PAGE: Study = Study {
     name: "single-joint",
     title: "Single inclined joint, logarithmic law",
-    subject: "uniform stress through the law of T. Nagel, 2017; problem of the OpenGeoSys test `single_joint_negative_aperture`",
+    subject: "uniform stress through the law of T. Nagel, 2017; problem of the OpenGeoSys test \
+              `single_joint_negative_aperture`",
     run,
 };
 
 const CLOSED_FORM: &str = "
-The stress is uniform, -7 kPa upright, and the jump is rigid. With the dip d, b0 = 1e-5 m, K_n0 = 1e8 Pa/m, K_s = 1e12 Pa/m:
+The stress is uniform, -7 kPa upright, and the jump is rigid. With the dip d, b0 = 1e-5 m, K_n0 =
+1e8 Pa/m, K_s = 1e12 Pa/m:
 
     normal traction   -7000 cos²d
     slip              7000 sin d cos d / K_s
@@ -62,8 +64,7 @@ fn case(dip: f64) -> Case {
     }
 }
 
-fn run(_: Effort) -> Finding {
-    let cases = DIPS.map(case);
+fn table(cases: &[Case]) -> Table {
     let mut table = Table::new(&[
         "dip (degrees)",
         "unknowns",
@@ -74,7 +75,7 @@ fn run(_: Effort) -> Finding {
         "normal traction error",
         "aperture with constant stiffness (m)",
     ]);
-    for case in &cases {
+    for case in cases {
         let [aperture, slip, traction] = case.errors.map(|error| format!("{error:.0e}"));
         table.push([
             case.dip.to_string(),
@@ -87,38 +88,46 @@ fn run(_: Effort) -> Finding {
             format!("{:.4e}", case.linear),
         ]);
     }
+    table
+}
+
+fn chart(cases: &[Case]) -> Chart {
     let curve = |of: fn(&Case) -> f64| {
-        cases
-            .iter()
-            .map(|case| (case.dip, 1e6 * of(case)))
-            .collect()
+        let points = cases.iter().map(|case| (case.dip, 1e6 * of(case)));
+        points.collect()
     };
+    Chart {
+        series: vec![
+            Series::line("closed form", curve(|case| case.exact)),
+            Series::scatter("Kluft", curve(|case| case.aperture)),
+            Series::line("constant stiffness", curve(|case| case.linear)),
+        ],
+        ..Chart::new(
+            "Inclined joint under 7 kPa: aperture over the dip",
+            Axis::linear("dip (degrees)"),
+            Axis::linear("aperture (10⁻⁶ m)"),
+        )
+    }
+}
+
+const PROBLEM: &str = "A column of 1 m by 1 m by 2 m, E = 170 MPa and nu = 0.22, in plane strain \
+    under 7 kPa, cut by one joint of dip 20 to 60 degrees (`geometries/inclined-joint`).";
+
+fn run(_: Effort) -> Finding {
+    let cases = DIPS.map(case);
     let worst = largest(cases.iter().flat_map(|case| case.errors));
+    let unknowns = cases.iter().map(|case| case.unknowns).max().unwrap_or(0);
     let overlapping = cases.iter().filter(|case| case.linear < 0.0).count();
-    Finding::new([format!("everything {worst:.0e}"), (cases.iter().map(|case| case.unknowns).max().unwrap_or(0)).to_string()])
-.text("A column of 1 m by 1 m by 2 m, E = 170 MPa and nu = 0.22, in plane strain under 7 kPa, cut by one joint of dip \
-                  20 to 60 degrees (`geometries/inclined-joint`).")
-.closed_form(CLOSED_FORM, PAGE.subject)
-.charts(vec![(
-            "single-joint",
-            Chart {
-                series: vec![
-                    Series::line("closed form", curve(|case| case.exact)),
-                    Series::scatter("Kluft", curve(|case| case.aperture)),
-                    Series::line("constant stiffness", curve(|case| case.linear)),
-                ],
-                ..Chart::new(
-                    "Inclined joint under 7 kPa: aperture over the dip",
-                    Axis::linear("dip (degrees)"),
-                    Axis::linear("aperture (10⁻⁶ m)"),
-                )
-            },
-        )])
-.table(table)
-.shows(format!(
-            "Apertures, slips and tractions of all facet points follow the closed form to {worst:.0e} on a mesh of \
-             arbitrary tetrahedra. A constant stiffness would push the walls through each other at {overlapping} of {} \
-             dips, by {} of the aperture without load at the flattest; the logarithmic law leaves {} of it.",
+    Finding::new([format!("everything {worst:.0e}"), unknowns.to_string()])
+        .text(PROBLEM)
+        .closed_form(CLOSED_FORM, PAGE.subject)
+        .chart("single-joint", chart(&cases))
+        .table(table(&cases))
+        .shows(format!(
+            "Apertures, slips and tractions of all facet points follow the closed form to \
+             {worst:.0e} on a mesh of arbitrary tetrahedra. A constant stiffness would push the \
+             walls through each other at {overlapping} of {} dips, by {} of the aperture without \
+             load at the flattest; the logarithmic law leaves {} of it.",
             cases.len(),
             digits(-cases[0].linear / 1e-5),
             digits(cases[0].aperture / 1e-5),

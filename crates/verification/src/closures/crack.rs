@@ -21,7 +21,8 @@ pub const STUDY: Study = Study {
     run,
 };
 
-/// Traction along the crack, mean by area of the facet points at a place; the ends, which do not move, left out.
+/// Traction along the crack, mean by area of the facet points at a place; the ends, which do not
+/// move, left out.
 pub fn profile(points: &[Point]) -> impl Fn(f64) -> f64 + use<> {
     let mut places: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
     let key = |x: f64| (1e6 * x).round() as i64;
@@ -88,121 +89,136 @@ fn run(effort: Effort) -> Finding {
         ));
     }
     let open = fine.points.iter().filter(|point| point.opening > 1e-9);
-    let from = open.map(|point| point.x).fold(f64::INFINITY, f64::min);
+    let reference = Reference {
+        parts: (parts, finer),
+        unbounded,
+        open_from: open.map(|point| point.x).fold(f64::INFINITY, f64::min),
+    };
     Finding::new([breaks(&curves), ours(&curves)])
-        .text(crack_text(&curves, (parts, finer), (unbounded, from)))
-        .charts(crack_charts(&curves))
+        .story(texts(&curves, &reference), crack_charts(&curves))
         .numbers(table(&curves))
         .missing(misses)
 }
 
-fn crack_text(
-    curves: &[Curve],
-    (parts, finer): (usize, usize),
-    (unbounded, from): (f64, f64),
-) -> String {
-    let contact = range(of(curves, Treatment::Contact), |case, _| case.traction).0;
-    let linear = of(curves, Treatment::Linear);
-    let logarithmic = of(curves, Treatment::Logarithmic(None));
-    let hyperbolic = of(curves, Treatment::Hyperbolic(1.0));
-    let ends = |curve: &Curve, of: &dyn Fn(&Case) -> f64| {
-        let (first, last) = (&curve.cases[0], &curve.cases[curve.cases.len() - 1]);
-        format!("{:.1e} to {:.1e}", of(first), of(last))
-    };
-    let apart = |case: &Case| case.apart;
-    let times = |treatment| range(of(curves, treatment), |_, solved| solved.seconds);
+/// The paragraphs of the page, which its charts follow one by one.
+fn texts(curves: &[Curve], reference: &Reference) -> [String; 7] {
+    [
+        scene_text(reference),
+        closure_text(curves),
+        traction_text(curves),
+        apart_text(curves),
+        iterations_text(curves),
+        seconds_text(curves),
+        memory_text(curves),
+    ]
+}
+
+/// What the treatments are compared with.
+struct Reference {
+    /// Cells in 1/8 m of the meshes, and of that of the reference.
+    parts: (usize, usize),
+    /// Difference from the closed form of an unbounded plate, L2.
+    unbounded: f64,
+    /// Where it begins to be open (m).
+    open_from: f64,
+}
+
+fn scene_text(reference: &Reference) -> String {
+    let (parts, finer) = reference.parts;
     format!(
-        "A frictionless crack of 2 m through a plate of 8 m in plane strain, bent in its plane (10 MPa at the end of the crack) and \
-         pressed by a fifth of that: it is open from x = {from:.2} m to its end at 1 m and closed elsewhere. Cells are 1/{} m; the \
-         reference is exact contact on the nested mesh with cells of 1/{} m, which is {:.1} % (L2) from the closed form of an \
-         unbounded plate (open from -0.07 m, where K_I of the open part vanishes).\n\n{}\n\nAgainst the reference, contact itself is \
-         {contact:.1e} off: that is the mesh. The linear penalty comes within twice that {}, the \
-         logarithmic law {}, the hyperbolic one {}. A soft penalty does not know that walls touch. A soft law with \
-         an asymptote acts as contact of walls that are b0 further apart, a stiff one as contact where it begins to \
-         resist.\n\nHow far the walls are from where exact contact has them, on the same mesh, in b0: linear {}, \
-         logarithmic {}, hyperbolic {}; the laws with an asymptote are wrong by b0 or so at most, and the \
-         stiffness decides where in between.\n\n{}\n\nSeconds with the analysis of the matrix: \
-         linear {:.2} to {:.2}, logarithmic {:.2} to {:.2}, hyperbolic {:.2} to {:.2}, augmented Lagrangian {:.2} to {:.2}, contact \
-         {:.2}.\n\n{}",
+        "A frictionless crack of 2 m through a plate of 8 m in plane strain, bent in its plane (10 \
+         MPa at the end of the crack) and pressed by a fifth of that: it is open from x = {:.2} m \
+         to its end at 1 m and closed elsewhere. Cells are 1/{} m; the reference is exact contact \
+         on the nested mesh with cells of 1/{} m, which is {:.1} % (L2) from the closed form of an \
+         unbounded plate (open from -0.07 m, where K_I of the open part vanishes).",
+        reference.open_from,
         8 * parts,
         8 * finer,
-        100.0 * unbounded,
-        closure_text(curves),
-        below(linear, 2.0 * contact, |case| case.traction),
-        below(logarithmic, 2.0 * contact, |case| case.traction),
-        below(hyperbolic, 2.0 * contact, |case| case.traction),
-        ends(linear, &apart),
-        ends(logarithmic, &apart),
-        ends(hyperbolic, &apart),
-        iterations_text(curves),
-        times(Treatment::Linear).0,
-        times(Treatment::Linear).1,
-        times(Treatment::Logarithmic(None)).0,
-        times(Treatment::Logarithmic(None)).1,
-        times(Treatment::Hyperbolic(1.0)).0,
-        times(Treatment::Hyperbolic(1.0)).1,
-        times(Treatment::Augmented).0,
-        times(Treatment::Augmented).1,
-        times(Treatment::Contact).0,
-        memory_text(curves),
+        100.0 * reference.unbounded,
     )
 }
 
-fn crack_charts(curves: &[Curve]) -> Vec<(&'static str, Chart)> {
-    vec![
-        (
-            "crack-closure",
-            chart(
-                curves,
-                "Half-open crack: deepest closure",
-                Axis::logarithmic("deepest closure / b0").from(1e-16),
-                |case| case.closure,
-            ),
-        ),
-        (
-            "crack-traction",
-            chart(
-                curves,
-                "Half-open crack: traction against the finer mesh",
-                Axis::logarithmic("error of the traction, L2"),
-                |case| case.traction,
-            ),
-        ),
-        (
-            "crack-apart",
-            chart(
-                curves,
-                "Half-open crack: openings against exact contact",
-                Axis::logarithmic("mean difference / b0").from(1e-12),
-                |case| case.apart,
-            ),
-        ),
-        (
-            "crack-iterations",
-            chart(
-                curves,
-                "Half-open crack: iterations",
-                Axis::logarithmic("linear solves"),
-                newton,
-            ),
-        ),
-        (
-            "crack-seconds",
-            chart(
-                curves,
-                "Half-open crack: time",
-                Axis::logarithmic("seconds"),
-                seconds,
-            ),
-        ),
+fn traction_text(curves: &[Curve]) -> String {
+    let contact = range(of(curves, Treatment::Contact), |case, _| case.traction).0;
+    let [linear, logarithmic, hyperbolic] =
+        LAWS.map(|law| below(of(curves, law), 2.0 * contact, |case| case.traction));
+    format!(
+        "Against the reference, contact itself is {contact:.1e} off: that is the mesh. The linear \
+         penalty comes within twice that {linear}, the logarithmic law {logarithmic}, the \
+         hyperbolic one {hyperbolic}. A soft penalty does not know that walls touch. A soft law \
+         with an asymptote acts as contact of walls that are b0 further apart, a stiff one as \
+         contact where it begins to resist."
+    )
+}
+
+/// Laws that have a stiffness.
+const LAWS: [Treatment; 3] = [
+    Treatment::Linear,
+    Treatment::Logarithmic(None),
+    Treatment::Hyperbolic(1.0),
+];
+
+fn apart_text(curves: &[Curve]) -> String {
+    let [linear, logarithmic, hyperbolic] = LAWS.map(|law| {
+        let cases = &of(curves, law).cases;
+        format!(
+            "{:.1e} to {:.1e}",
+            cases[0].apart,
+            cases[cases.len() - 1].apart
+        )
+    });
+    format!(
+        "How far the walls are from where exact contact has them, on the same mesh, in b0: linear \
+         {linear}, logarithmic {logarithmic}, hyperbolic {hyperbolic}; the laws with an asymptote \
+         are wrong by b0 or so at most, and the stiffness decides where in between."
+    )
+}
+
+fn seconds_text(curves: &[Curve]) -> String {
+    let times = |treatment| range(of(curves, treatment), |_, solved| solved.seconds);
+    let [linear, logarithmic, hyperbolic] = LAWS.map(|law| between(times(law)));
+    format!(
+        "Seconds with the analysis of the matrix: linear {linear}, logarithmic {logarithmic}, \
+         hyperbolic {hyperbolic}, augmented Lagrangian {}, contact {:.2}.",
+        between(times(Treatment::Augmented)),
+        times(Treatment::Contact).0,
+    )
+}
+
+fn between((low, high): (f64, f64)) -> String {
+    format!("{low:.2} to {high:.2}")
+}
+
+fn crack_charts(curves: &[Curve]) -> [(&'static str, Chart); 6] {
+    let closure_axis = Axis::logarithmic("deepest closure / b0").from(1e-16);
+    let traction_axis = Axis::logarithmic("error of the traction, L2");
+    let apart_axis = Axis::logarithmic("mean difference / b0").from(1e-12);
+    let newton_axis = Axis::logarithmic("linear solves");
+    let seconds_axis = Axis::logarithmic("seconds");
+    let memory_axis = Axis::linear("measured growth of resident memory (MB)");
+    let against = [
+        "traction against the finer mesh",
+        "openings against exact contact",
+    ];
+    let drawn: [(&'static str, &str, Axis, fn(&Case) -> f64); 6] = [
+        ("crack-closure", "deepest closure", closure_axis, |case| {
+            case.closure
+        }),
+        ("crack-traction", against[0], traction_axis, |case| {
+            case.traction
+        }),
+        ("crack-apart", against[1], apart_axis, |case| case.apart),
+        ("crack-iterations", "iterations", newton_axis, newton),
+        ("crack-seconds", "time", seconds_axis, seconds),
         (
             "crack-memory",
-            chart(
-                curves,
-                "Half-open crack: memory of the solve",
-                Axis::linear("measured growth of resident memory (MB)"),
-                solve_memory,
-            ),
+            "memory of the solve",
+            memory_axis,
+            solve_memory,
         ),
-    ]
+    ];
+    drawn.map(|(name, what, axis, of)| {
+        let title = format!("Half-open crack: {what}");
+        (name, chart(curves, &title, axis, of))
+    })
 }

@@ -1,7 +1,7 @@
 //! An inclined joint whose traction statics knows.
 
 use glam::DVec3;
-use kluft_chart::Axis;
+use kluft_chart::{Axis, Chart};
 use kluft_solver::{Discretisation, LinearMethod, System};
 
 use super::equal_terms::{chart, curves, exponents, misses, of, table};
@@ -30,62 +30,61 @@ fn run(effort: Effort) -> Finding {
     if off > 1e-6 {
         misses.push(format!("a traction is off by {off:.1e}"));
     }
-    let floor = || Axis::logarithmic("deepest closure / b0").from(1e-16);
+    let texts = [
+        format!(
+            "A column with a joint that dips 50 degrees, under 10 MPa on top. The stress is \
+             uniaxial whatever the joint is, so its normal traction is {:.4} MPa for every \
+             treatment that settles; they differ in how far the walls close.",
+            inclined_traction() / 1e6
+        ),
+        closure_text(&curves),
+        traction_text(&terms, &curves),
+        iterations_text(&curves),
+        memory_text(&curves),
+    ];
     Finding::new([breaks(&curves), ours(&curves)])
-.text(format!(
-            "A column with a joint that dips 50 degrees, under 10 MPa on top. The stress is uniaxial whatever the joint is, so its \
-             normal traction is {:.4} MPa for every treatment that settles; they differ in how far the walls close.\n\n{}\n\n{}\n\n{}\n\n{}",
-            inclined_traction() / 1e6,
-            closure_text(&curves),
-            traction_text(&terms, &curves),
-            iterations_text(&curves),
-            memory_text(&curves),
-        ))
-.charts(vec![
-            (
-                "inclined-closure",
-                chart(&curves, "Inclined joint: closure", floor(), |case| {
-                    case.closure
-                }),
-            ),
-            (
-                "inclined-traction",
-                chart(
-                    &curves,
-                    "Inclined joint: traction against the closed form",
-                    Axis::logarithmic("error of the traction, L2").from(1e-16),
-                    |case| case.traction,
-                ),
-            ),
-            (
-                "inclined-iterations",
-                chart(
-                    &curves,
-                    "Inclined joint: iterations",
-                    Axis::logarithmic("linear solves"),
-                    newton,
-                ),
-            ),
-            (
-                "inclined-memory",
-                chart(
-                    &curves,
-                    "Inclined joint: memory of the solve",
-                    Axis::linear("measured growth of resident memory (MB)"),
-                    solve_memory,
-                ),
-            ),
-        ])
-.numbers(table(&curves))
-.missing(misses)
+        .story(texts, charts(&curves))
+        .numbers(table(&curves))
+        .missing(misses)
+}
+
+fn charts(curves: &[Curve]) -> [(&'static str, Chart); 4] {
+    let closure_axis = Axis::logarithmic("deepest closure / b0").from(1e-16);
+    let traction_axis = Axis::logarithmic("error of the traction, L2").from(1e-16);
+    let newton_axis = Axis::logarithmic("linear solves");
+    let memory_axis = Axis::linear("measured growth of resident memory (MB)");
+    let drawn: [(&'static str, &str, Axis, fn(&Case) -> f64); 4] = [
+        ("inclined-closure", "closure", closure_axis, |case| {
+            case.closure
+        }),
+        (
+            "inclined-traction",
+            "traction against the closed form",
+            traction_axis,
+            |case| case.traction,
+        ),
+        ("inclined-iterations", "iterations", newton_axis, newton),
+        (
+            "inclined-memory",
+            "memory of the solve",
+            memory_axis,
+            solve_memory,
+        ),
+    ];
+    drawn.map(|(name, what, axis, of)| {
+        (
+            name,
+            chart(curves, &format!("Inclined joint: {what}"), axis, of),
+        )
+    })
 }
 
 fn exact(_: &Point) -> f64 {
     inclined_traction()
 }
 
-/// Contact with the normals that the mesh gives the facets of the joint, which are one plane: how far the normals
-/// are apart, and the error of the traction.
+/// Contact with the normals that the mesh gives the facets of the joint, which are one plane: how
+/// far the normals are apart, and the error of the traction.
 fn with_normals_of_the_mesh(terms: &Terms<'_>) -> (f64, f64) {
     let problem = terms.scene.with(Treatment::Contact.closure(0.0));
     let mut discretisation = Discretisation::of(&problem).expect("supported");
@@ -107,10 +106,12 @@ fn traction_text(terms: &Terms<'_>, curves: &[Curve]) -> String {
     let slip = inclined_slip(terms.scene);
     let (apart, error) = with_normals_of_the_mesh(terms);
     format!(
-        "Statics fixes the tractions: those of settled cases are exact to {:.0e}, those of contact to {:.0e}. That takes one normal for \
-         the facets of a plane. Those of the mesh differ by {apart:.0e}, because coordinates are rounded, and the walls slip by {:.2} mm: \
-         facets around a node, which have one jump, would open by {:.0e} m more or less than each other, and contact, which \
-         follows its traction with a stiffness far above that of the rock, would be off by {error:.0e} and by more with every step.{}",
+        "Statics fixes the tractions: those of settled cases are exact to {:.0e}, those of contact \
+         to {:.0e}. That takes one normal for the facets of a plane. Those of the mesh differ by \
+         {apart:.0e}, because coordinates are rounded, and the walls slip by {:.2} mm: facets \
+         around a node, which have one jump, would open by {:.0e} m more or less than each other, \
+         and contact, which follows its traction with a stiffness far above that of the rock, \
+         would be off by {error:.0e} and by more with every step.{}",
         worst(curves, own),
         worst(contact, own),
         1e3 * slip,
@@ -129,8 +130,8 @@ fn failed_text(terms: &Terms<'_>, curves: &[Curve]) -> String {
     // (1 + ln^2 x) (1 - x) = q, where x is nothing beside 1.
     let load = -inclined_traction() / (first.parameter * terms.scene.scale * APERTURE);
     format!(
-        " The logarithmic law without cutoff fails in {} of {} cases: at {:e} E/h its aperture would be {:.0e} m, and the rounding of \
-         the slip closes or opens it.",
+        " The logarithmic law without cutoff fails in {} of {} cases: at {:e} E/h its aperture \
+         would be {:.0e} m, and the rounding of the slip closes or opens it.",
         failed.len(),
         law.len(),
         first.parameter,

@@ -130,7 +130,8 @@ pub fn measured(run: &Run) -> Option<Peak> {
     })
 }
 
-/// What the child process does: runs what its arguments say, and what it takes, as two numbers in bytes.
+/// What the child process does: runs what its arguments say, and what it takes, as two numbers in
+/// bytes.
 pub fn measure(arguments: &[String]) -> Option<String> {
     let run = Run::parse(arguments)?;
     let scene = run.place.build();

@@ -26,9 +26,9 @@ again in a process of its own, and the page has the peak of its resident memory 
 that grew from the assembled system to the end of the solve, beside what the program predicts for its linear \
 solver. Times are rough unless nothing else ran: the least of three solves over parameters, else of one.";
 
-const PROMISE: &str = "Expected is: every law of Kluft converges at every stiffness; the logarithmic law without \
-cutoff and the hyperbolic one leave apertures above 0; contact agrees with closed forms and with the settled \
-augmented Lagrangian.";
+const PROMISE: &str = "Expected is: every law of Kluft converges at every stiffness; the \
+    logarithmic law without cutoff and the hyperbolic one leave apertures above 0; contact agrees \
+    with closed forms and with the settled augmented Lagrangian.";
 
 /// All studies, in the order of the page.
 pub fn report() -> Report {

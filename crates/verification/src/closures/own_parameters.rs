@@ -1,5 +1,5 @@
-//! What only one law has: the cutoff of the logarithmic law and the largest closure of the hyperbolic one, each
-//! over eight decades.
+//! What only one law has: the cutoff of the logarithmic law and the largest closure of the
+//! hyperbolic one, each over eight decades.
 
 use kluft_chart::{Axis, Chart};
 use kluft_mesh::Shape;
@@ -26,7 +26,8 @@ pub const LARGEST: Study = Study {
     run: run_largest,
 };
 
-/// How far beyond its largest closure a joint may seem to be, against `b0`: the rounding of its slip.
+/// How far beyond its largest closure a joint may seem to be, against `b0`: the rounding of its
+/// slip.
 const PASSED: f64 = 1e-12;
 
 /// A law with its own parameter.
@@ -125,7 +126,8 @@ fn over(curves: &[Curve], scene: &str, of: impl Fn(&Case) -> f64) -> (f64, f64) 
     })
 }
 
-/// A measure of the curve of a name, where the parameter is largest and where it is smallest of those that converged.
+/// A measure of the curve of a name, where the parameter is largest and where it is smallest of
+/// those that converged.
 fn ends(curves: &[Curve], name: &str, of: impl Fn(&Case) -> f64) -> String {
     let curve = curves.iter().find(|curve| curve.name == name);
     let converged = curve.expect("a curve of the sweep").converged();
@@ -153,8 +155,9 @@ fn failed_text(curves: &[Curve]) -> String {
     let most = failed.iter().map(|case| share(case)).fold(0.0, f64::max);
     let least = solved.iter().map(|case| share(case));
     format!(
-        "; what fails is contact in all but name, with K_n0 v_m at most {most:.1e} of the largest traction (the least of what converges is {:.1e}): \
-         what is left to close is that share of v_m, and of the digits of v_m too few remain",
+        "; what fails is contact in all but name, with K_n0 v_m at most {most:.1e} of the largest \
+         traction (the least of what converges is {:.1e}): what is left to close is that share of \
+         v_m, and of the digits of v_m too few remain",
         least.fold(f64::INFINITY, f64::min)
     )
 }
@@ -214,36 +217,46 @@ fn run_cutoff(effort: Effort) -> Finding {
         format!("walls overlap by up to {most:.1} b0"),
         solved_text(&curves),
     ])
-    .text(cutoff_text(&curves))
-    .charts(charts(
-        &curves,
-        "Cutoff of the logarithmic law",
-        "cutoff b_min / b0; lines: scene, K_n0",
-        drawn,
-    ))
+    .story(
+        cutoff_text(&curves),
+        charts(
+            &curves,
+            "Cutoff of the logarithmic law",
+            "cutoff b_min / b0; lines: scene, K_n0",
+            drawn,
+        ),
+    )
     .numbers(table(&curves, ["scene and K_n0", "b_min / b0"], in_table))
     .missing(misses(&curves))
 }
 
-fn cutoff_text(curves: &[Curve]) -> String {
+fn cutoff_text(curves: &[Curve]) -> [String; 5] {
+    let [joint, crack] =
+        ["joint, 1e-4 E/h", "crack, 1e-4 E/h"].map(|name| ends(curves, name, overlap));
+    let [joint_2, crack_2] =
+        ["joint, 1e-2 E/h", "crack, 1e-2 E/h"].map(|name| ends(curves, name, overlap));
     let traction = |case: &Case| case.traction;
-    format!(
-        "Below its cutoff b_min the logarithmic law goes on with a stiffness that grows linearly, so walls can pass each other. The \
-         joint and the crack of the studies above, with the cutoff over eight decades, for three stiffnesses.\n\nFrom the \
-         largest cutoff to the smallest the overlap goes from {} b0 on the joint and {} on the crack with K_n0 = 1e-4 E/h, from {} and {} \
-         with 1e-2; with 1 E/h neither comes to its cutoff. A law without cutoff has none.\n\nOn the joint tractions are those of \
-         statics to {:.0e}. Those of the crack are off by {} with K_n0 = 1e-4 E/h and {} with 1 E/h: \
-         a cutoff that is too large adds to what a soft law does wrong, a small one changes nothing.\n\n{}.\n\n{}",
-        ends(curves, "joint, 1e-4 E/h", overlap),
-        ends(curves, "crack, 1e-4 E/h", overlap),
-        ends(curves, "joint, 1e-2 E/h", overlap),
-        ends(curves, "crack, 1e-2 E/h", overlap),
-        over(curves, "joint", traction).1,
-        ends(curves, "crack, 1e-4 E/h", traction),
-        ends(curves, "crack, 1e0 E/h", traction),
-        solved_text(curves),
+    [
+        "Below its cutoff b_min the logarithmic law goes on with a stiffness that grows linearly, \
+         so walls can pass each other. The joint and the crack of the studies above, with the \
+         cutoff over eight decades, for three stiffnesses."
+            .to_owned(),
+        format!(
+            "From the largest cutoff to the smallest the overlap goes from {joint} b0 on the joint \
+             and {crack} on the crack with K_n0 = 1e-4 E/h, from {joint_2} and {crack_2} with \
+             1e-2; with 1 E/h neither comes to its cutoff. A law without cutoff has none."
+        ),
+        format!(
+            "On the joint tractions are those of statics to {:.0e}. Those of the crack are off by \
+             {} with K_n0 = 1e-4 E/h and {} with 1 E/h: a cutoff that is too large adds to what a \
+             soft law does wrong, a small one changes nothing.",
+            over(curves, "joint", traction).1,
+            ends(curves, "crack, 1e-4 E/h", traction),
+            ends(curves, "crack, 1e0 E/h", traction),
+        ),
+        format!("{}.", solved_text(curves)),
         memory_text(curves),
-    )
+    ]
 }
 
 fn run_largest(effort: Effort) -> Finding {
@@ -292,37 +305,47 @@ fn run_largest(effort: Effort) -> Finding {
         format!("nothing passes: closure at most {most:.6} v_m"),
         solved_text(&curves),
     ])
-    .text(largest_text(&curves))
-    .charts(charts(
-        &curves,
-        "Largest closure of the hyperbolic law",
-        "largest closure v_m / b0; lines: scene, K_n0",
-        drawn,
-    ))
+    .story(
+        largest_text(&curves),
+        charts(
+            &curves,
+            "Largest closure of the hyperbolic law",
+            "largest closure v_m / b0; lines: scene, K_n0",
+            drawn,
+        ),
+    )
     .numbers(table(&curves, ["scene and K_n0", "v_m / b0"], in_table))
     .missing(misses)
 }
 
-fn largest_text(curves: &[Curve]) -> String {
-    let (apart, traction) = (|case: &Case| case.apart, |case: &Case| case.traction);
-    format!(
-        "The hyperbolic law closes by v_m at most, whatever the load: with a small v_m it is contact of walls that give way by \
-         v_m. The joint and the crack of the studies above, with v_m over eight decades, for three stiffnesses.\n\nWalls close by \
-         up to {:.6} v_m.\n\nFrom where exact contact has them on the same mesh, the walls of the crack are, from the largest v_m to the \
-         smallest that converges, {} b0 away with K_n0 = 1e-4 E/h, {} with 1 and {} with 1e4.\n\nTractions of the joint are those of \
-         statics to {:.0e}. \
-         Those of the crack are off by {} with K_n0 = 1e-4 E/h, {} with 1 and {} with 1e4, \
-         where the mesh is what is left.\n\n{}{}.\n\n{}",
-        worst(curves, |case, _| case.closure / case.parameter),
-        ends(curves, "crack, 1e-4 E/h", apart),
-        ends(curves, "crack, 1e0 E/h", apart),
-        ends(curves, "crack, 1e4 E/h", apart),
-        over(curves, "joint", traction).1,
-        ends(curves, "crack, 1e-4 E/h", traction),
-        ends(curves, "crack, 1e0 E/h", traction),
-        ends(curves, "crack, 1e4 E/h", traction),
-        solved_text(curves),
-        failed_text(curves),
+fn largest_text(curves: &[Curve]) -> [String; 6] {
+    let names = ["crack, 1e-4 E/h", "crack, 1e0 E/h", "crack, 1e4 E/h"];
+    let apart = names.map(|name| ends(curves, name, |case| case.apart));
+    let traction = names.map(|name| ends(curves, name, |case| case.traction));
+    [
+        "The hyperbolic law closes by v_m at most, whatever the load: with a small v_m it is \
+         contact of walls that give way by v_m. The joint and the crack of the studies above, with \
+         v_m over eight decades, for three stiffnesses."
+            .to_owned(),
+        format!(
+            "Walls close by up to {:.6} v_m.",
+            worst(curves, |case, _| case.closure / case.parameter)
+        ),
+        format!(
+            "From where exact contact has them on the same mesh, the walls of the crack are, from \
+             the largest v_m to the smallest that converges, {} b0 away with K_n0 = 1e-4 E/h, {} \
+             with 1 and {} with 1e4.",
+            apart[0], apart[1], apart[2],
+        ),
+        format!(
+            "Tractions of the joint are those of statics to {:.0e}. Those of the crack are off by \
+             {} with K_n0 = 1e-4 E/h, {} with 1 and {} with 1e4, where the mesh is what is left.",
+            over(curves, "joint", |case| case.traction).1,
+            traction[0],
+            traction[1],
+            traction[2],
+        ),
+        format!("{}{}.", solved_text(curves), failed_text(curves)),
         memory_text(curves),
-    )
+    ]
 }

@@ -5,62 +5,64 @@ use super::measured::{Case, Curve, range};
 use super::memory::Peak;
 use crate::methods::treatments::{Solved, Treatment};
 
-/// The sentences that both scenes share: closure, and iterations.
+/// How far walls close.
 pub fn closure_text(curves: &[Curve]) -> String {
-    let linear = range(of(curves, Treatment::Linear), |case, _| case.closure);
-    let cut = range(of(curves, Treatment::Logarithmic(Some(0.01))), |case, _| {
-        case.closure
-    });
+    let [linear, cut, augmented, contact] = [
+        Treatment::Linear,
+        Treatment::Logarithmic(Some(0.01)),
+        Treatment::Augmented,
+        Treatment::Contact,
+    ]
+    .map(|treatment| range(of(curves, treatment), |case, _| case.closure));
     let [logarithmic, hyperbolic] = [Treatment::Logarithmic(None), Treatment::Hyperbolic(1.0)]
-        .map(|treatment| range(of(curves, treatment), |case, _| case.aperture));
-    let augmented = range(of(curves, Treatment::Augmented), |case, _| case.closure);
-    let contact = range(of(curves, Treatment::Contact), |case, _| case.closure);
+        .map(|treatment| range(of(curves, treatment), |case, _| case.aperture))
+        .map(|(low, high)| format!("{low:.1e} to {high:.2}"));
     format!(
-        "Walls pass each other above 1. The linear penalty closes by {:.1e} to {:.1e} b0, the logarithmic law with a cutoff by \
-         up to {:.2e} b0. Without cutoff, and with the hyperbolic law, penetration is impossible: the mean aperture of what is \
-         pressed is {:.1e} to {:.2} and {:.1e} to {:.2} b0. The settled augmented Lagrangian leaves at most {:.0e} b0, contact \
-         {:.0e}.",
-        linear.0,
-        linear.1,
-        cut.1,
-        logarithmic.0,
-        logarithmic.1,
-        hyperbolic.0,
-        hyperbolic.1,
-        augmented.1,
-        contact.1
+        "Walls pass each other above 1. The linear penalty closes by {:.1e} to {:.1e} b0, the \
+         logarithmic law with a cutoff by up to {:.2e} b0. Without cutoff, and with the hyperbolic \
+         law, penetration is impossible: the mean aperture of what is pressed is {logarithmic} and \
+         {hyperbolic} b0. The settled augmented Lagrangian leaves at most {:.0e} b0, contact {:.0e}.",
+        linear.0, linear.1, cut.1, augmented.1, contact.1
     )
 }
 
+/// How many iterations each treatment takes.
 pub fn iterations_text(curves: &[Curve]) -> String {
-    let count = |treatment| {
-        let (low, high) = range(of(curves, treatment), |_, solved| solved.newton as f64);
+    let over = |treatment, count: fn(&Solved) -> usize| {
+        let (low, high) = range(of(curves, treatment), |_, solved| count(solved) as f64);
         format!("{low} to {high}")
     };
+    let newton = |treatment| over(treatment, |solved| solved.newton);
+    let [linear, logarithmic, cut, hyperbolic] = [
+        Treatment::Linear,
+        Treatment::Logarithmic(None),
+        Treatment::Logarithmic(Some(0.01)),
+        Treatment::Hyperbolic(1.0),
+    ]
+    .map(newton);
+    let contact = range(of(curves, Treatment::Contact), |_, solved| {
+        solved.newton as f64
+    });
     let augmented = of(curves, Treatment::Augmented);
-    let outer = range(augmented, |_, solved| solved.outer as f64);
-    let factors = range(augmented, |_, solved| solved.factorisations as f64);
-    format!(
-        "Newton iterations, one factorisation each: linear {}, logarithmic {} ({} with cutoff), hyperbolic {}, contact {}. The \
-         augmented Lagrangian takes {} linear solves in {} to {} outer iterations, with {} to {} factorisations, because its \
-         matrix changes with the active set only; {} of its {} cases fail: more than 200 outer iterations, or 50 in one of them.",
-        count(Treatment::Linear),
-        count(Treatment::Logarithmic(None)),
-        count(Treatment::Logarithmic(Some(0.01))),
-        count(Treatment::Hyperbolic(1.0)),
-        range(of(curves, Treatment::Contact), |_, solved| solved.newton
-            as f64)
-        .0,
-        count(Treatment::Augmented),
-        outer.0,
-        outer.1,
-        factors.0,
-        factors.1,
+    let laws = format!(
+        "Newton iterations, one factorisation each: linear {linear}, logarithmic {logarithmic} \
+         ({cut} with cutoff), hyperbolic {hyperbolic}, contact {}.",
+        contact.0
+    );
+    let multipliers = format!(
+        "The augmented Lagrangian takes {} linear solves in {} outer iterations, with {} \
+         factorisations, because its matrix changes with the active set only; {} of its {} cases \
+         fail: more than 200 outer iterations, or 50 in one of them.",
+        newton(Treatment::Augmented),
+        over(Treatment::Augmented, |solved| solved.outer),
+        over(Treatment::Augmented, |solved| solved.factorisations),
         augmented.failures(),
         augmented.cases.len(),
-    )
+    );
+    format!("{laws} {multipliers}")
 }
 
+/// Where others break, in a few words.
 pub fn breaks(curves: &[Curve]) -> String {
     let linear = range(of(curves, Treatment::Linear), |case, _| case.closure);
     let augmented = of(curves, Treatment::Augmented);
@@ -72,6 +74,7 @@ pub fn breaks(curves: &[Curve]) -> String {
     )
 }
 
+/// How the laws fare, in a few words.
 pub fn ours(curves: &[Curve]) -> String {
     let laws = || {
         curves
@@ -105,9 +108,10 @@ pub fn memory_text(curves: &[Curve]) -> String {
     let process = over(&|case, _| peak(case, &|peak| peak.process));
     let predicted = over(&|_, solved| solved.memory as f64 / 1e6);
     format!(
-        "Memory is measured: every case runs once more in a process of its own, whose resident memory grows by {} MB at most during \
-         the solve; {} MB were predicted for the linear solver. The whole process has {} MB at its peak, with mesh and \
-         assembly. On one mesh all have the same matrix; what they differ by is mostly threads and allocator.",
+        "Memory is measured: every case runs once more in a process of its own, whose resident \
+         memory grows by {} MB at most during the solve; {} MB were predicted for the linear \
+         solver. The whole process has {} MB at its peak, with mesh and assembly. On one mesh all \
+         have the same matrix; what they differ by is mostly threads and allocator.",
         between(solve),
         between(predicted),
         between(process)

@@ -1,5 +1,5 @@
-//! Contact by an augmented Lagrangian, to compare with: Uzawa's iteration on multipliers at the facet points
-//! (Alart & Curnier 1991; Simo & Laursen 1992), around a semi-smooth Newton method.
+//! Contact by an augmented Lagrangian, to compare with: Uzawa's iteration on multipliers at the
+//! facet points (Alart & Curnier 1991; Simo & Laursen 1992), around a semi-smooth Newton method.
 
 use glam::{DMat3, DVec3};
 use kluft_solver::{Load, NewtonSettings, Plan, System, TangentSolver, Unknowns, Workload, norm};
@@ -110,9 +110,9 @@ impl Uzawa<'_> {
     }
 }
 
-/// Solves a load step at factor 1 from the state without load, with the augmentation stiffness `r` (Pa/m).
-/// Walls touch where they are drawn, `w_n >= 0`; shear is as the laws of the system have it, elastic. Nothing if
-/// an inner or the outer iteration does not converge.
+/// Solves a load step at factor 1 from the state without load, with the augmentation stiffness `r`
+/// (Pa/m). Walls touch where they are drawn, `w_n >= 0`; shear is as the laws of the system have
+/// it, elastic. Nothing if an inner or the outer iteration does not converge.
 pub fn augmented(
     system: &System<'_>,
     stiffness: f64,

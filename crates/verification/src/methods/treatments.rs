@@ -11,7 +11,8 @@ use lie_core::{Closure, ClosureKind, Tension};
 use crate::methods::augmented_lagrangian::augmented;
 use crate::scenes::pressed::Pressed;
 
-/// Aperture without load of all laws (m); contact and the augmented Lagrangian touch where it begins to close.
+/// Aperture without load of all laws (m); contact and the augmented Lagrangian touch where it
+/// begins to close.
 pub const APERTURE: f64 = 1e-4;
 
 /// How walls are kept from passing each other.

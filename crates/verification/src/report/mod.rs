@@ -1,7 +1,7 @@
 //! Studies, what they find, and the pages that say so.
 //!
-//! A study is a name, a heading and a function; what it finds is a list of parts, in the order in which a page
-//! has them. One writer makes all pages of it.
+//! A study is a name, a heading and a function; what it finds is a list of parts, in the order in
+//! which a page has them. One writer makes all pages of it.
 
 mod markdown;
 mod numbers;

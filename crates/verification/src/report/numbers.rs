@@ -31,8 +31,8 @@ pub fn slope(from: (f64, f64), to: (f64, f64)) -> f64 {
     (to.1 / from.1).ln() / (to.0 / from.0).ln()
 }
 
-/// Where a curve through points on two logarithmic axes reaches `y`: between two points that enclose it, else
-/// continued from the two nearest; and whether it was continued.
+/// Where a curve through points on two logarithmic axes reaches `y`: between two points that
+/// enclose it, else continued from the two nearest; and whether it was continued.
 pub fn reaches(points: &[(f64, f64)], y: f64) -> (f64, bool) {
     let mut points = points.to_vec();
     // Two tolerances may lead to one mesh.

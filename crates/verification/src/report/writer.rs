@@ -1,7 +1,7 @@
 //! Writes what studies found: numbers, charts, pages, and the overview.
 //!
-//! What the overview says of a study is kept in a file, so that one study can be run again without the
-//! others.
+//! What the overview says of a study is kept in a file, so that one study can be run again without
+//! the others.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -219,6 +219,7 @@ fn about_times(known: &[(&Study, &Value)]) -> String {
     } else {
         ""
     };
-    let all = "A time covers all meshes of a page, made by gmsh. Everything but times is the same in every run.";
+    let all = "A time covers all meshes of a page, made by gmsh. Everything but times is the same \
+               in every run.";
     format!("\n{}\n", wrapped(&format!("{busy}{all}")))
 }

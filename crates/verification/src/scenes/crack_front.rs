@@ -1,7 +1,7 @@
 //! A stiff joint ahead of a crack.
 //!
-//! A unit cube is pulled apart; one half of its middle plane is a free crack, the other half a joint
-//! of stiffness `K = L E/h`. The joint is in tension everywhere, so a negative traction is an
+//! A unit cube is pulled apart; one half of its middle plane is a free crack, the other half a
+//! joint of stiffness `K = L E/h`. The joint is in tension everywhere, so a negative traction is an
 //! artefact of quadrature (Schellekens & de Borst 1993).
 
 use glam::DVec3;

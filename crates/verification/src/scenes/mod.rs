@@ -1,4 +1,5 @@
-//! Problems on structured meshes, on meshes of gmsh and from the scenes of `geometries/`, and how to solve them.
+//! Problems on structured meshes, on meshes of gmsh and from the scenes of `geometries/`, and how
+//! to solve them.
 
 pub mod block;
 pub mod closing;

@@ -78,13 +78,15 @@ fn geometry(polygons: &[Polygon], size: f64) -> String {
         }
         for i in 0..polygon.corners.len() {
             let next = (i + 1) % polygon.corners.len();
-            lines.push(format!("l = newl; Line(l) = {{c_{number}({i}), c_{number}({next})}}; e_{number}() += {{l}};"));
+            lines.push(format!(
+                "l = newl; Line(l) = {{c_{number}({i}), c_{number}({next})}}; e_{number}() += {{l}};"
+            ));
         }
         text += &lines.join("\n");
         let _ = writeln!(
             text,
-            "\nk = newll; Curve Loop(k) = e_{number}(); s = news; Plane Surface(s) = {{k}};\n\
-             cut() += BooleanIntersection{{ Surface{{s}}; Delete; }}{{ Volume{{1}}; }};"
+            "\nk = newll; Curve Loop(k) = e_{number}(); s = news; Plane Surface(s) = {{k}};\ncut() \
+             += BooleanIntersection{{ Surface{{s}}; Delete; }}{{ Volume{{1}}; }};"
         );
     }
     text += "BooleanFragments{ Volume{1}; Delete; }{ Surface{cut()}; Delete; }\n";
@@ -98,8 +100,8 @@ fn geometry(polygons: &[Polygon], size: f64) -> String {
             .join(", ");
         let _ = writeln!(
             text,
-            "f_{face}() = Surface In BoundingBox {{{bounds}}}; joints() -= f_{face}();\n\
-             Physical Surface(\"{name}\") = f_{face}();"
+            "f_{face}() = Surface In BoundingBox {{{bounds}}}; joints() -= f_{face}();\nPhysical \
+             Surface(\"{name}\") = f_{face}();"
         );
     }
     text += "Physical Volume(\"rock\") = Volume{:};\nPhysical Surface(\"joints\") = joints();\n";

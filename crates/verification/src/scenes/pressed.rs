@@ -1,4 +1,5 @@
-//! Two scenes whose walls touch: an inclined joint in uniform stress, and a crack that bending half opens.
+//! Two scenes whose walls touch: an inclined joint in uniform stress, and a crack that bending half
+//! opens.
 
 use glam::DVec3;
 use kluft_mesh::structured::{Patch, cells_of};
@@ -45,7 +46,8 @@ pub fn inclined_slip(scene: &Pressed) -> f64 {
     PRESSURE * sine * cosine / scene.shear
 }
 
-/// A column with a joint that dips 50 degrees, under 10 MPa on top, free to all sides: walls may slip.
+/// A column with a joint that dips 50 degrees, under 10 MPa on top, free to all sides: walls may
+/// slip.
 pub fn inclined() -> Pressed {
     let h = 0.3;
     let draft = scenes::geometry("inclined-joint", &[("h", h), ("dip", DIP)]);
@@ -122,7 +124,8 @@ fn place(lines: &[f64], at: f64) -> f64 {
     lines[low] + (lines[low + 1] - lines[low]) * (at - low as f64)
 }
 
-/// The plate: a slice with one layer of cells, its upper and lower side in strips of constant traction.
+/// The plate: a slice with one layer of cells, its upper and lower side in strips of constant
+/// traction.
 fn plate(shape: Shape, parts: usize) -> (Draft, Vec<f64>) {
     let (along, up) = (lines_along(parts), mirrored(&outwards(0.0, parts)));
     let (columns, rows) = (along.len() - 1, up.len() - 1);
@@ -161,8 +164,9 @@ fn plate(shape: Shape, parts: usize) -> (Draft, Vec<f64>) {
     (draft, coarse)
 }
 
-/// A crack 2 m long in plane strain in a plate of 8 m, bent in its plane and pressed, so that it opens on one side only. Its
-/// cells are `1 / (8 parts)` m; meshes of more parts contain those of fewer that divide them.
+/// A crack 2 m long in plane strain in a plate of 8 m, bent in its plane and pressed, so that it
+/// opens on one side only. Its cells are `1 / (8 parts)` m; meshes of more parts contain those of
+/// fewer that divide them.
 pub fn bent_crack(shape: Shape, parts: usize) -> Pressed {
     let (draft, strips) = plate(shape, parts);
     let role = |name: &str| match name {
@@ -195,9 +199,9 @@ pub fn bent_crack(shape: Shape, parts: usize) -> Pressed {
     }
 }
 
-/// Normal traction (Pa) between the walls of the crack in an unbounded plate: it is open where it has the length `2 l` at
-/// which `K_I` vanishes at its closed end, `l = (2/3)(1 - q)` for the share `q` that presses, and with the distance
-/// `t` from the middle of that
+/// Normal traction (Pa) between the walls of the crack in an unbounded plate: it is open where it
+/// has the length `2 l` at which `K_I` vanishes at its closed end, `l = (2/3)(1 - q)` for the share
+/// `q` that presses, and with the distance `t` from the middle of that
 ///
 /// ```text
 /// sigma = -s (t + l/2) sqrt((t - l) / (t + l)),   t > l

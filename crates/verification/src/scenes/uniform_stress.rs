@@ -1,7 +1,7 @@
 //! A uniform stress through a planar joint.
 //!
-//! Tractions of the stress act on all faces; the exact solution is an affine displacement plus a rigid jump
-//! with the traction `sigma . n`.
+//! Tractions of the stress act on all faces; the exact solution is an affine displacement plus a
+//! rigid jump with the traction `sigma . n`.
 
 use glam::{DMat3, DVec3};
 use kluft_mesh::Draft;
@@ -26,8 +26,8 @@ pub fn uniform(draft: Draft, fracture: Fracture) -> Problem {
     problem
 }
 
-/// Largest errors of the stress in the rock, and of traction, aperture and jump of the joint, as shares of the
-/// closed form.
+/// Largest errors of the stress in the rock, and of traction, aperture and jump of the joint, as
+/// shares of the closed form.
 pub fn errors(problem: &Problem) -> [f64; 4] {
     let solution = scenes::solve(problem);
     let scale = 9.0e6;

@@ -64,8 +64,8 @@ pub fn tilting(fracture: Fracture, pressure: f64) -> Problem {
     problem
 }
 
-/// A wedge between two blocks, its flanks at `angle` (degrees) from upright, pressed on its top. The
-/// blocks are held at their outer sides and below. 1/4 m.
+/// A wedge between two blocks, its flanks at `angle` (degrees) from upright, pressed on its top.
+/// The blocks are held at their outer sides and below. 1/4 m.
 pub fn wedge(fracture: Fracture, angle: f64, pressure: f64) -> Problem {
     let patches: [(&str, &On); 7] = [
         ("left flank", &|x| x[0] == 1.0),

@@ -161,60 +161,104 @@ fn open_share(solution: &Solution) -> f64 {
     open as f64 / solution.facet_points.len() as f64
 }
 
+/// The cases of some penalties, and exact contact beside them.
+struct Compared {
+    cases: Vec<Case>,
+    record: StepRecord,
+    reference: Solution,
+}
+
+impl Compared {
+    fn of(exponents: impl IntoIterator<Item = i32>) -> Self {
+        let (record, reference) = solved(&exact(), Linearisation::Balanced);
+        let contrasts = exponents.into_iter().map(|power| 10.0_f64.powi(power));
+        let cases = contrasts.map(|contrast| case(contrast, &reference));
+        Self {
+            cases: cases.collect(),
+            record,
+            reference,
+        }
+    }
+
+    fn misses(&self) -> Vec<String> {
+        let mut misses = Vec::new();
+        hold_promise(&mut misses, "contact", &self.record);
+        for case in &self.cases {
+            let name = format!("penalty {:e}", case.contrast);
+            hold_promise(&mut misses, &name, &case.ours);
+        }
+        let touching = penetration(&self.reference);
+        if touching.is_nan() || touching > 1e-12 {
+            misses.push(format!(
+                "contact: penetration {touching:.1e} of the displacement"
+            ));
+        }
+        misses
+    }
+
+    /// How penalties fail, and how exact contact does not.
+    fn text(&self) -> String {
+        let (soft, stiff) = (&self.cases[0], self.cases.last().expect("cases"));
+        let penetrations = [soft, stiff].map(|case| format!("{:.1e}", case.penetration));
+        let tractions = [soft, stiff].map(|case| format!("{:.1e}", case.traction));
+        let penalty = format!(
+            "A penalty lets walls overlap by what its stiffness leaves: a block pressed on one \
+             half of its top tilts on the block below, the joint opens on {:.0} % of its points, \
+             and the rest penetrates by {} of the largest displacement at K h/E = {:e} and {} at \
+             {:e}, falling with the stiffness; the tractions are off by {}.",
+            100.0 * open_share(&self.reference),
+            penetrations[0],
+            soft.contrast,
+            penetrations[1],
+            stiff.contrast,
+            tractions.join(" and "),
+        );
+        let plain = self.cases.iter().filter_map(|case| count(&case.plain));
+        let failed = self.cases.iter().filter(|case| !case.plain.converged());
+        let newton = format!(
+            "In other programs a stiff penalty spoils the linear system (see above: split nodes); \
+             in jump unknowns it does not, and Newton takes at most {} iterations (plain Newton up \
+             to {}, {} of {} cases fail).",
+            self.most(),
+            plain.max().unwrap_or(0),
+            failed.count(),
+            self.cases.len(),
+        );
+        format!(
+            "{penalty} {newton} Exact contact needs no stiffness to be chosen: penetration {:.0e}, \
+             {} iterations.",
+            penetration(&self.reference),
+            entry(count(&self.record)),
+        )
+    }
+
+    /// Most Newton iterations of a penalty.
+    fn most(&self) -> String {
+        entry(most(self.cases.iter().map(|case| count(&case.ours))))
+    }
+}
+
 fn run(effort: Effort) -> Finding {
-    let exponents = match effort {
+    let compared = Compared::of(match effort {
         Effort::Quick => vec![-3, 2, 8],
         Effort::Full => (-3..=8).collect(),
-    };
-    let (record, reference) = solved(&exact(), Linearisation::Balanced);
-    let mut misses = Vec::new();
-    hold_promise(&mut misses, "contact", &record);
-    let touching = penetration(&reference);
-    let contrasts = exponents
-        .into_iter()
-        .map(|exponent| 10.0_f64.powi(exponent));
-    let cases: Vec<Case> = contrasts
-        .map(|contrast| case(contrast, &reference))
-        .collect();
-    for case in &cases {
-        let name = format!("penalty {:e}", case.contrast);
-        hold_promise(&mut misses, &name, &case.ours);
-    }
-    if touching.is_nan() || touching > 1e-12 {
-        misses.push(format!(
-            "contact: penetration {touching:.1e} of the displacement"
-        ));
-    }
+    });
+    let Compared { cases, record, .. } = &compared;
+    let touching = penetration(&compared.reference);
     let (soft, stiff) = (&cases[0], cases.last().expect("cases"));
-    let share = 100.0 * open_share(&reference);
-    let ours = entry(most(cases.iter().map(|case| count(&case.ours))));
-    let failed = cases.iter().filter(|case| !case.plain.converged()).count();
-    let plain = cases.iter().filter_map(|case| count(&case.plain));
-    let plain = plain.max().unwrap_or(0);
-    Finding::new([format!(
+    Finding::new([
+        format!(
             "a penalty: penetration {:.0e} of the displacement at K h/E = {:e}, {:.0e} at {:e}",
             soft.penetration, soft.contrast, stiff.penetration, stiff.contrast
-        ), format!(
-            "`closure = \"contact\"`: {touching:.0e} in {} iterations; any penalty in at most {ours}",
-            entry(count(&record))
-        )])
-.text(format!(
-            "A penalty lets walls overlap by what its stiffness leaves: a block pressed on one half of its top tilts on \
-             the block below, the joint opens on {share:.0} % of its points, and the rest penetrates by {:.1e} of the \
-             largest displacement at K h/E = {:e} and {:.1e} at {:e}, falling with the stiffness; the tractions are off \
-             by {:.1e} and {:.1e}. In other programs a stiff penalty spoils the linear system (see above: split nodes); \
-             in jump unknowns it does not, and Newton takes at most {ours} iterations (plain Newton up to {plain}, {failed} of \
-             {} cases fail). Exact contact needs no stiffness to be chosen: penetration {touching:.0e}, {} iterations.",
-            soft.penetration,
-            soft.contrast,
-            stiff.penetration,
-            stiff.contrast,
-            soft.traction,
-            stiff.traction,
-            cases.len(),
-            entry(count(&record)),
-        ))
-.charts(charts(&cases, &record, touching))
-.numbers(table(&cases, &record, touching))
-.missing(misses)
+        ),
+        format!(
+            "`closure = \"contact\"`: {touching:.0e} in {} iterations; any penalty in at most {}",
+            entry(count(record)),
+            compared.most(),
+        ),
+    ])
+    .text(compared.text())
+    .charts(charts(cases, record, touching))
+    .numbers(table(cases, record, touching))
+    .missing(compared.misses())
 }

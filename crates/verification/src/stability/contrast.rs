@@ -267,39 +267,44 @@ fn run(effort: Effort) -> Finding {
         .expect("K h/E = 1");
     let softest = &cases[0];
     let ours = entry(most(cases.iter().map(|case| case.ours)));
-    Finding::new([format!(
+    Finding::new([
+        format!(
             "split nodes: condition number {:.0e} at K h/E = 1, {:.0e} at {:e}",
             unit.split.0, stiffest.split.0, stiffest.contrast
-        ), format!(
-            "condition number {:.0e} and {:.0e} there; {} to {ours} iterations of the multigrid solver",
+        ),
+        format!(
+            "condition number {:.0e} and {:.0e} there; {} to {ours} iterations of the multigrid \
+             solver",
             unit.jumps.0,
             stiffest.jumps.0,
             entry(softest.ours),
-        )])
-.text(format!(
-            "On split nodes a stiff joint ties two unknowns by a large number, and what the joint does is their small \
-             difference: the condition number grows with the stiffness, from {:.1e} at K h/E = 1 to {:.1e} at {:e}, \
-             although the diagonal is scaled, and conjugate gradients take {} iterations instead of {}. In jump \
-             unknowns the stiffness stands on the diagonal of the jumps alone: {:.1e} and {:.1e}, {} and {} iterations. \
-             Soft joints, by which the three planes hold eight blocks almost free, are hard for both: {} and {} at {:e}. \
-             Kluft's own solver, with a multigrid of rock and joints, takes {} there, {} at K h/E = 1 and at most {ours}, \
-             where joints are stiff.",
-            unit.split.0,
-            stiffest.split.0,
-            stiffest.contrast,
-            entry(stiffest.split.1),
-            entry(unit.split.1),
-            unit.jumps.0,
-            stiffest.jumps.0,
-            entry(unit.jumps.1),
-            entry(stiffest.jumps.1),
-            entry(softest.split.1),
-            entry(softest.jumps.1),
-            softest.contrast,
-            entry(softest.ours),
-            entry(unit.ours),
-        ))
-.charts(charts(&cases))
-.numbers(table(&cases))
-.missing(misses)
+        ),
+    ])
+    .text(format!(
+        "On split nodes a stiff joint ties two unknowns by a large number, and what the joint does \
+         is their small difference: the condition number grows with the stiffness, from {:.1e} at \
+         K h/E = 1 to {:.1e} at {:e}, although the diagonal is scaled, and conjugate gradients \
+         take {} iterations instead of {}. In jump unknowns the stiffness stands on the diagonal \
+         of the jumps alone: {:.1e} and {:.1e}, {} and {} iterations. Soft joints, by which the \
+         three planes hold eight blocks almost free, are hard for both: {} and {} at {:e}. Kluft's \
+         own solver, with a multigrid of rock and joints, takes {} there, {} at K h/E = 1 and at \
+         most {ours}, where joints are stiff.",
+        unit.split.0,
+        stiffest.split.0,
+        stiffest.contrast,
+        entry(stiffest.split.1),
+        entry(unit.split.1),
+        unit.jumps.0,
+        stiffest.jumps.0,
+        entry(unit.jumps.1),
+        entry(stiffest.jumps.1),
+        entry(softest.split.1),
+        entry(softest.jumps.1),
+        softest.contrast,
+        entry(softest.ours),
+        entry(unit.ours),
+    ))
+    .charts(charts(&cases))
+    .numbers(table(&cases))
+    .missing(misses)
 }

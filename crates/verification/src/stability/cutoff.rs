@@ -186,23 +186,27 @@ fn run(effort: Effort) -> Finding {
     let plain = cases.iter().filter_map(|case| count(&case.plain)).max();
     let ours = entry(most(cases.iter().map(|case| count(&case.ours))));
     let all = cases.len();
-    Finding::new([format!(
+    Finding::new([
+        format!(
             "plain Newton: no solution in {failed} of {all} cases, up to {} iterations in the others",
             plain.unwrap_or(0)
-        ), format!("at most {ours} iterations, whatever the cutoff")])
-.text(format!(
-            "Plain Newton linearises the law where the last step landed. A closing load of more than `K_n0 b0` lands \
-             at a negative aperture, where the exact law has no value, and with a cutoff the tangent is that of the \
-             cutoff, so that the way back is long: {failed} of {all} cases fail, and the others take up to {} \
-             iterations. Kluft linearises where the law balances the rock beside the facet point, which is never \
-             beyond closure: at most {ours} iterations for three scenes (a column, an inclined joint, three crossing \
-             planes), with every cutoff and with none.",
-            plain.unwrap_or(0)
-        ))
-.charts(vec![
-            ("cutoff", over_cutoffs(&cases)),
-            ("load", over_loads(&cases)),
-        ])
-.numbers(table(&cases))
-.missing(misses)
+        ),
+        format!("at most {ours} iterations, whatever the cutoff"),
+    ])
+    .text(format!(
+        "Plain Newton linearises the law where the last step landed. A closing load of more than \
+         `K_n0 b0` lands at a negative aperture, where the exact law has no value, and with a \
+         cutoff the tangent is that of the cutoff, so that the way back is long: {failed} of {all} \
+         cases fail, and the others take up to {} iterations. Kluft linearises where the law \
+         balances the rock beside the facet point, which is never beyond closure: at most {ours} \
+         iterations for three scenes (a column, an inclined joint, three crossing planes), with \
+         every cutoff and with none.",
+        plain.unwrap_or(0)
+    ))
+    .charts(vec![
+        ("cutoff", over_cutoffs(&cases)),
+        ("load", over_loads(&cases)),
+    ])
+    .numbers(table(&cases))
+    .missing(misses)
 }

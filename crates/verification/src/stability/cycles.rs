@@ -41,8 +41,8 @@ fn sizes(solution: &Solution) -> (f64, f64) {
     )
 }
 
-/// Hysteresis of each cycle: its `i`-th state against state `first[i]` of the first cycle, of jumps and
-/// tractions, over the largest of the first cycle.
+/// Hysteresis of each cycle: its `i`-th state against state `first[i]` of the first cycle, of jumps
+/// and tractions, over the largest of the first cycle.
 pub fn hysteresis(solutions: &[Solution], first: &[usize]) -> Vec<f64> {
     let sizes = || solutions[..first.len()].iter().map(sizes);
     let jump = largest(sizes().map(|size| size.0));
@@ -72,8 +72,8 @@ fn case(name: String, problem: &Problem, cycles: usize) -> Case {
     }
 }
 
-/// What the incremental law leaves of the largest traction after each cycle from `b0` to a tenth and
-/// back in eight equal steps.
+/// What the incremental law leaves of the largest traction after each cycle from `b0` to a tenth
+/// and back in eight equal steps.
 fn incremental_rest(closure: &Closure, cycles: usize) -> Vec<f64> {
     let b0 = closure.aperture;
     let closed = closure.at_aperture(0.1 * b0).traction;
@@ -187,17 +187,22 @@ fn run(effort: Effort) -> Finding {
     let records = cases.iter().flat_map(|case| &case.records);
     let newton = entry(most(records.map(super::count)));
     let (first, last) = (rests[0], rests[rests.len() - 1]);
-    Finding::new([format!(
-            "the incremental law: {first:.2} of the largest traction left after one cycle, {last:.1} after {cycles}"
-        ), format!("hysteresis {worst:.0e}; at most {newton} iterations a step")])
-.text(format!(
-            "Laws without friction have a potential: what is loaded and unloaded must come back. The incremental law \
-             does not, because its steps up and down take other tangents: after one cycle to a tenth of the aperture in \
-             four steps each way it keeps {first:.2} times the largest traction, and {last:.1} times after {cycles}. \
-             In Kluft the junctions (X, T, three planes) and the closing blocks return over {cycles} cycles to the \
-             same jumps and tractions, to {worst:.0e} of the largest, in at most {newton} Newton iterations a step."
-        ))
-.charts(charts(&cases, &rests))
-.numbers(table)
-.missing(misses)
+    Finding::new([
+        format!(
+            "the incremental law: {first:.2} of the largest traction left after one cycle, \
+             {last:.1} after {cycles}"
+        ),
+        format!("hysteresis {worst:.0e}; at most {newton} iterations a step"),
+    ])
+    .text(format!(
+        "Laws without friction have a potential: what is loaded and unloaded must come back. The \
+         incremental law does not, because its steps up and down take other tangents: after one \
+         cycle to a tenth of the aperture in four steps each way it keeps {first:.2} times the \
+         largest traction, and {last:.1} times after {cycles}. In Kluft the junctions (X, T, three \
+         planes) and the closing blocks return over {cycles} cycles to the same jumps and \
+         tractions, to {worst:.0e} of the largest, in at most {newton} Newton iterations a step."
+    ))
+    .charts(charts(&cases, &rests))
+    .numbers(table)
+    .missing(misses)
 }

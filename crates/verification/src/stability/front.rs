@@ -159,18 +159,23 @@ fn run(effort: Effort) -> Finding {
         ratios.fold(f64::INFINITY, f64::min)
     };
     let (gauss, nodal) = (smallest("Gauss"), smallest("nodal"));
-    Finding::new([format!(
-            "Gauss points: tractions of the wrong sign from K h/E = {first} on, down to {gauss:.2} of the largest"
-        ), format!("never a wrong sign; the smallest is {nodal:.2} of the largest")])
-.text(format!(
-            "A cube is pulled apart; half of its middle plane is a free crack, the other half a joint in tension \
-             everywhere. Gauss points couple the jumps of neighbouring nodes, and a stiff joint then oscillates \
-             behind the front: from K h/E = {first} on there are tractions of the wrong sign, down to {gauss:.2} of \
-             the largest. A law that opens and closes would take them for open. Kluft integrates facets at their \
-             nodes, so that the fractures couple no two nodes: no wrong sign at any stiffness, the smallest traction \
-             is {nodal:.2} of the largest. [facet-quadrature.md](facet-quadrature.md) has all cells."
-        ))
-.charts(charts(&curves))
-.numbers(table)
-.missing(misses)
+    Finding::new([
+        format!(
+            "Gauss points: tractions of the wrong sign from K h/E = {first} on, down to {gauss:.2} \
+             of the largest"
+        ),
+        format!("never a wrong sign; the smallest is {nodal:.2} of the largest"),
+    ])
+    .text(format!(
+        "A cube is pulled apart; half of its middle plane is a free crack, the other half a joint \
+         in tension everywhere. Gauss points couple the jumps of neighbouring nodes, and a stiff \
+         joint then oscillates behind the front: from K h/E = {first} on there are tractions of \
+         the wrong sign, down to {gauss:.2} of the largest. A law that opens and closes would take \
+         them for open. Kluft integrates facets at their nodes, so that the fractures couple no \
+         two nodes: no wrong sign at any stiffness, the smallest traction is {nodal:.2} of the \
+         largest. [facet-quadrature.md](facet-quadrature.md) has all cells."
+    ))
+    .charts(charts(&curves))
+    .numbers(table)
+    .missing(misses)
 }

@@ -32,8 +32,8 @@ const SCENES: [Scene; 6] = [
     Scene {
         name: "pulled off between rollers, contact",
         fracture: "closure = \"contact\"",
-        load: "traction = [0.0, 0.0, 1e6]\n[boundary.left]\nsymmetry = true\n[boundary.right]\nsymmetry = true\n\
-               [boundary.front]\nsymmetry = true",
+        load: "traction = [0.0, 0.0, 1e6]\n[boundary.left]\nsymmetry = \
+               true\n[boundary.right]\nsymmetry = true\n[boundary.front]\nsymmetry = true",
     },
     Scene {
         name: "sliding down, contact without friction",
@@ -42,7 +42,8 @@ const SCENES: [Scene; 6] = [
     },
     Scene {
         name: "pulled off, logarithmic without tension",
-        fracture: "closure = \"logarithmic\"\nnormal_stiffness = 50e9\nshear_stiffness = 20e9\ntension_cutoff = true",
+        fracture: "closure = \"logarithmic\"\nnormal_stiffness = 50e9\nshear_stiffness = \
+                   20e9\ntension_cutoff = true",
         load: "traction = [0.0, 0.0, 1e6]",
     },
     Scene {
@@ -63,10 +64,11 @@ const NAMES: [&str; 2] = ["joint", "block"];
 fn text(scene: &Scene) -> String {
     let geometry = root().join("geometries/inclined-joint/inclined-joint.geo");
     format!(
-        "[mesh]\ngeometry = \"{}\"\nparameters = {{ h = 0.4, dip = 50 }}\n\
-         [rock.default]\nyoung_modulus = 25e9\npoisson_ratio = 0.25\n\
-         [fracture.joint]\naperture = 1e-4\n{}\n[boundary.top]\n{}\n\
-         [boundary.bottom]\ndisplacement = {{ x = 0.0, y = 0.0, z = 0.0 }}\n",
+        "[mesh]\ngeometry = \"{}\"\nparameters = {{ h = 0.4, dip = 50 \
+         }}\n[rock.default]\nyoung_modulus = 25e9\npoisson_ratio = \
+         0.25\n[fracture.joint]\naperture = \
+         1e-4\n{}\n[boundary.top]\n{}\n[boundary.bottom]\ndisplacement = {{ x = 0.0, y = 0.0, z = \
+         0.0 }}\n",
         geometry.display(),
         scene.fracture,
         scene.load
@@ -120,13 +122,17 @@ fn run(effort: Effort) -> Finding {
         table.push([scene.name.to_owned(), exit_code.to_string(), message]);
     }
     let all = scenes.len();
-    Finding::new(["an iteration that goes on for ever, or results that look like some".to_owned(), format!("{held} of {all} scenes end with the block or fracture named")])
-.text(format!(
-            "A block that is pulled off a joint without tension, or slides down a joint steeper than its friction, has \
-             no equilibrium. Kluft says which block moves how, and which fracture lets it go, in {held} of {all} such scenes \
-             (a column cut by a joint that dips by 50 degrees, run by the program itself): with exit code 1, after as \
-             much of the load as could be carried."
-        ))
-.numbers(table)
-.missing(misses)
+    Finding::new([
+        "an iteration that goes on for ever, or results that look like some".to_owned(),
+        format!("{held} of {all} scenes end with the block or fracture named"),
+    ])
+    .text(format!(
+        "A block that is pulled off a joint without tension, or slides down a joint steeper than \
+         its friction, has no equilibrium. Kluft says which block moves how, and which fracture \
+         lets it go, in {held} of {all} such scenes (a column cut by a joint that dips by 50 \
+         degrees, run by the program itself): with exit code 1, after as much of the load as could \
+         be carried."
+    ))
+    .numbers(table)
+    .missing(misses)
 }

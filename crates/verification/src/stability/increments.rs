@@ -45,7 +45,8 @@ fn pushed_column() -> Problem {
     problem
 }
 
-/// The program's traction over the law's, the worst facet point, after equal steps; and the records.
+/// The program's traction over the law's, the worst facet point, after equal steps; and the
+/// records.
 fn total_ratio(problem: &Problem, steps: usize) -> (f64, Vec<StepRecord>) {
     let loads = (1..=steps).map(|step| step as f64 / steps as f64);
     let path = scenes::solve_path(problem, NewtonSettings::default(), loads);
@@ -130,28 +131,28 @@ fn run(effort: Effort) -> Finding {
         let row = theirs.iter().find(|row| row.0 == steps);
         row.map_or(f64::NAN, |row| row.1)
     };
-    Finding::new([format!(
+    let listed = [1, 2, 5, 10, 20, 50, 100].map(|steps| format!("{:.2}", at(steps)));
+    let (last, before) = listed.split_last().expect("ratios");
+    let listed = format!("{} and {last}", before.join(", "));
+    Finding::new([
+        format!(
             "the incremental law: {:.2} times the traction in 1 step, {:.2} in 10, {:.2} in 100",
             at(1),
             at(10),
             at(100)
-        ), format!("the law's traction to {worst:.0e} in any number of steps")])
-.text(format!(
-            "Programs with friction often integrate the normal law step by step, `sigma += K(b) dw` with the tangent \
-             at the end of the step. The tangent of the logarithmic law grows so fast that this is wrong by a factor: \
-             closing to a tenth of the aperture gives {:.2}, {:.2}, {:.2}, {:.2}, {:.2}, {:.2} and {:.2} times the \
-             law's traction in 1, 2, 5, 10, 20, 50 and 100 steps, and the error falls only with the number of steps. \
-             Kluft evaluates the total law, also where shear has a history: a column whose top is pushed until its \
-             joint closes to a tenth carries the law's traction to {worst:.0e} after any number of steps.",
-            at(1),
-            at(2),
-            at(5),
-            at(10),
-            at(20),
-            at(50),
-            at(100)
-        ))
-.charts(charts(&theirs, &ours))
-.numbers(table(&theirs, &ours))
-.missing(misses)
+        ),
+        format!("the law's traction to {worst:.0e} in any number of steps"),
+    ])
+    .text(format!(
+        "Programs with friction often integrate the normal law step by step, `sigma += K(b) dw` \
+         with the tangent at the end of the step. The tangent of the logarithmic law grows so fast \
+         that this is wrong by a factor: closing to a tenth of the aperture gives {listed} times \
+         the law's traction in 1, 2, 5, 10, 20, 50 and 100 steps, and the error falls only with \
+         the number of steps. Kluft evaluates the total law, also where shear has a history: a \
+         column whose top is pushed until its joint closes to a tenth carries the law's traction \
+         to {worst:.0e} after any number of steps.",
+    ))
+    .charts(charts(&theirs, &ours))
+    .numbers(table(&theirs, &ours))
+    .missing(misses)
 }

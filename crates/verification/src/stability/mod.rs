@@ -1,4 +1,5 @@
-//! The stability map: parameters swept over many decades beside methods that break, one study a file.
+//! The stability map: parameters swept over many decades beside methods that break, one study a
+//! file.
 //!
 //! A new study is a file here, an entry of [`report`] and a test in `tests/physics/stability.rs`.
 
@@ -60,9 +61,10 @@ pub fn report() -> Report {
 
 fn promise() -> String {
     format!(
-        "Promised is: every case with a solution converges with default settings in at most {PROMISE} Newton iterations \
-         a step, {PROMISE_WITH_FRICTION} with friction in each part that it divides a step into; every case without one \
-         ends with exit code 1 and the name of a fracture or block; and what the studies compare agrees as they say."
+        "Promised is: every case with a solution converges with default settings in at most \
+         {PROMISE} Newton iterations a step, {PROMISE_WITH_FRICTION} with friction in each part \
+         that it divides a step into; every case without one ends with exit code 1 and the name of \
+         a fracture or block; and what the studies compare agrees as they say."
     )
 }
 

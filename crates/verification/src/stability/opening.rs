@@ -17,7 +17,8 @@ use crate::scenes::{self, EXACT, ROCK};
 pub const STUDY: Study = Study {
     name: "opening",
     title: "Opening and closing",
-    subject: "20 cycles of opening and closing without tension; a floating block, the one above lifted by 1e-9 to 0.1 m",
+    subject: "20 cycles of opening and closing without tension; a floating block, the one above \
+              lifted by 1e-9 to 0.1 m",
     run,
 };
 
@@ -66,8 +67,8 @@ fn pair(law: FractureLaw) -> Problem {
     problem
 }
 
-/// Opening of the joint (m) when the top of the column is at `z`, and its traction (Pa): the joint in
-/// series with 2 m of rock.
+/// Opening of the joint (m) when the top of the column is at `z`, and its traction (Pa): the joint
+/// in series with 2 m of rock.
 fn closed_form(closure: &Closure, z: f64) -> (f64, f64) {
     if z >= 0.0 {
         return (z, 0.0);
@@ -125,8 +126,8 @@ fn case(name: &'static str, law: FractureLaw, cycles: usize) -> Case {
     }
 }
 
-/// Three blocks of which the top one is lifted by `lift` (m) away from the second, which only its weight
-/// holds: the records, and the error of the weight that the lower joint carries.
+/// Three blocks of which the top one is lifted by `lift` (m) away from the second, which only its
+/// weight holds: the records, and the error of the weight that the lower joint carries.
 fn floating(law: FractureLaw, lift: f64) -> (Vec<StepRecord>, f64) {
     let records = rested(law, lift).0;
     // A joint with shear stiffness pushes as it lets go of it, so the weight is compared without.
@@ -284,21 +285,25 @@ fn run(effort: Effort) -> Finding {
             .flat_map(|case| case.hysteresis.iter().copied()),
     );
     let pull = LIFT / (1.0 / JOINT.0 + 2.0 / ROCK.young_modulus);
-    Finding::new(["a law with tension where there is none: the joint would pull the blocks back"
-            .to_owned(), format!(
-            "closed forms to {error:.0e}, hysteresis {hysteresis:.0e}, at most {newton} iterations a step; {failed} of \
-             {of_all} floating blocks fail"
-        )])
-.text(format!(
-            "Contact that opens and closes makes methods cycle between two states. Two blocks are pressed together and \
-             pulled apart by 1 mm, where a linear law with tension would hold them back by {:.0} MPa, {cycles} times, \
-             with `tension_cutoff` (linear, logarithmic, hyperbolic) and with `contact`: openings and tractions follow the closed form (a joint in series with 2 m of rock; none once \
-             open) to {error:.0e}, cycles repeat to {hysteresis:.0e}, steps take at most {newton} iterations. A block \
-             between two joints, the upper one lifted off by 1e-9 to 0.1 m, floats on the lower one by its weight alone: \
-             {failed} of {of_all} such cases fail, the others take up to {slowest} iterations a step.",
-            1e-6 * pull
-        ))
-.charts(charts(&cases, &lifts))
-.numbers(table)
-.missing(misses)
+    Finding::new([
+        "a law with tension where there is none: the joint would pull the blocks back".to_owned(),
+        format!(
+            "closed forms to {error:.0e}, hysteresis {hysteresis:.0e}, at most {newton} iterations \
+             a step; {failed} of {of_all} floating blocks fail"
+        ),
+    ])
+    .text(format!(
+        "Contact that opens and closes makes methods cycle between two states. Two blocks are \
+         pressed together and pulled apart by 1 mm, where a linear law with tension would hold \
+         them back by {:.0} MPa, {cycles} times, with `tension_cutoff` (linear, logarithmic, \
+         hyperbolic) and with `contact`: openings and tractions follow the closed form (a joint in \
+         series with 2 m of rock; none once open) to {error:.0e}, cycles repeat to \
+         {hysteresis:.0e}, steps take at most {newton} iterations. A block between two joints, the \
+         upper one lifted off by 1e-9 to 0.1 m, floats on the lower one by its weight alone: \
+         {failed} of {of_all} such cases fail, the others take up to {slowest} iterations a step.",
+        1e-6 * pull
+    ))
+    .charts(charts(&cases, &lifts))
+    .numbers(table)
+    .missing(misses)
 }

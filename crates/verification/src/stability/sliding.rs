@@ -156,8 +156,8 @@ fn paths(effort: Effort) -> Vec<Series> {
     ]
 }
 
-/// A wedge pressed between two joints, without friction and with it: records, how far the joints are
-/// from carrying the load, and shear beyond the limit of friction.
+/// A wedge pressed between two joints, without friction and with it: records, how far the joints
+/// are from carrying the load, and shear beyond the limit of friction.
 fn wedged(angle: f64, rubs: bool) -> (StepRecord, f64, f64) {
     let pressure = 5e6;
     let law = if rubs {
@@ -348,24 +348,30 @@ fn run(effort: Effort) -> Finding {
     let paths = paths(effort);
     let coarsest = |series: &Series| series.points[0];
     let (given, divided) = (coarsest(&paths[0]), coarsest(&paths[1]));
-    Finding::new([format!(
-            "steps taken as given: jumps and tractions wrong by {:.0e} after one step there and one back, {:.0e} if \
-             the program divides them",
+    Finding::new([
+        format!(
+            "steps taken as given: jumps and tractions wrong by {:.0e} after one step there and \
+             one back, {:.0e} if the program divides them",
             given.1, divided.1
-        ), format!(
-            "at most {newton} iterations a step of shear, all its parts together; shear beyond the limit {beyond:.0e}"
-        )])
-.text(format!(
-            "Friction makes the way matter: a step from one side to the other in one go is wrong by {:.1e} of the largest \
-             jump or traction, though it converges in {} iterations. Kluft walks each part of a step in one go and in \
-             two, and divides it where they differ: wrong by {:.1e}, for {} iterations. A shear box under 5 MPa is pushed \
-             to and fro by 2 mm, {cycles} times, with five laws: a step takes at most {newton} iterations in all its \
-             parts, one part at most {part}; shear stays within the limit of friction to {beyond:.0e}, and from the \
-             second cycle on the loop repeats to {repeats:.0e} (without dilation, which never goes back). A wedge \
-             pressed between two joints is held by them at every angle, with friction and without.",
-            given.1, given.0, divided.1, divided.0
-        ))
-.charts(charts(&cases, paths, wedges))
-.numbers(table)
-.missing(misses)
+        ),
+        format!(
+            "at most {newton} iterations a step of shear, all its parts together; shear beyond the \
+             limit {beyond:.0e}"
+        ),
+    ])
+    .text(format!(
+        "Friction makes the way matter: a step from one side to the other in one go is wrong by \
+         {:.1e} of the largest jump or traction, though it converges in {} iterations. Kluft walks \
+         each part of a step in one go and in two, and divides it where they differ: wrong by \
+         {:.1e}, for {} iterations. A shear box under 5 MPa is pushed to and fro by 2 mm, {cycles} \
+         times, with five laws: a step takes at most {newton} iterations in all its parts, one \
+         part at most {part}; shear stays within the limit of friction to {beyond:.0e}, and from \
+         the second cycle on the loop repeats to {repeats:.0e} (without dilation, which never goes \
+         back). A wedge pressed between two joints is held by them at every angle, with friction \
+         and without.",
+        given.1, given.0, divided.1, divided.0
+    ))
+    .charts(charts(&cases, paths, wedges))
+    .numbers(table)
+    .missing(misses)
 }

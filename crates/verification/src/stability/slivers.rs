@@ -234,32 +234,37 @@ fn run(effort: Effort) -> Finding {
     let worst = |of: fn(&Case) -> f64| largest(cases.iter().map(of));
     let newton = entry(most(cases.iter().map(|case| count(&case.newton))));
     let (closed, split) = (worst(|case| case.closed_form), worst(|case| case.split));
-    Finding::new([format!(
-            "the mesh: the worst cell's quality falls from {:.2} to {:.4} at {}°, and the multigrid takes {} iterations instead of {}",
+    Finding::new([
+        format!(
+            "the mesh: the worst cell's quality falls from {:.2} to {:.4} at {}°, and the \
+             multigrid takes {} iterations instead of {}",
             first.quality,
             last.quality,
             last.angle,
             entry(linear(last)),
             entry(linear(first))
-        ), format!(
-            "the closed form to {closed:.0e}, split nodes to {split:.0e}; at most {newton} Newton iterations"
-        )])
-.text(format!(
-            "Between two planes that cross at a small angle there is room for flat cells only: at {}° the worst \
-             has a quality of {:.4} (1 is regular, {:.2} at {}°). Many programs refuse such geometries. Here \
-             the answer stays: the jumps of a uniform stress agree with the closed form to {closed:.0e}, displacements \
-             under random loads with a formulation on split nodes to {split:.0e}, in at most {newton} Newton \
-             iterations. What suffers is the multigrid: {} iterations for the whole step instead of {}. The program \
-             takes a direct solver where that is cheaper, `kluft inspect` shows the worst cells, and `kluft network` \
-             lists small angles.",
-            last.angle,
-            last.quality,
-            first.quality,
-            first.angle,
-            entry(linear(last)),
-            entry(linear(first))
-        ))
-.charts(charts(&cases))
-.numbers(table(&cases))
-.missing(misses)
+        ),
+        format!(
+            "the closed form to {closed:.0e}, split nodes to {split:.0e}; at most {newton} Newton \
+             iterations"
+        ),
+    ])
+    .text(format!(
+        "Between two planes that cross at a small angle there is room for flat cells only: at {}° \
+         the worst has a quality of {:.4} (1 is regular, {:.2} at {}°). Many programs refuse such \
+         geometries. Here the answer stays: the jumps of a uniform stress agree with the closed \
+         form to {closed:.0e}, displacements under random loads with a formulation on split nodes \
+         to {split:.0e}, in at most {newton} Newton iterations. What suffers is the multigrid: {} \
+         iterations for the whole step instead of {}. The program takes a direct solver where that \
+         is cheaper, `kluft inspect` shows the worst cells, and `kluft network` lists small angles.",
+        last.angle,
+        last.quality,
+        first.quality,
+        first.angle,
+        entry(linear(last)),
+        entry(linear(first))
+    ))
+    .charts(charts(&cases))
+    .numbers(table(&cases))
+    .missing(misses)
 }

@@ -186,17 +186,21 @@ fn run(effort: Effort) -> Finding {
         .steps;
     let per_step = cases.iter().filter(|case| case.steps == finest);
     let per_step = largest(per_step.map(|case| case.all() as f64 / finest as f64));
-    Finding::new(["an incremental law, see above: its answer depends on the number of steps"
-            .to_owned(), format!(
-            "the same answer to {worst:.0e}; at most {most_of_all} iterations a step, {per_step:.1} on average in {finest}"
-        )])
-.text(format!(
-            "With a total law the number of steps is a matter of taste. A load of 20 K_n0 b0 on a column and on three \
-             crossing planes, and the jointed block, in 1 to {finest} equal steps: the answers differ by {worst:.0e}, \
-             a step takes at most {most_of_all} Newton iterations, and in {finest} steps {per_step:.1} on average or \
-             less, because every step starts from the path of the last ones, continued."
-        ))
-.charts(charts(&cases))
-.numbers(table)
-.missing(misses)
+    Finding::new([
+        "an incremental law, see above: its answer depends on the number of steps".to_owned(),
+        format!(
+            "the same answer to {worst:.0e}; at most {most_of_all} iterations a step, \
+             {per_step:.1} on average in {finest}"
+        ),
+    ])
+    .text(format!(
+        "With a total law the number of steps is a matter of taste. A load of 20 K_n0 b0 on a \
+         column and on three crossing planes, and the jointed block, in 1 to {finest} equal steps: \
+         the answers differ by {worst:.0e}, a step takes at most {most_of_all} Newton iterations, \
+         and in {finest} steps {per_step:.1} on average or less, because every step starts from \
+         the path of the last ones, continued."
+    ))
+    .charts(charts(&cases))
+    .numbers(table)
+    .missing(misses)
 }

@@ -1,4 +1,5 @@
-//! Units: the same scene in metres and pascals, millimetres and megapascals, kilometres and gigapascals.
+//! Units: the same scene in metres and pascals, millimetres and megapascals, kilometres and
+//! gigapascals.
 
 use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{
@@ -104,8 +105,8 @@ fn solved(problem: &Problem, method: Option<LinearMethod>) -> (StepRecord, Solut
     (record, solution)
 }
 
-/// Error that plain Newton with an absolute test of the forces leaves, in a system with this unit of
-/// force (N): what a relative test of the same size leaves.
+/// Error that plain Newton with an absolute test of the forces leaves, in a system with this unit
+/// of force (N): what a relative test of the same size leaves.
 fn absolute_test(problem: &Problem, exact: &Solution, newton: f64) -> f64 {
     let system = System::assemble(problem, Discretisation::of(problem).expect("supported"));
     let settings = NewtonSettings {
@@ -235,17 +236,22 @@ fn run(effort: Effort) -> Finding {
             point.0, point.1
         ));
     }
-    Finding::new([format!(
-            "a test of the forces against {ABSOLUTE:e}: never met in units up to {hopeless:e} N, wrong by more than 1e-3 from {wrong:e} N on"
-        ), format!("the same iterations, the same answer to {worst:.0e}")])
-.text(format!(
-            "A tolerance with a unit means something else in every system of units. With forces out of balance below \
-             {ABSOLUTE:e} as the only test, the same scene never converges if the unit of force is {hopeless:e} N or \
-             less, and is accepted with apertures or tractions wrong by more than 1e-3 from {wrong:e} N on (km and GPa \
-             have a unit of 1e15 N). All tests of Kluft are ratios: in m and Pa, mm and MPa, km and GPa, with every \
-             linear solver, it takes the same number of Newton and linear iterations to the same answer, to {worst:.0e}."
-        ))
-.charts(charts(absolute, ours))
-.numbers(table)
-.missing(misses)
+    Finding::new([
+        format!(
+            "a test of the forces against {ABSOLUTE:e}: never met in units up to {hopeless:e} N, \
+             wrong by more than 1e-3 from {wrong:e} N on"
+        ),
+        format!("the same iterations, the same answer to {worst:.0e}"),
+    ])
+    .text(format!(
+        "A tolerance with a unit means something else in every system of units. With forces out of \
+         balance below {ABSOLUTE:e} as the only test, the same scene never converges if the unit \
+         of force is {hopeless:e} N or less, and is accepted with apertures or tractions wrong by \
+         more than 1e-3 from {wrong:e} N on (km and GPa have a unit of 1e15 N). All tests of Kluft \
+         are ratios: in m and Pa, mm and MPa, km and GPa, with every linear solver, it takes the \
+         same number of Newton and linear iterations to the same answer, to {worst:.0e}."
+    ))
+    .charts(charts(absolute, ours))
+    .numbers(table)
+    .missing(misses)
 }
