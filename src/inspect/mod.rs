@@ -105,7 +105,10 @@ fn look(
         return defects;
     };
     match bind(scene, mesh) {
-        Ok(binding) => defects.extend(weigh(&binding.problem, &survey, inspection)),
+        Ok(binding) => {
+            inspection.warnings.extend(binding.warnings);
+            defects.extend(weigh(&binding.problem, &survey, inspection));
+        }
         Err(found) => defects.extend(found),
     }
     defects

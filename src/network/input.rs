@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
+use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
 use kluft_network::{
     CellSizes, Domain, InputFracture, Orientation, Outline, Polygon, SIDES, check_name, read_list,
@@ -12,7 +13,7 @@ use kluft_network::{
 use super::scene::{Passages, passages};
 use super::sets::{Set, read_set};
 use kluft_scene::check_conditions;
-use kluft_scene::reader::{Accept, Section, Source};
+use kluft_scene::reader::{Section, Source};
 
 /// What the command line says.
 pub(super) struct Wish {
@@ -96,12 +97,12 @@ impl Input {
         file: &Path,
         wish: &Wish,
     ) -> Result<Self, Vec<Defect>> {
-        let source = Source::new(name, text, "the description");
+        let source = Source::new(name, text, Document::Network);
         let folder = file.parent().unwrap_or(Path::new("."));
         let table = source.parse();
         let mut more = Vec::new();
         let input = table.as_ref().and_then(|table| {
-            let root = Section::new(&source, table.get_ref(), String::new(), 0..0);
+            let root = Section::root(&source, table.get_ref());
             let input = read_description(&source, &root, folder, wish, &mut more);
             root.finish();
             input
@@ -173,7 +174,7 @@ fn read_description(
     let domain = read_domain(root, wish.domain);
     let sizes = read_sizes(root, wish);
     let seed = read_seed(root).unwrap_or(0);
-    root.require("fracture_set", "a section: [fracture_set.NAME]");
+    root.require("fracture_set");
     let mut sets = Vec::new();
     let mut given = Vec::new();
     for (name, section) in root.named_sections("fracture_set") {
@@ -210,13 +211,13 @@ fn read_description(
 /// The domain of the description, or that of the command line in its place.
 fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain> {
     if wished.is_none() {
-        root.require("domain", "a section: [domain]");
+        root.require("domain");
     }
     let Some(section) = root.section("domain") else {
         return wished;
     };
-    section.require("low", "[0, 0, 0]");
-    section.require("high", "[10, 10, 10]");
+    section.require("low");
+    section.require("high");
     let corners = section.vector("low").zip(section.vector("high"));
     let domain = corners.map(|(low, high)| Domain::between(low, high));
     let is_box = domain.is_none_or(|domain| (domain.high - domain.low).min_element() > 0.0);
@@ -230,22 +231,19 @@ fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain>
 
 fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
     if wish.h.is_none() {
-        root.require("mesh", "a section: [mesh]");
+        root.require("mesh");
     }
     let Some(section) = root.section("mesh") else {
         return wish.h.map(|h| sizes(h, None, None, wish));
     };
     if wish.h.is_none() {
-        section.require("h", "0.5");
+        section.require("h");
     }
-    let number = |key| section.number(key, Accept::Positive);
+    let number = |key| section.number(key);
     let (h, h_fracture, h_intersection) =
         (number("h"), number("h_fracture"), number("h_intersection"));
-    let (growth, small) = (
-        number("growth"),
-        section.number("small", Accept::NotNegative),
-    );
-    let small_angle = section.number("small_angle", Accept::NotNegative);
+    let (growth, small) = (number("growth"), section.number("small"));
+    let small_angle = section.number("small_angle");
     let snap = section.flag("mend").unwrap_or(true);
     for (key, fine, coarse) in [
         ("h_fracture", h_fracture, h),
@@ -273,44 +271,16 @@ fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
     })
 }
 
-/// A whole number that a seed may be.
+/// The seed in a section.
 pub(super) fn read_seed(section: &Section<'_, '_>) -> Option<u64> {
-    let seed = section.number("seed", Accept::NotNegative)?;
-    if seed.fract() != 0.0 || seed > 2.0_f64.powi(53) {
-        section.refuse(
-            "seed",
-            format!("the seed {seed} is no whole number"),
-            "write seed = 1",
-        );
-        return None;
-    }
-    Some(seed as u64)
-}
-
-/// What is one of some words; anything else is reported with the nearest.
-pub(super) fn one_of<'a>(
-    section: &Section<'a, '_>,
-    key: &'static str,
-    known: &[&'static str],
-) -> Option<&'a str> {
-    let word = section.text(key)?;
-    if known.contains(&word) {
-        return Some(word);
-    }
-    let list = known.join(", ");
-    let remedy = kluft_mesh::nearest(word, known.iter().copied()).map_or_else(
-        || format!("known: {list}"),
-        |near| format!("did you mean \"{near}\"? (known: {list})"),
-    );
-    section.refuse(key, format!("unknown {key} \"{word}\""), remedy);
-    None
+    section.number("seed").map(|seed| seed as u64)
 }
 
 /// Dip and dip direction in a section.
 pub(super) fn read_orientation(section: &Section<'_, '_>) -> Option<Orientation> {
-    section.require("dip", "60");
-    section.require("dip_direction", "135");
-    let dip = section.number("dip", Accept::NotNegative);
+    section.require("dip");
+    section.require("dip_direction");
+    let dip = section.number_in("dip", Range::NotNegative);
     if dip.is_some_and(|dip| dip > 90.0) {
         section.refuse(
             "dip",
@@ -318,7 +288,7 @@ pub(super) fn read_orientation(section: &Section<'_, '_>) -> Option<Orientation>
             "turn the dip direction by 180 instead",
         );
     }
-    let dip_direction = section.number("dip_direction", Accept::Finite);
+    let dip_direction = section.number("dip_direction");
     Some(Orientation {
         dip: dip.filter(|dip| *dip <= 90.0)?,
         dip_direction: dip_direction?,
@@ -327,22 +297,14 @@ pub(super) fn read_orientation(section: &Section<'_, '_>) -> Option<Orientation>
 
 /// Number of corners of a disc or an ellipse.
 pub(super) fn read_sides(section: &Section<'_, '_>) -> usize {
-    let sides = section
-        .number("sides", Accept::Between(2.0, 101.0))
-        .unwrap_or(SIDES as f64);
-    if sides.fract() != 0.0 {
-        section.refuse(
-            "sides",
-            format!("{sides} sides"),
-            "write a whole number, e.g. sides = 12",
-        );
-    }
-    sides as usize
+    section
+        .number("sides")
+        .map_or(SIDES, |sides| sides as usize)
 }
 
 fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<InputFracture> {
-    section.require("name", "\"fault-1\"");
-    section.require("set", "\"NAME\"");
+    section.require("name");
+    section.require("set");
     let name = section.text("name").map(str::to_owned);
     let set = section.text("set").map(str::to_owned);
     if let Some(Err((problem, remedy))) = name.as_deref().map(check_name) {
@@ -371,14 +333,10 @@ fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<InputFract
 }
 
 fn read_polygon(section: &Section<'_, '_>) -> Option<Polygon> {
-    section.require("shape", "\"disc\"");
-    let outline = match one_of(
-        section,
-        "shape",
-        &["disc", "ellipse", "rectangle", "polygon"],
-    )? {
+    section.require("shape");
+    let outline = match section.choice("shape")? {
         "polygon" => {
-            section.require("points", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]");
+            section.require("points");
             let corners: Vec<DVec3> = section
                 .vectors("points")?
                 .into_iter()
@@ -392,18 +350,18 @@ fn read_polygon(section: &Section<'_, '_>) -> Option<Polygon> {
         "ellipse" => read_ellipse(section),
         _ => read_rectangle(section),
     };
-    section.require("centre", "[5, 5, 5]");
+    section.require("centre");
     let (centre, orientation) = (section.vector("centre"), read_orientation(section));
     Some(Polygon::placed(outline?, centre?.into(), orientation?))
 }
 
 fn read_length(section: &Section<'_, '_>, key: &'static str) -> Option<f64> {
-    section.require(key, "2.0");
-    section.number(key, Accept::Positive)
+    section.require(key);
+    section.number(key)
 }
 
 fn read_rotation(section: &Section<'_, '_>) -> f64 {
-    section.number("rotation", Accept::Finite).unwrap_or(0.0)
+    section.number("rotation").unwrap_or(0.0)
 }
 
 fn read_disc(section: &Section<'_, '_>) -> Option<Outline> {
@@ -444,3 +402,6 @@ fn read_rectangle(section: &Section<'_, '_>) -> Option<Outline> {
         rotation: read_rotation(section),
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,23 +8,10 @@ use kluft_network::{
     check_name, read_list,
 };
 
-use super::input::{one_of, read_orientation, read_seed, read_sides, read_text};
+use super::input::{read_orientation, read_seed, read_sides, read_text};
 use super::scene::{Passage, passage};
-use kluft_scene::reader::{Accept, Section, Source};
+use kluft_scene::reader::{Section, Source};
 use kluft_scene::{Clock, read_fracture};
-
-/// Keys of a set that are not its material.
-const OWN: [&str; 9] = [
-    "list",
-    "orientation",
-    "size",
-    "shape",
-    "sides",
-    "aspect",
-    "p32",
-    "count",
-    "seed",
-];
 
 /// A set of fractures.
 pub(super) struct Set {
@@ -76,7 +63,10 @@ pub(super) fn read_set(
     let asked = is_random
         .then(|| read_random(&section, &name, seed))
         .flatten();
-    let material = passage(section.table(), &OWN);
+    // The other keys are its material.
+    let own = kluft_keys::network::FRACTURE_SET.keys.iter();
+    let own: Vec<&str> = own.map(|key| key.name).collect();
+    let material = passage(section.table(), &own);
     let place = section.place();
     let refuse = |(problem, remedy): (String, String)| source.report(&section.at, problem, remedy);
     let drawn = match (asked, domain) {
@@ -120,14 +110,8 @@ fn named(drawn: &[DrawnFracture], set: &str, place: &str) -> Vec<InputFracture> 
 }
 
 fn read_random(section: &Section<'_, '_>, name: &str, seed: u64) -> Option<StochasticSet> {
-    section.require(
-        "orientation",
-        "{ dip = 60, dip_direction = 135, kappa = 20 }",
-    );
-    section.require(
-        "size",
-        "{ law = \"power\", exponent = 2.5, min = 0.5, max = 5.0 }",
-    );
+    section.require("orientation");
+    section.require("size");
     let orientation = section.section("orientation").and_then(read_fisher);
     let size = section.section("size").and_then(read_size);
     let shape = read_shape(section);
@@ -145,8 +129,8 @@ fn read_random(section: &Section<'_, '_>, name: &str, seed: u64) -> Option<Stoch
 
 fn read_fisher(section: Section<'_, '_>) -> Option<Fisher> {
     let mean = read_orientation(&section);
-    section.require("kappa", "20");
-    let kappa = section.number("kappa", Accept::NotNegative);
+    section.require("kappa");
+    let kappa = section.number("kappa");
     section.finish();
     Some(Fisher {
         mean: mean?,
@@ -155,24 +139,23 @@ fn read_fisher(section: Section<'_, '_>) -> Option<Fisher> {
 }
 
 fn read_size(section: Section<'_, '_>) -> Option<SizeLaw> {
-    section.require("law", "\"power\"");
-    let number = |key: &'static str, example: &str, accept: Accept| {
-        section.require(key, example);
-        section.number(key, accept)
+    section.require("law");
+    let number = |key: &'static str| {
+        section.require(key);
+        section.number(key)
     };
-    let length = |key: &'static str| number(key, "1.0", Accept::Positive);
-    let law = match one_of(&section, "law", &["constant", "power", "lognormal"]) {
-        Some("constant") => length("radius").map(|radius| SizeLaw::Constant { radius }),
+    let law = match section.choice("law") {
+        Some("constant") => number("radius").map(|radius| SizeLaw::Constant { radius }),
         Some("power") => {
-            let exponent = number("exponent", "2.5", Accept::Finite);
-            let bounds = length("min").zip(length("max"));
+            let exponent = number("exponent");
+            let bounds = number("min").zip(number("max"));
             exponent
                 .zip(bounds)
                 .map(|(exponent, (min, max))| SizeLaw::PowerLaw { exponent, min, max })
         }
         Some(_) => {
-            let moments = length("mean").zip(length("sd"));
-            let bounds = length("min").zip(length("max"));
+            let moments = number("mean").zip(number("sd"));
+            let bounds = number("min").zip(number("max"));
             moments
                 .zip(bounds)
                 .map(|((mean, sd), (min, max))| SizeLaw::Lognormal { mean, sd, min, max })
@@ -204,20 +187,20 @@ fn read_shape(section: &Section<'_, '_>) -> Option<FractureShape> {
             sides: read_sides(section),
         });
     }
-    match one_of(section, "shape", &["disc", "rectangle"])? {
+    match section.choice("shape")? {
         "disc" => Some(FractureShape::Disc {
             sides: read_sides(section),
         }),
         _ => {
-            let aspect = section.number("aspect", Accept::Positive).unwrap_or(1.0);
+            let aspect = section.number("aspect").unwrap_or(1.0);
             Some(FractureShape::Rectangle { aspect })
         }
     }
 }
 
 fn read_amount(section: &Section<'_, '_>) -> Option<Amount> {
-    let p32 = section.number("p32", Accept::Positive);
-    let count = section.number("count", Accept::Positive);
+    let p32 = section.number("p32");
+    let count = section.number("count");
     match (section.has("p32"), section.has("count")) {
         (true, true) => {
             section.refuse(
@@ -228,20 +211,10 @@ fn read_amount(section: &Section<'_, '_>) -> Option<Amount> {
             None
         }
         (false, false) => {
-            section.require("p32", "0.5");
+            section.require("p32");
             None
         }
         (true, false) => p32.map(Amount::P32),
-        (false, true) => {
-            let count = count?;
-            if count.fract() != 0.0 {
-                section.refuse(
-                    "count",
-                    format!("{count} fractures"),
-                    "write a whole number",
-                );
-            }
-            Some(Amount::Count(count as usize))
-        }
+        (false, true) => count.map(|count| Amount::Count(count as usize)),
     }
 }

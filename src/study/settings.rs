@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kluft_keys::Document;
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
@@ -112,11 +113,11 @@ impl Plan {
         make_paths_absolute(&mut scene, file.parent().unwrap_or(Path::new(".")));
         let asked = scene.remove("study");
         let asked = asked.as_ref().and_then(Value::as_table);
-        let source = Source::new(&name, text, "the scene");
+        let source = Source::new(&name, text, Document::Scene);
         let table = source.parse();
         let root = table
             .as_ref()
-            .map(|table| Section::new(&source, table.get_ref(), String::new(), 0..0));
+            .map(|table| Section::root(&source, table.get_ref()));
         let section = root.as_ref().and_then(|root| root.section("study"));
         let (dimensions, wish) = match (section, asked) {
             (Some(section), Some(asked)) => read_study(section, asked, &scene),

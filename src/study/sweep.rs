@@ -1,17 +1,18 @@
 //! The dimensions of a study: what `[study]` says, or what is swept without it.
 
+use kluft_keys::Quantity;
+use kluft_keys::scene::{CLOSURES, FRACTURE};
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
 use super::edits::Edit;
 use super::settings::{Choice, Dimension, Kind};
 use super::words::digits;
-use kluft_scene::reader::{Accept, Entry, Section};
-use kluft_scene::{CLOSURES, FACETS, refused_keys};
+use kluft_scene::reader::{Entry, Section};
+use kluft_scene::refused_keys;
 
 /// Factors on cell sizes of a study that the scene does not describe.
 const SIZES: [f64; 3] = [2.0, 1.4, 1.0];
-const SOLVERS: [&str; 3] = ["direct", "iterative", "condensed"];
 
 /// Reads what `[study]` sweeps; `asked` is the same table as values.
 pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Dimension> {
@@ -20,18 +21,17 @@ pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> V
         ("order", Kind::Order, orders(section, scene)),
         ("closure", Kind::Closure, closures(section, asked, scene)),
     ];
-    let values = section.section("values");
-    let swept = values.map_or_else(Vec::new, |values| values_of(section, &values, scene));
+    let swept = values_of(section, scene);
     for (name, choices) in &swept {
         dimensions.push((name, Kind::Value, choices.clone()));
     }
-    let named = |key, known: &[&'static str], path: &[&str]| {
-        let names = section.choices(key, known).unwrap_or_default();
+    let named = |key, path: &[&str]| {
+        let names = section.choices(key).unwrap_or_default();
         let choice = |name| plain(name, vec![Edit::set(path, name)]);
         names.into_iter().map(choice).collect::<Vec<_>>()
     };
-    let facets = named("facets", &FACETS, &["solver", "facets"]);
-    let solvers = named("solvers", &SOLVERS, &["solver", "linear"]);
+    let facets = named("facets", &["solver", "facets"]);
+    let solvers = named("solvers", &["solver", "linear"]);
     dimensions.push(("facets", Kind::Facets, facets));
     dimensions.push(("solver", Kind::Solver, solvers));
     for key in ["meshes", "orders", "closures", "facets", "solvers"] {
@@ -147,7 +147,7 @@ fn mesh_choice(mesh: &[(String, f64)], all: &[Vec<(String, f64)>], scene: &Table
 }
 
 fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
-    let orders = section.numbers("orders", Accept::Within(1.0, 2.0));
+    let orders = section.numbers("orders");
     let orders = orders.unwrap_or_default();
     if orders.iter().any(|order| order.fract() != 0.0) {
         let remedy = "write orders = [1, 2]";
@@ -215,7 +215,8 @@ fn closures(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Choi
 
 fn label_of(keys: &Table) -> String {
     let labels = keys.iter().map(|(key, value)| match value {
-        Value::String(text) => text.clone(),
+        Value::String(text) if key == "closure" => text.clone(),
+        Value::String(text) => format!("{key}={text}"),
         value => format!("{key}={value}"),
     });
     labels.collect::<Vec<_>>().join(" ")
@@ -249,17 +250,10 @@ fn closure_edits(keys: &Table, scene: &Table) -> Vec<Edit> {
 }
 
 /// Numbers of fractures: of all that have the key, of one (`"NAME.key"`), or of all if none has it.
-fn values_of(
-    section: &Section<'_, '_>,
-    values: &Section<'_, '_>,
-    scene: &Table,
-) -> Vec<(String, Vec<Choice>)> {
+fn values_of(section: &Section<'_, '_>, scene: &Table) -> Vec<(String, Vec<Choice>)> {
     let mut swept = Vec::new();
-    for (name, numbers) in values.number_lists() {
-        let (wanted, key) = match name.rsplit_once('.') {
-            Some((fracture, key)) => (Some(fracture), key),
-            None => (None, name.as_str()),
-        };
+    for (name, numbers) in section.number_lists("values", quantity_of) {
+        let (wanted, key) = fracture_and_key(&name);
         let fits = |name: &str| wanted.is_none_or(|wanted| wanted == name);
         let all: Vec<(&String, &Value)> = fractures(scene).filter(|(name, _)| fits(name)).collect();
         if all.is_empty() {
@@ -284,6 +278,26 @@ fn values_of(
         swept.push((name.clone(), numbers.into_iter().map(choice).collect()));
     }
     swept
+}
+
+/// Name of the fracture, if one is named, and the key.
+fn fracture_and_key(name: &str) -> (Option<&str>, &str) {
+    match name.rsplit_once('.') {
+        Some((fracture, key)) => (Some(fracture), key),
+        None => (None, name),
+    }
+}
+
+/// What a swept number is; its range is checked with the scene of each setting.
+fn quantity_of(name: &str) -> Quantity {
+    let key = FRACTURE.key(fracture_and_key(name).1);
+    let dimension = key
+        .and_then(|key| key.kind.quantity())
+        .map_or(Quantity::PLAIN.dimension, |quantity| quantity.dimension);
+    Quantity {
+        dimension,
+        ..Quantity::PLAIN
+    }
 }
 
 /// What the scene itself has in a dimension.

@@ -191,6 +191,7 @@ impl<'a> Run<'a> {
     fn bind(&mut self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let mut binding = self.request.scene.problem(draft)?;
         self.summary.decisions.append(&mut binding.decisions);
+        self.summary.warnings.clone_from(&binding.warnings);
         let mesh = &binding.problem.mesh;
         let counts = mesh.sectors.count.iter();
         self.summary.mesh = MeshSummary {

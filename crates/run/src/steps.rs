@@ -196,7 +196,11 @@ impl Run<'_> {
         let oracles = if is_last { &self.oracles[..] } else { &[] };
         self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
         self.summary.measures.push(energy(accuracy.energy));
-        self.summary.warnings = decisions::warnings(&self.summary.fractures);
+        self.summary.warnings = [
+            kluft_scene::warnings(self.request.scene, system.problem()),
+            decisions::warnings(&self.summary.fractures),
+        ]
+        .concat();
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(system, &solution, &accuracy);

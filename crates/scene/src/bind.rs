@@ -7,6 +7,7 @@ use lie_core::Rock;
 
 use crate::cases::{Bound, schedule};
 use crate::conditions::{FixedPointEntry, FractureEntry};
+use crate::doubts::warnings;
 use crate::oracle::Oracle;
 use crate::remedies::in_terms_of_scene;
 use crate::roles::{DEFAULT, Roles, roles};
@@ -18,6 +19,8 @@ pub struct Binding {
     pub problem: Problem,
     /// One line a decision, for the user.
     pub decisions: Vec<String>,
+    /// What is possible but hardly meant, one line each.
+    pub warnings: Vec<String>,
     /// Closed form of each fracture that has one.
     pub oracles: Vec<Option<Oracle>>,
 }
@@ -80,23 +83,25 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         fixed_points: fixed_entries,
         fractures,
     };
+    let problem = Problem {
+        conditions,
+        rocks: scene.rocks.iter().map(|entry| entry.value).collect(),
+        rock_of_cell,
+        schedule: schedule(scene, &bound, &mut decisions),
+        fractures: bound
+            .fractures
+            .iter()
+            .map(|entry| entry.value.fracture)
+            .collect(),
+        fixed_points,
+        gravity: scene.body.gravity,
+        initial_stress: scene.initial_stress,
+        facet_quadrature: scene.solver.facets,
+        mesh,
+    };
     Ok(Binding {
-        problem: Problem {
-            conditions,
-            rocks: scene.rocks.iter().map(|entry| entry.value).collect(),
-            rock_of_cell,
-            schedule: schedule(scene, &bound, &mut decisions),
-            fractures: bound
-                .fractures
-                .iter()
-                .map(|entry| entry.value.fracture)
-                .collect(),
-            fixed_points,
-            gravity: scene.body.gravity,
-            initial_stress: scene.initial_stress,
-            facet_quadrature: scene.solver.facets,
-            mesh,
-        },
+        warnings: warnings(scene, &problem),
+        problem,
         decisions,
         oracles,
     })

@@ -5,7 +5,7 @@ use kluft_solver::{Fracture, Support, SurfaceLoad};
 
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
-use crate::reader::{Accept, Section};
+use crate::reader::Section;
 
 /// What acts on a part of the outer surface.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ pub struct FixedPointEntry {
 /// Reads what acts on a part of the outer surface.
 pub(crate) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<BoundaryEntry> {
     let traction = section.vector("traction");
-    let pressure = section.number("pressure", Accept::Finite);
+    let pressure = section.number("pressure");
     let symmetry = section.flag("symmetry");
     let displacement = section.section("displacement").map(read_components);
     let load = match (traction, pressure) {
@@ -101,7 +101,7 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<B
 }
 
 fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
-    let components = ["x", "y", "z"].map(|axis| section.number(axis, Accept::Finite));
+    let components = ["x", "y", "z"].map(|axis| section.number(axis));
     if !["x", "y", "z"].into_iter().any(|axis| section.has(axis)) {
         section.refuse(
             "x",
@@ -115,8 +115,8 @@ fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
 
 /// Reads a node held by itself.
 pub(crate) fn read_fixed_point(section: &Section<'_, '_>, clock: Clock) -> Option<FixedPointEntry> {
-    section.require("at", "[0.0, 0.0, 0.0]");
-    section.require("displacement", "{ x = 0.0 }");
+    section.require("at");
+    section.require("displacement");
     let at = section.vector("at");
     let displacement = section.section("displacement").map(read_components);
     let scaled = Scaled {
@@ -136,7 +136,7 @@ pub(crate) fn read_body(root: &Section<'_, '_>, clock: Clock) -> BodyEntry {
     let Some(section) = root.section("body") else {
         return BodyEntry::default();
     };
-    section.require("gravity", "[0, 0, -9.81]");
+    section.require("gravity");
     let gravity = section.vector("gravity");
     let scaled = Scaled {
         is_there: true,

@@ -1,41 +1,40 @@
 //! What a scene may say of a fracture.
 
+use kluft_keys::Range;
 use kluft_solver::Fracture;
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
 
 use crate::conditions::FractureEntry;
 use crate::load::{Clock, Scaled, read_history};
-use crate::reader::{Accept, Section};
-
-/// Names of the closure laws.
-pub const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
+use crate::reader::Section;
 
 /// Reads a section on a fracture.
 pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
-    let known = closure_name(section);
-    let closure = known.unwrap_or("linear");
+    let closure = section.choice("closure");
+    let is_known = closure.is_some() || !section.has("closure");
+    let closure = closure.unwrap_or("linear");
     let contact = closure == "contact";
     let rubs = section.has("friction_angle");
     let needed = [
-        (true, "aperture", "1e-4"),
-        (!contact, "normal_stiffness", "1e11"),
-        (!contact && !rubs, "shear_stiffness", "1e10"),
+        (true, "aperture"),
+        (!contact, "normal_stiffness"),
+        (!contact && !rubs, "shear_stiffness"),
     ];
-    for (_, key, example) in needed.into_iter().filter(|(needed, ..)| *needed) {
-        section.require(key, example);
+    for (_, key) in needed.into_iter().filter(|(needed, _)| *needed) {
+        section.require(key);
     }
     let positive = if contact {
-        Accept::NotNegative
+        Range::NotNegative
     } else {
-        Accept::Positive
+        Range::Positive
     };
-    let aperture = section.number("aperture", positive);
-    let normal_stiffness = section.number("normal_stiffness", Accept::NotNegative);
+    let aperture = section.number_in("aperture", positive);
+    let normal_stiffness = section.number("normal_stiffness");
     let kind = closure_kind(section, closure, aperture);
     let tension = read_tension(section, normal_stiffness);
     let friction = read_friction(section);
     let shear_stiffness = read_shear_stiffness(section, contact);
-    let fluid_pressure = section.number("fluid_pressure", Accept::Finite);
+    let fluid_pressure = section.number("fluid_pressure");
     let scaled = Scaled {
         is_there: section.has("fluid_pressure"),
         what: "a fluid_pressure",
@@ -44,7 +43,9 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
     if contact {
         refuse_in_contact(section);
     }
-    known?;
+    if !is_known {
+        return None;
+    }
     let closure = if contact {
         Closure::contact(aperture?)
     } else {
@@ -80,26 +81,9 @@ pub fn refused_keys(closure: &str, rubs: bool) -> Vec<&'static str> {
     keys.map(|(_, key)| key).collect()
 }
 
-/// The name of the closure law, if it is a known one.
-fn closure_name(section: &Section<'_, '_>) -> Option<&'static str> {
-    let Some(name) = section.text("closure") else {
-        return Some("linear");
-    };
-    let found = CLOSURES.into_iter().find(|known| *known == name);
-    if found.is_none() {
-        let known = CLOSURES.join(", ");
-        let remedy = kluft_mesh::nearest(name, CLOSURES.into_iter())
-            .map_or(format!("write one of {known}"), |near| {
-                format!("did you mean \"{near}\"? (known: {known})")
-            });
-        section.refuse("closure", format!("unknown closure law \"{name}\""), remedy);
-    }
-    found
-}
-
 fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>) -> ClosureKind {
     let below = |key: &'static str| {
-        let value = section.number(key, Accept::Positive)?;
+        let value = section.number(key)?;
         if let Some(aperture) = aperture.filter(|&aperture| value > aperture) {
             section.refuse(
                 key,
@@ -133,8 +117,8 @@ fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>)
 
 fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>) -> Tension {
     let cut = section.flag("tension_cutoff").unwrap_or(false);
-    let strength = section.number("tensile_strength", Accept::Positive);
-    let energy = section.number("fracture_energy", Accept::Positive);
+    let strength = section.number("tensile_strength");
+    let energy = section.number("fracture_energy");
     if strength.is_some() != energy.is_some() {
         let (given, missing) = match strength {
             Some(_) => ("tensile_strength", "fracture_energy"),
@@ -172,9 +156,9 @@ fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>) -> Tension {
 }
 
 fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
-    let angle = section.number("friction_angle", Accept::Within(0.0, 89.0));
-    let cohesion = section.number("cohesion", Accept::NotNegative);
-    let dilation = section.number("dilation_angle", Accept::Within(0.0, 89.0));
+    let angle = section.number("friction_angle");
+    let cohesion = section.number("cohesion");
+    let dilation = section.number("dilation_angle");
     for key in ["cohesion", "dilation_angle"] {
         if section.has(key) && !section.has("friction_angle") {
             section.refuse(
@@ -204,7 +188,7 @@ fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
 /// Without one, friction holds the walls rigidly, and walls in contact without friction glide.
 fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64> {
     let rubs = section.has("friction_angle");
-    let given = section.number("shear_stiffness", Accept::NotNegative);
+    let given = section.number("shear_stiffness");
     if section.has("shear_stiffness") && rubs && given == Some(0.0) {
         section.refuse(
             "shear_stiffness",

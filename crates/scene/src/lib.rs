@@ -7,6 +7,7 @@
 mod bind;
 mod cases;
 mod conditions;
+mod doubts;
 mod fracture;
 mod history;
 mod load;
@@ -19,11 +20,12 @@ mod scene;
 
 pub use bind::{Binding, bind};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-pub use fracture::{CLOSURES, read_fracture, refused_keys};
+pub use doubts::warnings;
+pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
 pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};
-pub use read::{FACETS, check_conditions};
+pub use read::check_conditions;
 pub use remedies::in_terms_of_scene;
 pub use roles::{Roles, roles};
 pub use scene::{Adapt, MeshSource, Named, Scene, SolverEntry};

@@ -1,10 +1,7 @@
 //! The load steps of a scene, and histories of its conditions.
 
 use crate::history::{LoadHistory, StepEnd, Timetable};
-use crate::reader::{Accept, Section};
-
-/// Most load steps of a phase; more are taken for a slip.
-const MOST_STEPS: f64 = 1e5;
+use crate::reader::Section;
 
 /// Whether the load steps of a scene have times, as histories need them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,8 +84,8 @@ pub(crate) fn read_timetable(root: &Section<'_, '_>) -> (Timetable, Clock) {
 }
 
 fn read_steps(section: &Section<'_, '_>) -> Option<Timetable> {
-    section.require("steps", "[0.5, 1.0]");
-    let steps = section.numbers("steps", Accept::Finite)?;
+    section.require("steps");
+    let steps = section.numbers("steps")?;
     if steps.is_empty() {
         let remedy = "write steps = [1.0]";
         section.refuse("steps", "there are no load steps".into(), remedy);
@@ -98,7 +95,7 @@ fn read_steps(section: &Section<'_, '_>) -> Option<Timetable> {
 }
 
 fn read_times(section: &Section<'_, '_>) -> Option<Timetable> {
-    let times = section.numbers("times", Accept::Positive)?;
+    let times = section.numbers("times")?;
     if let Some(pair) = times.windows(2).find(|pair| pair[1] <= pair[0]) {
         let problem = format!("the times go from {} to {}", pair[0], pair[1]);
         section.refuse(
@@ -159,11 +156,11 @@ fn read_phases(section: &Section<'_, '_>) -> Option<Timetable> {
 
 /// Reads a phase that follows `former` ones.
 fn read_phase(section: &Section<'_, '_>, former: &[Phase]) -> Option<Phase> {
-    section.require("name", "\"excavation\"");
-    section.require("until", "1.0");
+    section.require("name");
+    section.require("until");
     let name = section.text("name");
-    let until = section.number("until", Accept::Positive);
-    let steps = section.number("steps", Accept::Between(0.0, MOST_STEPS + 1.0));
+    let until = section.number("until");
+    let steps = section.number("steps");
     if let Some(name) = name.filter(|name| former.iter().any(|phase| phase.name == **name)) {
         let problem = format!("two phases are called \"{name}\"");
         section.refuse("name", problem, "give each a name of its own");
@@ -175,14 +172,6 @@ fn read_phase(section: &Section<'_, '_>, former: &[Phase]) -> Option<Phase> {
             section.title
         );
         section.refuse("until", problem, "let the ends of the phases ascend");
-    }
-    if let Some(steps) = steps.filter(|steps| steps.fract() != 0.0) {
-        let problem = format!("`steps` = {steps} in {}", section.title);
-        section.refuse(
-            "steps",
-            problem,
-            "write how many equal steps the phase has, a whole number",
-        );
     }
     Some(Phase {
         name: name?.to_owned(),

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use lie_core::Rock;
 
-use crate::reader::{Accept, Section};
+use crate::reader::Section;
 
 /// Share of the radius next to the front that measures "inside" leave out, unless given.
 const RING: f64 = 0.1;
@@ -163,25 +163,16 @@ impl JumpProfile {
     }
 }
 
-const FORMS: [&str; 3] = ["penny", "line", "uniform"];
-
 /// Reads the section of one fracture.
 pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
-    section.require("form", "\"penny\"");
-    let name = section.text("form");
-    if let Some(name) = name.filter(|name| !FORMS.contains(name)) {
-        section.refuse(
-            "form",
-            format!("unknown closed form \"{name}\""),
-            "write \"penny\" (a disc), \"line\" (plane strain) or \"uniform\"",
-        );
-    }
+    section.require("form");
+    let name = section.choice("form");
     let centre = || section.vector("centre").map(DVec3::from);
     let extent = match name? {
         "penny" => {
-            section.require("centre", "[0, 0, 0]");
-            section.require("radius", "1.0");
-            let (centre, radius) = (centre(), section.number("radius", Accept::Positive));
+            section.require("centre");
+            section.require("radius");
+            let (centre, radius) = (centre(), section.number("radius"));
             centre
                 .zip(radius)
                 .map(|(centre, radius)| Extent::Disc { centre, radius })
@@ -191,16 +182,15 @@ pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
         _ => None,
     };
     let crack = name? != "uniform";
-    let stress = |key| section.number(key, Accept::Finite).map(Amount::Stress);
-    let length = |key| section.number(key, Accept::Finite).map(Amount::Length);
+    let stress = |key| section.number(key).map(Amount::Stress);
+    let length = |key| section.number(key).map(Amount::Length);
     let (opening, slip) = match crack {
         true => (stress("pressure"), stress("stress_drop")),
         false => (length("opening"), length("slip")),
     };
-    let normal_traction = section.number("normal_traction", Accept::Finite);
-    let ring = section.number("ring", Accept::Between(0.0, 1.0));
-    let is_known = FORMS.contains(&name?);
-    if is_known && opening.is_none() && slip.is_none() && normal_traction.is_none() {
+    let normal_traction = section.number("normal_traction");
+    let ring = section.number("ring");
+    if opening.is_none() && slip.is_none() && normal_traction.is_none() {
         let keys = match crack {
             true => "`pressure`, `stress_drop` (Pa) and `normal_traction`",
             false => "`opening`, `slip` (m) and `normal_traction`",
@@ -222,12 +212,8 @@ pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
 }
 
 fn read_strip(section: &Section<'_, '_>, centre: impl Fn() -> Option<DVec3>) -> Option<Extent> {
-    for (key, example) in [
-        ("centre", "[0, 0, 0]"),
-        ("along", "[1, 0, 0]"),
-        ("half_length", "1.0"),
-    ] {
-        section.require(key, example);
+    for key in ["centre", "along", "half_length"] {
+        section.require(key);
     }
     let along = section.vector("along").map(DVec3::from);
     let direction = along.and_then(DVec3::try_normalize);
@@ -241,7 +227,7 @@ fn read_strip(section: &Section<'_, '_>, centre: impl Fn() -> Option<DVec3>) -> 
     Some(Extent::Strip {
         centre: centre()?,
         along: direction?,
-        half_length: section.number("half_length", Accept::Positive)?,
+        half_length: section.number("half_length")?,
     })
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
 use kluft_solver::{InitialStress, Profile};
 use lie_core::{FacetQuadrature, Rock};
@@ -10,7 +11,7 @@ use crate::conditions::{read_body, read_boundary, read_fixed_point};
 use crate::fracture::read_fracture;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
-use crate::reader::{Accept, Section, Source};
+use crate::reader::{Section, Source};
 use crate::scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
 
 impl Scene {
@@ -54,10 +55,10 @@ impl Scene {
     /// # Errors
     /// Every defect of the text, each with its line and a remedy.
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Vec<Defect>> {
-        let source = Source::new(name, text, "the scene");
+        let source = Source::new(name, text, Document::Scene);
         let table = source.parse();
         let scene = table.as_ref().and_then(|table| {
-            let root = Section::new(&source, table.get_ref(), String::new(), 0..0);
+            let root = Section::root(&source, table.get_ref());
             let scene = read_scene(&source, &root, folder);
             root.finish();
             scene
@@ -99,13 +100,13 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let named = |key: &'static str| root.named_sections(key).into_iter();
     let (timetable, clock) = read_timetable(root);
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    root.require_section("mesh", "[mesh]");
+    root.require("mesh");
     let section = root.section("mesh");
     let quarter_points = section
         .as_ref()
         .and_then(|section| section.flag("quarter_points"));
     let mesh = section.and_then(|section| read_mesh(section, folder));
-    root.require_section("rock", "[rock.default]");
+    root.require("rock");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
     let fractures = named("fracture")
@@ -139,6 +140,8 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fixed_points,
         quarter_points: quarter_points.unwrap_or(true),
         mesh: mesh?,
+        // After everything has been read.
+        warnings: source.take_warnings(),
     })
 }
 
@@ -158,7 +161,7 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
     let geometry = read_path(&section, "geometry", folder);
     let file = read_path(&section, "file", folder);
     let parameters = section.free_numbers("parameters");
-    let mut order = section.number("order", Accept::Positive);
+    let mut order = section.number_in("order", Range::Positive);
     if let Some(wrong) = order.take_if(|order| *order != 1.0 && *order != 2.0) {
         section.refuse(
             "order",
@@ -199,7 +202,7 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
             None
         }
         (None, None) => {
-            section.require("geometry", "\"block.geo\"` or `file = \"block.msh\"");
+            section.require("geometry");
             None
         }
     };
@@ -208,10 +211,10 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
 }
 
 fn read_adapt(section: Section<'_, '_>) -> Option<Adapt> {
-    section.require("tolerance", "0.01");
-    let tolerance = section.number("tolerance", Accept::Between(0.0, 1.0));
-    let max_unknowns = section.number("max_unknowns", Accept::Positive);
-    let max_rounds = section.number("max_rounds", Accept::Positive);
+    section.require("tolerance");
+    let tolerance = section.number("tolerance");
+    let max_unknowns = section.number("max_unknowns");
+    let max_rounds = section.number("max_rounds");
     section.finish();
     Some(Adapt {
         tolerance: tolerance?,
@@ -230,11 +233,11 @@ fn read_path(section: &Section<'_, '_>, key: &'static str, folder: &Path) -> Opt
 }
 
 fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
-    section.require("young_modulus", "50e9");
-    section.require("poisson_ratio", "0.25");
-    let young_modulus = section.number("young_modulus", Accept::Positive);
-    let poisson_ratio = section.number("poisson_ratio", Accept::Between(-1.0, 0.5));
-    let density = section.number("density", Accept::NotNegative);
+    section.require("young_modulus");
+    section.require("poisson_ratio");
+    let young_modulus = section.number("young_modulus");
+    let poisson_ratio = section.number("poisson_ratio");
+    let density = section.number("density");
     Some(Rock {
         young_modulus: young_modulus?,
         poisson_ratio: poisson_ratio?,
@@ -251,15 +254,15 @@ fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {
 fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Profile {
     if !section.is_table(name) {
         return Profile {
-            value: section.number(name, Accept::Finite).unwrap_or(0.0),
+            value: section.number(name).unwrap_or(0.0),
             ..Profile::default()
         };
     }
     let Some(profile) = section.section(name) else {
         return Profile::default();
     };
-    profile.require("value", "-10e6");
-    let number = |key| profile.number(key, Accept::Finite).unwrap_or(0.0);
+    profile.require("value");
+    let number = |key| profile.number(key).unwrap_or(0.0);
     let read = Profile {
         at: number("at"),
         value: number("value"),
@@ -273,36 +276,23 @@ fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
     let Some(section) = root.section("solver") else {
         return SolverEntry::default();
     };
-    let name = section.text("linear");
-    let linear = name.and_then(|name| name.parse().ok());
-    if let (Some(name), None) = (name, linear) {
-        section.refuse(
-            "linear",
-            format!("unknown linear solver \"{name}\""),
-            "write \"direct\", \"condensed\" or \"iterative\", or leave it out: the program chooses",
-        );
-    }
+    let linear = section.choice("linear");
     let entry = SolverEntry {
-        linear,
-        memory_limit: section.number("memory_limit", Accept::Positive),
-        path_accuracy: section.number("path_accuracy", Accept::Between(0.0, 1.0)),
+        linear: linear.and_then(|name| name.parse().ok()),
+        memory_limit: section.number("memory_limit"),
+        path_accuracy: section.number("path_accuracy"),
         facets: read_facets(&section),
     };
     section.finish();
     entry
 }
 
-/// Names of the rules by which fractures are integrated over their facets.
-pub const FACETS: [&str; 2] = ["nodal", "gauss"];
-
 fn read_facets(section: &Section<'_, '_>) -> FacetQuadrature {
-    match section.text("facets") {
-        None | Some("nodal") => FacetQuadrature::Nodal,
+    match section.choice("facets") {
         Some("gauss") => FacetQuadrature::Gauss,
-        Some(name) => {
-            let remedy = "write \"nodal\" (the default) or \"gauss\" (for comparison)";
-            section.refuse("facets", format!("unknown facet rule \"{name}\""), remedy);
-            FacetQuadrature::Nodal
-        }
+        _ => FacetQuadrature::Nodal,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -90,4 +90,6 @@ pub struct Scene {
     pub solver: SolverEntry,
     /// Closed forms by fracture.
     pub oracles: Vec<Named<Oracle>>,
+    /// Values that are possible but hardly meant, each with its place.
+    pub warnings: Vec<String>,
 }

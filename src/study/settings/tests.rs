@@ -192,3 +192,39 @@ fn a_scene_of_a_mesh_file_has_no_meshes_to_sweep() {
         2
     );
 }
+
+/// A key that is asked for and not in the table stops the reader; this is the other direction.
+#[test]
+fn every_key_of_a_study_in_the_table_is_asked_for() {
+    let text = format!(
+        "{SCENE}[study]\nclosures = [{{ label = 'a', closure = 'linear' }}]\nvalues = {{ aperture = {{ from = 1e-4, to = 1, count = 2 }} }}\n"
+    );
+    let source = Source::new("scene.toml", &text, Document::Scene);
+    let table = source.parse().expect("TOML");
+    let root = Section::root(&source, table.get_ref());
+    let scene: Table = text.parse().expect("TOML");
+    let study = scene["study"].as_table().expect("a study");
+    read_study(root.section("study").expect("a study"), study, &scene);
+    let mut unasked = source.unasked();
+    let sections = Document::Study.sections();
+    // Keys of fractures are read in the scene of each setting.
+    let own = sections
+        .iter()
+        .filter(|section| section.pattern != "[fracture.NAME]");
+    let own: Vec<String> = own.map(|section| format!("{} ", section.pattern)).collect();
+    unasked.retain(|key| own.iter().any(|pattern| key.starts_with(pattern)));
+    assert_eq!(unasked, Vec::<String>::new());
+}
+
+#[test]
+fn swept_values_may_have_units() {
+    let text = "[study]\nclosures = [{ label = 'cut', cutoff_aperture = '1 um' }]\n[study.values]\n'a.aperture' = ['0.1 mm', 2e-4]\nshear_stiffness = { from = '1 GPa/m', to = '4 GPa/m', count = 2 }\n";
+    let plan = plan(text);
+    assert_eq!(plan.settings.len(), 4);
+    let scene = scene(&plan, "aperture=1e-4, shear_stiffness=1e9");
+    let fracture = &scene["fracture"]["a"];
+    assert_eq!(fracture["aperture"].as_float(), Some(1e-4));
+    assert_eq!(fracture["cutoff_aperture"].as_str(), Some("1 um"));
+    let defects = read("[study.values]\naperture = ['1 GPa']\n").expect_err("no length");
+    assert!(defects[0].remedy.contains("a length in m"), "{defects:?}");
+}

@@ -157,7 +157,7 @@ pub(super) const CASES: &[Case] = &[
         )],
         says: &[
             "scene.toml:7: `steps` = 0 in [[load.phase]]",
-            "must lie between 0",
+            "must lie between 1",
         ],
         ..SOUND
     },

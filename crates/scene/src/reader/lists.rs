@@ -1,9 +1,10 @@
-//! Lists of texts and tables.
+//! Lists: of numbers, of vectors, of texts and tables.
 
+use kluft_keys::{Dimension, Kind, Quantity, Range};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::{Accept, Section};
+use super::Section;
 
 /// An entry of a list.
 pub enum Entry<'a, 'i> {
@@ -28,7 +29,7 @@ impl<'a, 'i> Section<'a, 'i> {
             match entry.get_ref() {
                 DeValue::String(text) => Some(Entry::Text(text)),
                 DeValue::Table(table) => {
-                    let section = Section::new(self.source, table, title, entry.span());
+                    let section = self.child(key, title, (table, entry.span()));
                     Some(Entry::Section(section))
                 }
                 _ => {
@@ -40,8 +41,12 @@ impl<'a, 'i> Section<'a, 'i> {
         array.iter().enumerate().filter_map(read).collect()
     }
 
-    /// Texts in brackets, each one of those known; what they are called.
-    pub fn choices(&self, key: &'static str, known: &[&'static str]) -> Option<Vec<&'static str>> {
+    /// Texts in brackets, each one of those that the table of keys has.
+    pub fn choices(&self, key: &'static str) -> Option<Vec<&'static str>> {
+        let Some(Kind::Choices(known)) = self.known(key).map(|key| key.kind) else {
+            debug_assert!(false, "{key} is no list of choices");
+            return None;
+        };
         let value = self.get(key)?;
         let wanted = format!("some of \"{}\" in brackets", known.join("\", \""));
         let find = |entry: &Spanned<DeValue<'i>>| {
@@ -62,40 +67,155 @@ impl<'a, 'i> Section<'a, 'i> {
         }
     }
 
-    /// All keys of this section, which must be lists of numbers, or `{ from, to, count }` for numbers
-    /// whose logarithms lie evenly.
-    pub fn number_lists(&self) -> Vec<(String, Vec<f64>)> {
-        let mut lists = Vec::new();
-        for (name, value) in self.table.iter() {
-            let key = name.get_ref().as_ref();
-            let numbers = match value.get_ref() {
-                DeValue::Array(array) => {
-                    let numbers = array.iter();
-                    let numbers = numbers.map(|n| self.as_number(key, n, Accept::Finite));
-                    numbers.collect::<Option<Vec<f64>>>().unwrap_or_default()
-                }
-                DeValue::Table(table) => {
-                    let title = format!("`{key}` in {}", self.name());
-                    Section::new(self.source, table, title, value.span()).evenly()
-                }
-                _ => {
-                    let wanted = "numbers in brackets, or { from = 1e8, to = 1e12, count = 9 }";
-                    self.wrong_type(key, value, wanted);
-                    Vec::new()
-                }
-            };
-            lists.push((key.to_owned(), numbers));
-        }
-        lists
+    /// Numbers in brackets.
+    pub fn numbers(&self, key: &'static str) -> Option<Vec<f64>> {
+        let quantity = self.known(key).and_then(|key| key.kind.quantity());
+        self.numbers_of(key, quantity.unwrap_or(Quantity::PLAIN))
     }
 
-    fn evenly(self) -> Vec<f64> {
-        for (key, example) in [("from", "1e8"), ("to", "1e12"), ("count", "9")] {
-            self.require(key, example);
+    fn numbers_of(&self, key: &'static str, quantity: Quantity) -> Option<Vec<f64>> {
+        let value = self.get(key)?;
+        let Some(array) = value.get_ref().as_array() else {
+            self.wrong_type(key, value, "numbers in brackets, e.g. [0.5, 1.0]");
+            return None;
+        };
+        array
+            .iter()
+            .map(|entry| self.as_number(key, entry, quantity))
+            .collect()
+    }
+
+    /// Three numbers in brackets; a doubt is about their length.
+    pub fn vector(&self, key: &'static str) -> Option<[f64; 3]> {
+        let quantity = self.known(key)?.kind.quantity()?;
+        let plain = Quantity {
+            plausible: None,
+            ..quantity
+        };
+        let numbers = self.numbers_of(key, plain)?;
+        let vector = <[f64; 3]>::try_from(numbers).ok();
+        match (vector, self.get(key)) {
+            (Some(vector), Some(value)) => {
+                let length = vector.map(|x| x * x).iter().sum::<f64>().sqrt();
+                self.doubt(key, value, (length, quantity));
+            }
+            _ => self.refuse(
+                key,
+                format!("`{key}` in {} has not three components", self.name()),
+                "write [x, y, z]",
+            ),
         }
-        let from = self.number("from", Accept::Positive);
-        let to = self.number("to", Accept::Positive);
-        let count = self.number("count", Accept::Within(2.0, 1000.0));
+        vector
+    }
+
+    /// Points in brackets.
+    pub fn vectors(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
+        let example = "points in brackets, e.g. [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+        self.tuples(key, ("points", example))
+    }
+
+    /// Pairs of a time and a factor in brackets.
+    pub fn time_factors(&self, key: &'static str) -> Option<Vec<[f64; 2]>> {
+        let example = "[time, factor] in brackets, e.g. [[0, 0], [1, 1]]";
+        self.tuples(key, ("times with factors", example))
+    }
+
+    /// Lists of as many numbers, in brackets; what they are called, and an example.
+    fn tuples<const N: usize>(
+        &self,
+        key: &'static str,
+        (what, wanted): (&str, &str),
+    ) -> Option<Vec<[f64; N]>> {
+        let value = self.get(key)?;
+        let quantity = self.known(key)?.kind.quantity();
+        let quantity = quantity.unwrap_or(Quantity {
+            dimension: Dimension::Time,
+            ..Quantity::PLAIN
+        });
+        let point = |entry: &Spanned<DeValue<'i>>| -> Option<[f64; N]> {
+            let numbers = entry.get_ref().as_array()?.iter();
+            let numbers = numbers.map(|number| self.as_number(key, number, quantity));
+            numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+        };
+        let points = value
+            .get_ref()
+            .as_array()
+            .map(|array| array.iter().map(point).collect());
+        if !matches!(points, Some(Some(_))) {
+            self.refuse(
+                key,
+                format!("`{key}` in {} is no list of {what}", self.title),
+                format!("write {wanted}"),
+            );
+        }
+        points.flatten()
+    }
+
+    /// All keys of a table of numbers whose names are free.
+    pub fn free_numbers(&self, key: &'static str) -> Vec<(String, f64)> {
+        let section = self.section(key);
+        section.map_or_else(Vec::new, |section| section.all_numbers())
+    }
+
+    /// All keys of this section, which must be plain numbers.
+    pub fn all_numbers(&self) -> Vec<(String, f64)> {
+        let plain = Quantity {
+            dimension: Dimension::OfKey,
+            ..Quantity::PLAIN
+        };
+        let entries = self.table.iter();
+        entries
+            .filter_map(|(name, value)| {
+                let number = self.as_number(name.get_ref(), value, plain)?;
+                Some((name.get_ref().to_string(), number))
+            })
+            .collect()
+    }
+
+    /// All keys below `key`, which must be lists of numbers, or `{ from, to, count }` for numbers whose
+    /// logarithms lie evenly. What a number is follows from the name that it stands under.
+    pub fn number_lists(
+        &self,
+        key: &'static str,
+        quantity_of: impl Fn(&str) -> Quantity,
+    ) -> Vec<(String, Vec<f64>)> {
+        let Some(lists) = self.section(key) else {
+            return Vec::new();
+        };
+        let read = |name: &str, value: &'a Spanned<DeValue<'i>>| match value.get_ref() {
+            DeValue::Array(array) => {
+                let numbers = array.iter();
+                let numbers = numbers.map(|n| lists.as_number(name, n, quantity_of(name)));
+                numbers.collect::<Option<Vec<f64>>>().unwrap_or_default()
+            }
+            DeValue::Table(table) => {
+                let title = format!("`{name}` in {}", lists.name());
+                let series = self.child(key, title, (table, value.span()));
+                series.evenly(quantity_of(name))
+            }
+            _ => {
+                let wanted = "numbers in brackets, or { from = 1e8, to = 1e12, count = 9 }";
+                lists.wrong_type(name, value, wanted);
+                Vec::new()
+            }
+        };
+        let entries = lists.table.iter();
+        entries
+            .map(|(name, value)| (name.get_ref().to_string(), read(name.get_ref(), value)))
+            .collect()
+    }
+
+    fn evenly(self, quantity: Quantity) -> Vec<f64> {
+        for key in ["from", "to", "count"] {
+            self.require(key);
+        }
+        let end = Quantity {
+            range: Range::Positive,
+            ..quantity
+        };
+        let from = self.number_of("from", end);
+        let to = self.number_of("to", end);
+        let count = self.number("count");
         self.finish();
         let (Some(from), Some(to), Some(count)) = (from, to, count) else {
             return Vec::new();

@@ -1,0 +1,30 @@
+//! The one table of keys: every key of a scene, a network description, a list of fractures and a study.
+//!
+//! A [`Document`] is a tree of [`Section`]s of [`Key`]s. From it come what the reader checks and
+//! suggests, the units in which quantities may be written ([`Dimension`], [`read_quantity`]), the
+//! JSON Schema for editors ([`schema`]), what `kluft explain` says ([`explain`], [`overview`]) and
+//! the reference pages ([`page`]).
+
+mod dimension;
+mod document;
+mod explain;
+mod names;
+pub mod network;
+mod page;
+mod plausible;
+mod range;
+pub mod scene;
+mod schema;
+mod table;
+mod units;
+
+pub use dimension::Dimension;
+pub use document::Document;
+pub use explain::{explain, overview};
+pub use names::nearest;
+pub use page::page;
+pub use plausible::Plausible;
+pub use range::Range;
+pub use schema::schema;
+pub use table::{Key, Kind, Need, Quantity, Section};
+pub use units::{Unreadable, read_quantity};

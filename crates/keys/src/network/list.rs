@@ -1,0 +1,77 @@
+//! The columns of a list of fractures.
+
+use super::fracture::{LENGTH, NAME, RADIUS, ROTATION, SEMI_MAJOR, SEMI_MINOR, SHAPE, WIDTH};
+use super::set::{DIP, DIP_DIRECTION, SIDES};
+use crate::dimension::Dimension;
+use crate::range::Range;
+use crate::table::{Key, Kind, Need, Section, number};
+
+const NOT_OF_A_POLYGON: Need = Need::Unless("the shape is `polygon`");
+
+/// The columns of a list.
+pub static LIST: Section = Section {
+    pattern: "",
+    says: "One line for each fracture, a column for each key; values are plain numbers and words",
+    keys: &[
+        Key {
+            need: Need::Without("the set with a number"),
+            example: "fault-1",
+            ..NAME
+        },
+        Key {
+            name: "set",
+            kind: Kind::Text,
+            need: Need::Without("that of the list"),
+            example: "steep",
+            says: "The set that it belongs to",
+        },
+        Key {
+            example: "disc",
+            ..SHAPE
+        },
+        coordinate("x", "Centre, towards the east"),
+        coordinate("y", "Centre, towards the north"),
+        coordinate("z", "Centre, upwards"),
+        Key {
+            need: NOT_OF_A_POLYGON,
+            ..DIP
+        },
+        Key {
+            kind: number(Dimension::Angle, Range::Within(-360.0, 360.0)),
+            need: NOT_OF_A_POLYGON,
+            ..DIP_DIRECTION
+        },
+        RADIUS,
+        SEMI_MAJOR,
+        SEMI_MINOR,
+        LENGTH,
+        WIDTH,
+        ROTATION,
+        SIDES,
+        Key {
+            name: "points",
+            kind: Kind::Text,
+            need: Need::Unless("the shape is no polygon"),
+            example: "0 0 5; 4 0 5; 4 4 5.5",
+            says: "Corners of a convex polygon in metres, three or more",
+        },
+        Key {
+            name: "comment",
+            kind: Kind::Text,
+            need: Need::Without("nothing"),
+            example: "from the tunnel map",
+            says: "Whatever is worth noting; it is not read",
+        },
+    ],
+    also: None,
+};
+
+const fn coordinate(name: &'static str, says: &'static str) -> Key {
+    Key {
+        name,
+        kind: number(Dimension::Length, Range::Finite),
+        need: NOT_OF_A_POLYGON,
+        example: "5",
+        says,
+    }
+}

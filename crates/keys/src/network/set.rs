@@ -1,0 +1,162 @@
+//! Sets of fractures.
+
+use super::SEED;
+use crate::dimension::Dimension;
+use crate::range::Range;
+use crate::scene;
+use crate::table::{Key, Kind, Need, Section, number};
+
+/// A set of fractures.
+pub static FRACTURE_SET: Section = Section {
+    pattern: "[fracture_set.NAME]",
+    says: "A set of fractures: keys of `[fracture.NAME]` in a scene, and a list or a random set",
+    keys: &[
+        Key {
+            name: "list",
+            kind: Kind::Path,
+            need: Need::Without("no list"),
+            example: "\"steep.csv\"",
+            says: "A list of fractures (CSV), relative to the description",
+        },
+        Key {
+            name: "orientation",
+            kind: Kind::Table(&ORIENTATION),
+            need: Need::Unless("the set is not random"),
+            example: "{ dip = 60, dip_direction = 135, kappa = 20 }",
+            says: "Orientations of a random set",
+        },
+        Key {
+            name: "size",
+            kind: Kind::Table(&SIZE),
+            need: Need::Unless("the set is not random"),
+            example: "{ law = \"power\", exponent = 2.5, min = 0.5, max = 5.0 }",
+            says: "Sizes of a random set: radius, or half the longer side",
+        },
+        Key {
+            name: "p32",
+            kind: number(Dimension::PerLength, Range::Positive),
+            need: Need::Or("count"),
+            example: "0.5",
+            says: "Area of the fractures per volume of rock",
+        },
+        Key {
+            name: "count",
+            kind: Kind::Whole(Range::Positive),
+            need: Need::Or("p32"),
+            example: "100",
+            says: "Number of fractures whose centre lies in the domain",
+        },
+        Key {
+            name: "shape",
+            kind: Kind::Choice("shape", &["disc", "rectangle"]),
+            need: Need::Default("\"disc\""),
+            example: "\"rectangle\"",
+            says: "Shape of the fractures",
+        },
+        SIDES,
+        Key {
+            name: "aspect",
+            kind: number(Dimension::One, Range::Positive),
+            need: Need::Default("1.0"),
+            example: "2.0",
+            says: "Longer side of a rectangle over the shorter one",
+        },
+        Key {
+            need: Need::Without("that of the description"),
+            says: "Seed of this set",
+            ..SEED
+        },
+    ],
+    also: Some(&scene::FRACTURE),
+};
+
+/// Corners of a disc or an ellipse.
+pub(crate) const SIDES: Key = Key {
+    name: "sides",
+    kind: Kind::Whole(Range::Within(3.0, 100.0)),
+    need: Need::Default("12"),
+    example: "16",
+    says: "Corners of a disc or an ellipse",
+};
+
+/// Dip of a plane.
+pub(crate) const DIP: Key = Key {
+    name: "dip",
+    kind: number(Dimension::Angle, Range::Within(0.0, 90.0)),
+    need: Need::Required,
+    example: "60",
+    says: "Angle between the plane and the horizontal",
+};
+
+/// Direction of the dip.
+pub(crate) const DIP_DIRECTION: Key = Key {
+    name: "dip_direction",
+    kind: number(Dimension::Angle, Range::Finite),
+    need: Need::Required,
+    example: "135",
+    says: "Direction towards which the plane falls, clockwise from north",
+};
+
+/// Orientations that scatter about a mean.
+pub static ORIENTATION: Section = Section {
+    pattern: "[fracture_set.NAME.orientation]",
+    says: "Orientations that scatter about a mean (Fisher)",
+    keys: &[
+        DIP,
+        DIP_DIRECTION,
+        Key {
+            name: "kappa",
+            kind: number(Dimension::One, Range::NotNegative),
+            need: Need::Required,
+            example: "20",
+            says: "Concentration about the mean; 0 is no preference",
+        },
+    ],
+    also: None,
+};
+
+const fn size(name: &'static str, need: &'static str, says: &'static str) -> Key {
+    Key {
+        name,
+        kind: number(Dimension::Length, Range::Positive),
+        need: Need::Unless(need),
+        example: "1.0",
+        says,
+    }
+}
+
+/// How sizes are distributed.
+pub static SIZE: Section = Section {
+    pattern: "[fracture_set.NAME.size]",
+    says: "How sizes are distributed",
+    keys: &[
+        Key {
+            name: "law",
+            kind: Kind::Choice("law", &["constant", "power", "lognormal"]),
+            need: Need::Required,
+            example: "\"power\"",
+            says: "All alike, a power law, or a lognormal distribution",
+        },
+        size("radius", "the law is not constant", "Size of all"),
+        Key {
+            name: "exponent",
+            kind: number(Dimension::One, Range::Finite),
+            need: Need::Unless("the law is no power"),
+            example: "2.5",
+            says: "Exponent of the density of a power law",
+        },
+        size("min", "the law is constant", "Smallest size"),
+        size("max", "the law is constant", "Largest size"),
+        size(
+            "mean",
+            "the law is not lognormal",
+            "Mean before the ends are cut",
+        ),
+        size(
+            "sd",
+            "the law is not lognormal",
+            "Standard deviation before the ends are cut",
+        ),
+    ],
+    also: None,
+};

@@ -1,0 +1,133 @@
+//! The keys of a scene.
+
+mod conditions;
+mod fracture;
+mod load;
+mod mesh;
+mod oracle;
+mod rock;
+mod solver;
+mod study;
+
+pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
+pub use fracture::{CLOSURES, FRACTURE};
+pub use load::{LOAD, PHASE};
+pub use mesh::{ADAPT, MESH};
+pub use oracle::{FORMS, ORACLE};
+pub use rock::ROCK;
+pub use solver::{FACETS, SOLVER, SOLVERS};
+pub use study::{CLOSURE, SERIES, STUDY};
+
+use crate::table::{Key, Kind, Need, Section};
+
+/// The top of a scene.
+pub static ROOT: Section = Section {
+    pattern: "",
+    says: "The top of a scene, before its first section",
+    keys: &[
+        TITLE,
+        Key {
+            name: "mesh",
+            kind: Kind::Table(&MESH),
+            need: Need::Required,
+            example: "[mesh]",
+            says: "Where the mesh comes from",
+        },
+        Key {
+            need: Need::Required,
+            ..ROCKS
+        },
+        Key {
+            name: "fracture",
+            kind: Kind::Named(&FRACTURE),
+            need: Need::Without("no surface is a fracture"),
+            example: "[fracture.default]",
+            says: "Fractures by physical surface",
+        },
+        BOUNDARIES,
+        FIXED_POINTS,
+        BODIES,
+        INITIAL_STRESSES,
+        LOADS,
+        SOLVING,
+        Key {
+            name: "study",
+            kind: Kind::Table(&STUDY),
+            need: Need::Without("cell sizes and orders are swept"),
+            example: "[study]",
+            says: "What `kluft study` sweeps; `kluft run` ignores it",
+        },
+        Key {
+            name: "oracle",
+            kind: Kind::Named(&ORACLE),
+            need: Need::Without("nothing is compared"),
+            example: "[oracle.NAME]",
+            says: "Closed forms by fracture, to compare it with",
+        },
+    ],
+    also: None,
+};
+
+pub(crate) const TITLE: Key = Key {
+    name: "title",
+    kind: Kind::Text,
+    need: Need::Default("\"untitled\""),
+    example: "\"Two joints in granite\"",
+    says: "What reports and `summary.json` call it",
+};
+
+pub(crate) const ROCKS: Key = Key {
+    name: "rock",
+    kind: Kind::Named(&ROCK),
+    need: Need::Without("granite"),
+    example: "[rock.default]",
+    says: "Rocks by physical volume",
+};
+
+pub(crate) const BOUNDARIES: Key = Key {
+    name: "boundary",
+    kind: Kind::Named(&BOUNDARY),
+    need: Need::Without("free"),
+    example: "[boundary.top]",
+    says: "Conditions by physical surface; surfaces that are not named are free",
+};
+
+pub(crate) const FIXED_POINTS: Key = Key {
+    name: "fixed_point",
+    kind: Kind::Listed(&FIXED_POINT),
+    need: Need::Without("none"),
+    example: "[[fixed_point]]",
+    says: "Nodes held by themselves",
+};
+
+pub(crate) const BODIES: Key = Key {
+    name: "body",
+    kind: Kind::Table(&BODY),
+    need: Need::Without("weightless"),
+    example: "[body]",
+    says: "What acts in all of the rock",
+};
+
+pub(crate) const INITIAL_STRESSES: Key = Key {
+    name: "initial_stress",
+    kind: Kind::Table(&INITIAL_STRESS),
+    need: Need::Without("none"),
+    example: "[initial_stress]",
+    says: "Stress before any load",
+};
+
+pub(crate) const LOADS: Key = Key {
+    name: "load",
+    kind: Kind::Table(&LOAD),
+    need: Need::Without("one load step"),
+    example: "[load]",
+    says: "Load steps",
+};
+
+pub(crate) const SOLVING: Key = Key {
+    name: "solver",
+    kind: Kind::Table(&SOLVER),
+    need: Need::Without("the program chooses"),
+    example: "[solver]",
+    says: "What is asked of the solver",
+};

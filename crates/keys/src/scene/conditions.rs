@@ -1,0 +1,192 @@
+//! What acts on faces, nodes and the whole rock.
+
+use crate::dimension::Dimension;
+use crate::plausible::Plausible;
+use crate::range::Range;
+use crate::table::{Key, Kind, Need, Quantity, Section, number, quantity};
+
+static GRAVITY: Plausible = Plausible {
+    low: 9.7,
+    high: 9.9,
+    usual: (9.7, 9.9),
+    units: &["cm/s2", "mm/s2"],
+};
+
+const GROWS_ONCE: Need = Need::Without("grows once");
+
+/// A part of the outer surface.
+pub static BOUNDARY: Section = Section {
+    pattern: "[boundary.NAME]",
+    says: "The physical surface NAME; a load and a support may act together",
+    keys: &[
+        Key {
+            name: "traction",
+            kind: Kind::Vector(quantity(Dimension::Stress, Range::Finite)),
+            need: Need::Without("none"),
+            example: "[0, 0, -7e6]",
+            says: "Force per area in global axes",
+        },
+        Key {
+            name: "pressure",
+            kind: number(Dimension::Stress, Range::Finite),
+            need: Need::Without("none"),
+            example: "7e6",
+            says: "Force per area along the inward normal, instead of `traction`",
+        },
+        Key {
+            name: "displacement",
+            kind: Kind::Table(&DISPLACEMENT),
+            need: Need::Without("free"),
+            example: "{ z = 0.0 }",
+            says: "Prescribed components; those not named are free",
+        },
+        Key {
+            name: "symmetry",
+            kind: Kind::Flag,
+            need: Need::Default("false"),
+            example: "true",
+            says: "No displacement along the normal, a roller on any plane; instead of `displacement`",
+        },
+        Key {
+            name: "history",
+            kind: Kind::History,
+            need: GROWS_ONCE,
+            example: "[[0, 0], [1, 1]]",
+            says: "Factor on its load and displacement at times",
+        },
+    ],
+    also: None,
+};
+
+/// Prescribed components of a displacement.
+pub static DISPLACEMENT: Section = Section {
+    pattern: "displacement",
+    says: "Prescribed components of a displacement, at least one",
+    keys: &[
+        component("x", "Towards the east"),
+        component("y", "Towards the north"),
+        component("z", "Upwards"),
+    ],
+    also: None,
+};
+
+const fn component(name: &'static str, says: &'static str) -> Key {
+    Key {
+        name,
+        kind: number(Dimension::Length, Range::Finite),
+        need: Need::Without("free"),
+        example: "0.0",
+        says,
+    }
+}
+
+/// A node held by itself.
+pub static FIXED_POINT: Section = Section {
+    pattern: "[[fixed_point]]",
+    says: "One node held by itself, to remove rigid motions",
+    keys: &[
+        Key {
+            name: "at",
+            kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
+            need: Need::Required,
+            example: "[0.0, 0.0, 0.0]",
+            says: "Where it is; the nearest node is taken, and the run names it if it lies elsewhere",
+        },
+        Key {
+            name: "displacement",
+            kind: Kind::Table(&DISPLACEMENT),
+            need: Need::Required,
+            example: "{ x = 0.0 }",
+            says: "Prescribed components; they hold the blocks on all sides of the node",
+        },
+        Key {
+            name: "history",
+            kind: Kind::History,
+            need: GROWS_ONCE,
+            example: "[[0, 0], [1, 1]]",
+            says: "Factor on its displacement at times",
+        },
+    ],
+    also: None,
+};
+
+/// What acts in all of the rock.
+pub static BODY: Section = Section {
+    pattern: "[body]",
+    says: "What acts in all of the rock",
+    keys: &[
+        Key {
+            name: "gravity",
+            kind: Kind::Vector(Quantity {
+                plausible: Some(&GRAVITY),
+                ..quantity(Dimension::Acceleration, Range::Finite)
+            }),
+            need: Need::Required,
+            example: "[0, 0, -9.81]",
+            says: "Acceleration of gravity",
+        },
+        Key {
+            name: "history",
+            kind: Kind::History,
+            need: GROWS_ONCE,
+            example: "[[0, 0], [1, 1]]",
+            says: "Factor on gravity at times",
+        },
+    ],
+    also: None,
+};
+
+/// Stress before any load.
+pub static INITIAL_STRESS: Section = Section {
+    pattern: "[initial_stress]",
+    says: "Stress that rock and fractures are in equilibrium with before any load",
+    keys: &[
+        stress("xx"),
+        stress("yy"),
+        stress("zz"),
+        stress("xy"),
+        stress("yz"),
+        stress("xz"),
+    ],
+    also: None,
+};
+
+const fn stress(name: &'static str) -> Key {
+    Key {
+        name,
+        kind: Kind::NumberOr(quantity(Dimension::Stress, Range::Finite), &PROFILE),
+        need: Need::Default("0"),
+        example: "-10e6",
+        says: "Component of the stress, tension positive: constant, or linear in the elevation",
+    }
+}
+
+/// A component that is linear in the elevation.
+pub static PROFILE: Section = Section {
+    pattern: "[initial_stress.XX]",
+    says: "A component `value + per_metre (z - at)` at the elevation z",
+    keys: &[
+        Key {
+            name: "value",
+            kind: number(Dimension::Stress, Range::Finite),
+            need: Need::Required,
+            example: "-10e6",
+            says: "Stress at the elevation `at`",
+        },
+        Key {
+            name: "per_metre",
+            kind: number(Dimension::StressPerLength, Range::Finite),
+            need: Need::Default("0"),
+            example: "27e3",
+            says: "Increase with the elevation",
+        },
+        Key {
+            name: "at",
+            kind: number(Dimension::Length, Range::Finite),
+            need: Need::Default("0"),
+            example: "0.0",
+            says: "Elevation of `value`, positive upwards",
+        },
+    ],
+    also: None,
+};

@@ -1,0 +1,86 @@
+//! Where the mesh comes from.
+
+use crate::dimension::Dimension;
+use crate::range::Range;
+use crate::table::{Key, Kind, Need, Section, number};
+
+/// Where the mesh comes from.
+pub static MESH: Section = Section {
+    pattern: "[mesh]",
+    says: "Where the mesh comes from: a gmsh geometry or a mesh file, relative to the scene",
+    keys: &[
+        Key {
+            name: "geometry",
+            kind: Kind::Path,
+            need: Need::Or("file"),
+            example: "\"block.geo\"",
+            says: "gmsh geometry, meshed on every run",
+        },
+        Key {
+            name: "file",
+            kind: Kind::Path,
+            need: Need::Or("geometry"),
+            example: "\"block.msh\"",
+            says: "gmsh mesh, MSH 4.1; gmsh converts older versions",
+        },
+        Key {
+            name: "parameters",
+            kind: Kind::FreeNumbers,
+            need: Need::Default("{}"),
+            example: "{ h = 0.1 }",
+            says: "Plain numbers handed to gmsh, `{ h = 0.1 }` as `-setnumber h 0.1`; with `geometry` only",
+        },
+        Key {
+            name: "order",
+            kind: Kind::Whole(Range::Within(1.0, 2.0)),
+            need: Need::Default("1"),
+            example: "2",
+            says: "Order of the elements; with `geometry` only",
+        },
+        Key {
+            name: "quarter_points",
+            kind: Kind::Flag,
+            need: Need::Default("true"),
+            example: "false",
+            says: "Whether cells of order 2 at crack fronts follow the square root of the distance",
+        },
+        Key {
+            name: "adapt",
+            kind: Kind::Table(&ADAPT),
+            need: Need::Without("one mesh, as the geometry says"),
+            example: "{ tolerance = 0.01 }",
+            says: "Meshes until the estimated error is below a tolerance; with `geometry` only",
+        },
+    ],
+    also: None,
+};
+
+/// A mesh that follows the estimated error.
+pub static ADAPT: Section = Section {
+    pattern: "[mesh.adapt]",
+    says: "How far a mesh follows the estimated error",
+    keys: &[
+        Key {
+            name: "tolerance",
+            kind: number(Dimension::One, Range::Between(0.0, 1.0)),
+            need: Need::Required,
+            example: "0.01",
+            says: "Largest estimated error of the mean jump of a fracture, as a share of it",
+        },
+        Key {
+            name: "max_unknowns",
+            kind: number(Dimension::One, Range::Positive),
+            need: Need::Default("1e6"),
+            example: "5e5",
+            says: "Unknowns beyond which no mesh goes",
+        },
+        Key {
+            name: "max_rounds",
+            kind: number(Dimension::One, Range::Positive),
+            need: Need::Default("8"),
+            example: "5",
+            says: "Most meshes",
+        },
+    ],
+    also: None,
+};

@@ -1,0 +1,177 @@
+use super::*;
+
+const EVERY_KEY: &str = include_str!("../../../../tests/program/every_key.toml");
+const TIMED: &str = include_str!("../../../../tests/program/timed.toml");
+/// Keys that exclude those of the others.
+const REST: &str = "
+load = { times = [1.0] }
+mesh = { file = 'a.msh' }
+[rock.default]
+[oracle.a]
+form = 'uniform'
+opening = 1e-5
+slip = 1e-5
+[oracle.b]
+form = 'penny'
+";
+
+/// The scene with its edits, if it is one, its warnings, and the keys that nobody asked for.
+fn read(text: &str) -> (Result<Scene, Vec<Defect>>, Vec<String>) {
+    let source = Source::new("scene.toml", text, Document::Scene);
+    let table = source.parse().expect("TOML");
+    let root = Section::root(&source, table.get_ref());
+    read_scene(&source, &root, Path::new(""));
+    root.finish();
+    let unasked = source.unasked();
+    (Scene::parse(text, "scene.toml", Path::new("")), unasked)
+}
+
+/// A key that is asked for and not in the table stops the reader; this is the other direction. Those of
+/// `[study]` are asked for by who runs studies.
+#[test]
+fn every_key_of_the_table_is_asked_for() {
+    let of_studies = Document::Study.sections();
+    let is_of_studies = |key: &String| {
+        let mut patterns = of_studies.iter().map(|section| section.pattern);
+        patterns.any(|pattern| key.starts_with(&format!("{pattern} ")))
+    };
+    let mut unasked = read(EVERY_KEY).1;
+    for text in [TIMED, REST] {
+        let other = read(text).1;
+        unasked.retain(|key| other.contains(key));
+    }
+    unasked.retain(|key| !is_of_studies(key));
+    assert_eq!(unasked, Vec::<String>::new());
+}
+
+fn edited(edits: &[(&str, &str)]) -> Result<Scene, Vec<Defect>> {
+    let mut text = EVERY_KEY.to_owned();
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    read(&text).0
+}
+
+#[test]
+fn a_scene_with_units_is_the_scene_in_si_units() {
+    let with_units = edited(&[
+        ("young_modulus = 50e9", "young_modulus = \"50 GPa\""),
+        ("density = 2700", "density = '2.7 g/cm3'"),
+        ("aperture = 1e-4", "aperture = \"0.1 mm\""),
+        ("cutoff_aperture = 1e-7", "cutoff_aperture = \"0.1 um\""),
+        (
+            "normal_stiffness = 1e11",
+            "normal_stiffness = \"100 GPa/m\"",
+        ),
+        ("fluid_pressure = 2e6", "fluid_pressure = \"20 bar\""),
+        (
+            "traction = [0, 0, -7e6]",
+            "traction = [0, \"0 Pa\", \"-7 MPa\"]",
+        ),
+        ("z = -1e-3", "z = \"-1 mm\""),
+        ("at = [1, 0.5, 0]", "at = [\"100 cm\", \"5e2 mm\", 0]"),
+        (
+            "gravity = [0, 0, -9.81]",
+            "gravity = [0, 0, \"-9.81 m/s2\"]",
+        ),
+        ("xx = -10e6", "xx = \"-10 MPa\""),
+        ("per_metre = 27e3", "per_metre = \"27 MPa/km\""),
+        ("memory_limit = 4e9", "memory_limit = \"4 GB\""),
+        ("tolerance = 0.05", "tolerance = \"5 %\""),
+        ("half_length = 1.0", "half_length = \"1 m\""),
+    ]);
+    let debug = |scene| format!("{scene:?}");
+    assert_eq!(
+        debug(with_units.expect("a scene")),
+        debug(read(EVERY_KEY).0.expect("a scene"))
+    );
+}
+
+#[test]
+fn wrong_units_are_named_with_those_that_fit() {
+    for (from, to, says) in [
+        (
+            "50e9",
+            "\"50 m\"",
+            [
+                "`m` is the unit of a length",
+                "a stress in Pa, kPa, MPa, GPa",
+            ],
+        ),
+        (
+            "50e9",
+            "\"50 GPA\"",
+            ["unknown unit `GPA`", "did you mean `GPa`?"],
+        ),
+        ("50e9", "\"50\"", ["names no unit", "a number (in Pa)"]),
+        (
+            "50e9",
+            "\"much\"",
+            ["begins with no number", "a number (in Pa)"],
+        ),
+        (
+            "50e9",
+            "\"-50 GPa\"",
+            ["`young_modulus` = -50000000000", "greater than 0"],
+        ),
+        (
+            "-7e6]",
+            "\"7 MN\"]",
+            ["`MN` is not the unit of a stress", "a stress in Pa"],
+        ),
+        (
+            "h = 0.1",
+            "h = \"10 cm\"",
+            ["is of type string", "write a number"],
+        ),
+    ] {
+        let defects = edited(&[(from, to)]).expect_err(to);
+        let text = defects[0].to_string();
+        for part in says {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
+}
+
+#[test]
+fn values_that_are_hardly_meant_are_doubted_with_their_place() {
+    let scene = edited(&[
+        ("young_modulus = 50e9", "young_modulus = 50"),
+        ("density = 2700", "density = 2.7"),
+        ("aperture = 1e-4", "aperture = 0.2"),
+        ("gravity = [0, 0, -9.81]", "gravity = [0, 0, -981]"),
+    ]);
+    let warnings = scene.expect("a scene").warnings;
+    for (warning, says) in warnings.iter().zip([
+        [
+            "scene.toml:12: `young_modulus` = 50 in [rock.default]",
+            "50 GPa = 5e10 Pa",
+        ],
+        ["scene.toml:14: `density` = 2.7", "2.7 g/cm3 = 2700 kg/m3"],
+        [
+            "scene.toml:22: `aperture` = 0.2 in [fracture.default]",
+            "0.2 mm",
+        ],
+        [
+            "scene.toml:27: `aperture` = 0.2 in [fracture.joint]",
+            "0.2 mm",
+        ],
+        [
+            "scene.toml:53: `gravity` = 981 in [body]",
+            "981 cm/s2 = 9.81 m/s2",
+        ],
+    ]) {
+        assert!(says.iter().all(|part| warning.contains(part)), "{warning}");
+    }
+    assert_eq!(warnings.len(), 5, "{warnings:#?}");
+    let sound = read(EVERY_KEY).0.expect("a scene");
+    assert_eq!(sound.warnings, Vec::<String>::new());
+}
+
+#[test]
+fn a_key_that_others_leave_without_effect_is_told_apart_from_an_unknown_one() {
+    let defects = edited(&[("form = \"line\"", "form = \"uniform\"")]).expect_err("no effect");
+    let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
+    assert!(text[0].contains("`centre` has no effect"), "{text:#?}");
+}
