@@ -54,8 +54,8 @@ pub fn small_features(
     };
     search.of_intersections();
     search.gaps();
-    for index in 0..fractures.len() {
-        search.at_faces(&fractures[index]);
+    for (index, fracture) in fractures.iter().enumerate() {
+        search.at_faces(fracture);
         search.close_lines(index);
     }
     search.found
