@@ -10,13 +10,14 @@ use kluft_network::{
     repeated_names,
 };
 
-use super::scene::{Passages, passages};
+use super::keys::{read_orientation, read_seed, read_sides, read_text};
+use super::passages::{Passages, passages};
 use super::sets::{Set, read_set};
 use kluft_scene::check_conditions;
 use kluft_scene::reader::{Section, Source};
 
 /// What the command line says.
-pub(super) struct Wish {
+pub(super) struct Overrides {
     pub(super) domain: Option<Domain>,
     pub(super) h: Option<f64>,
     pub(super) keep_small: bool,
@@ -37,15 +38,15 @@ pub(super) struct Input {
 
 impl Input {
     /// Reads a list or a description, going by the ending of its name.
-    pub(super) fn read(file: &Path, wish: &Wish) -> Result<Self, Vec<Defect>> {
+    pub(super) fn read(file: &Path, overrides: &Overrides) -> Result<Self, Vec<Defect>> {
         let name = file.display().to_string();
         let text = read_text(
             file,
             "give the path of a list (.csv) or a description (.toml)",
         )?;
         match file.extension().and_then(|ending| ending.to_str()) {
-            Some("csv") => Self::from_list(&text, &name, wish),
-            Some("toml") => Self::from_description(&text, &name, file, wish),
+            Some("csv") => Self::from_list(&text, &name, overrides),
+            Some("toml") => Self::from_description(&text, &name, file, overrides),
             _ => Err(vec![Defect::new(
                 name,
                 "the name ends neither in .csv nor in .toml",
@@ -54,10 +55,10 @@ impl Input {
         }
     }
 
-    fn from_list(text: &str, name: &str, wish: &Wish) -> Result<Self, Vec<Defect>> {
+    fn from_list(text: &str, name: &str, overrides: &Overrides) -> Result<Self, Vec<Defect>> {
         let given = read_list(text, name, "fractures", false)?;
         let mut assumptions = Vec::new();
-        let domain = wish
+        let domain = overrides
             .domain
             .or_else(|| around(&given, &mut assumptions))
             .ok_or_else(|| {
@@ -67,7 +68,7 @@ impl Input {
                     "add one line for each fracture",
                 )]
             })?;
-        let h = wish.h.unwrap_or_else(|| {
+        let h = overrides.h.unwrap_or_else(|| {
             let h = rounded((domain.high - domain.low).min_element() / 10.0);
             assumptions.push(format!(
                 "cells of {h} m, a tenth of the shortest side; --h sets it"
@@ -83,7 +84,7 @@ impl Input {
         Ok(Self {
             title: "Fracture network".into(),
             domain,
-            sizes: sizes(h, None, None, wish),
+            sizes: sizes(h, None, None, overrides),
             sets,
             given,
             passages: Passages::default(),
@@ -95,7 +96,7 @@ impl Input {
         text: &str,
         name: &str,
         file: &Path,
-        wish: &Wish,
+        overrides: &Overrides,
     ) -> Result<Self, Vec<Defect>> {
         let source = Source::new(name, text, Document::Network);
         let folder = file.parent().unwrap_or(Path::new("."));
@@ -103,7 +104,7 @@ impl Input {
         let mut more = Vec::new();
         let input = table.as_ref().and_then(|table| {
             let root = Section::root(&source, table.get_ref());
-            let input = read_description(&source, &root, folder, wish, &mut more);
+            let input = read_description(&source, &root, folder, overrides, &mut more);
             root.finish();
             input
         });
@@ -114,14 +115,6 @@ impl Input {
             _ => Err(defects),
         }
     }
-}
-
-/// Reads a text file.
-pub(super) fn read_text(file: &Path, remedy: &str) -> Result<String, Vec<Defect>> {
-    std::fs::read_to_string(file).map_err(|error| {
-        let problem = format!("the file cannot be read: {error}");
-        vec![Defect::new(file.display().to_string(), problem, remedy)]
-    })
 }
 
 /// A box around all fractures, a quarter of their extent larger on each side.
@@ -150,7 +143,12 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.0e}").parse().unwrap_or(value)
 }
 
-fn sizes(h: f64, h_fracture: Option<f64>, h_intersection: Option<f64>, wish: &Wish) -> CellSizes {
+fn sizes(
+    h: f64,
+    h_fracture: Option<f64>,
+    h_intersection: Option<f64>,
+    overrides: &Overrides,
+) -> CellSizes {
     let h_fracture = h_fracture.unwrap_or(h / 2.0).min(h);
     CellSizes {
         h,
@@ -159,7 +157,7 @@ fn sizes(h: f64, h_fracture: Option<f64>, h_intersection: Option<f64>, wish: &Wi
         growth: 0.5,
         small: 0.2,
         small_angle: 10.0,
-        snap: !wish.keep_small,
+        snap: !overrides.keep_small,
     }
 }
 
@@ -167,12 +165,12 @@ fn read_description(
     source: &Source<'_>,
     root: &Section<'_, '_>,
     folder: &Path,
-    wish: &Wish,
+    overrides: &Overrides,
     defects: &mut Vec<Defect>,
 ) -> Option<Input> {
     let clock = check_conditions(source, root);
-    let domain = read_domain(root, wish.domain);
-    let sizes = read_sizes(root, wish);
+    let domain = read_domain(root, overrides.domain);
+    let sizes = read_sizes(root, overrides);
     let seed = read_seed(root).unwrap_or(0);
     root.require("fracture_set");
     let mut sets = Vec::new();
@@ -229,14 +227,14 @@ fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain>
     wished.or(domain.filter(|_| is_box))
 }
 
-fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
-    if wish.h.is_none() {
+fn read_sizes(root: &Section<'_, '_>, overrides: &Overrides) -> Option<CellSizes> {
+    if overrides.h.is_none() {
         root.require("mesh");
     }
     let Some(section) = root.section("mesh") else {
-        return wish.h.map(|h| sizes(h, None, None, wish));
+        return overrides.h.map(|h| sizes(h, None, None, overrides));
     };
-    if wish.h.is_none() {
+    if overrides.h.is_none() {
         section.require("h");
     }
     let number = |key| section.number(key);
@@ -249,7 +247,7 @@ fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
         ("h_fracture", h_fracture, h),
         ("h_intersection", h_intersection, h_fracture.or(h)),
     ] {
-        if let (None, Some(fine), Some(coarse)) = (wish.h, fine, coarse)
+        if let (None, Some(fine), Some(coarse)) = (overrides.h, fine, coarse)
             && fine > coarse
         {
             let remedy = "cells become finer towards fractures: h >= h_fracture >= h_intersection";
@@ -261,7 +259,7 @@ fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
         }
     }
     section.finish();
-    let plain = sizes(wish.h.or(h)?, h_fracture, h_intersection, wish);
+    let plain = sizes(overrides.h.or(h)?, h_fracture, h_intersection, overrides);
     Some(CellSizes {
         growth: growth.unwrap_or(plain.growth),
         small: small.unwrap_or(plain.small),
@@ -269,37 +267,6 @@ fn read_sizes(root: &Section<'_, '_>, wish: &Wish) -> Option<CellSizes> {
         snap: plain.snap && snap,
         ..plain
     })
-}
-
-/// The seed in a section.
-pub(super) fn read_seed(section: &Section<'_, '_>) -> Option<u64> {
-    section.number("seed").map(|seed| seed as u64)
-}
-
-/// Dip and dip direction in a section.
-pub(super) fn read_orientation(section: &Section<'_, '_>) -> Option<Orientation> {
-    section.require("dip");
-    section.require("dip_direction");
-    let dip = section.number_in("dip", Range::NotNegative);
-    if dip.is_some_and(|dip| dip > 90.0) {
-        section.refuse(
-            "dip",
-            "a dip is at most 90 degrees".into(),
-            "turn the dip direction by 180 instead",
-        );
-    }
-    let dip_direction = section.number("dip_direction");
-    Some(Orientation {
-        dip: dip.filter(|dip| *dip <= 90.0)?,
-        dip_direction: dip_direction?,
-    })
-}
-
-/// Number of corners of a disc or an ellipse.
-pub(super) fn read_sides(section: &Section<'_, '_>) -> usize {
-    section
-        .number("sides")
-        .map_or(SIDES, |sides| sides as usize)
 }
 
 fn read_fracture(section: Section<'_, '_>, sets: &[String]) -> Option<InputFracture> {

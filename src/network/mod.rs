@@ -1,6 +1,8 @@
 //! From a list of fractures or a description of random sets to a geometry and a scene.
 
 mod input;
+mod keys;
+mod passages;
 mod record;
 mod scene;
 mod sets;
@@ -14,7 +16,7 @@ use kluft_network::{Domain, Grouping, Network, write_geo};
 
 use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
-use input::{Input, Wish};
+use input::{Input, Overrides};
 use record::Record;
 
 /// First line of a scene that may be written again.
@@ -46,12 +48,12 @@ pub struct NetworkOptions {
 /// Every defect of the input; fractures that overlap in one plane; files that cannot be written.
 pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure> {
     let report = Report::new(options.verbosity);
-    let wish = Wish {
+    let overrides = Overrides {
         domain: options.domain,
         h: options.h,
         keep_small: options.keep_small,
     };
-    let input = Input::read(file, &wish)?;
+    let input = Input::read(file, &overrides)?;
     let name = file.file_name().unwrap_or_default().display();
     report.entry("network", &format!("{name}  {}", input.title));
     let network = Network::build(input.domain, input.sizes, input.given.clone())?;

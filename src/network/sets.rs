@@ -8,8 +8,8 @@ use kluft_network::{
     check_name, read_list,
 };
 
-use super::input::{read_orientation, read_seed, read_sides, read_text};
-use super::scene::{Passage, passage};
+use super::keys::{read_orientation, read_seed, read_sides, read_text};
+use super::passages::{Passage, passage};
 use kluft_scene::reader::{Section, Source};
 use kluft_scene::{Clock, read_fracture};
 

@@ -5,11 +5,10 @@ use std::fmt::Write;
 use super::Study;
 use super::assess::{Assessment, Series};
 use super::charts::subject;
+use super::dimension::Kind;
 use super::edits::difference;
-use super::page::told;
 use super::point::Record;
 use super::reference::slope;
-use super::settings::Kind;
 use super::words::{duration, percent, short};
 
 /// The cheapest setting, by measured time, whose error is surely not above a tolerance.
@@ -81,7 +80,7 @@ fn others(study: &Study, found: &Assessment, but: usize) -> String {
 }
 
 /// Why no setting reaches a tolerance, which came nearest, and what to try.
-pub(super) fn missed(study: &Study, found: &Assessment, tolerance: f64) -> String {
+pub(super) fn closest_setting(study: &Study, found: &Assessment, tolerance: f64) -> String {
     let error = |i: &usize| found.verdicts[*i].at_most();
     let best = (0..study.records.len()).filter_map(|i| Some((i, error(&i)?)));
     let best = best.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -115,7 +114,7 @@ pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
         return "no setting was solved, see study.html for the reasons".into();
     }
     if let Some(reference) = found.references.first() {
-        return told(reference);
+        return reference.in_words();
     }
     let meshes = study.plan.dimensions.iter().find(|d| d.kind == Kind::Mesh);
     let count = meshes.map_or(0, |dimension| dimension.choices.len());
@@ -126,7 +125,7 @@ pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
 }
 
 /// What meshes that are one and the same mean.
-pub(super) fn twins(labels: &str) -> String {
+pub(super) fn identical_meshes(labels: &str) -> String {
     format!(
         "{labels} are one and the same mesh: sweep a parameter that sizes the cells of the geometry"
     )
@@ -166,7 +165,7 @@ fn next(study: &Study, found: &Assessment, tolerance: f64) -> Option<String> {
 }
 
 /// Whether anything came out of a study.
-pub(super) fn is_barren(records: &[Option<Record>]) -> bool {
+pub(super) fn has_no_result(records: &[Option<Record>]) -> bool {
     !records
         .iter()
         .flatten()

@@ -2,10 +2,11 @@
 
 use kluft_mesh::{Defect, nearest};
 
+use super::dimension::Kind;
 use super::point::{Numbers, Record};
 use super::reference::{Limit, limit};
-use super::settings::{Kind, Plan, Setting};
-use super::words::or_the_scene;
+use super::settings::{Plan, Setting};
+use super::words::{or_the_scene, percent, short};
 use kluft_run::Measure;
 
 /// What is charted.
@@ -28,6 +29,30 @@ pub(super) struct Reference {
     pub(super) from: String,
     /// The limit.
     pub(super) limit: Limit,
+}
+
+impl Reference {
+    /// What it is extrapolated from, and how.
+    pub(super) fn in_words(&self) -> String {
+        let limit = &self.limit;
+        let unsure = percent(limit.uncertainty / limit.value.abs());
+        let value = short(limit.value);
+        let rate = match limit.rate {
+            Some(rate) => format!(
+                "extrapolated to {value}, uncertain by {unsure}; differences shrink as cells^−{}",
+                short(rate / 3.0)
+            ),
+            None if limit.uncertainty.is_finite() => format!(
+                "the values swing, so the reference is the finest, {value}, uncertain by {unsure}"
+            ),
+            None => {
+                "the values drift: they differ no less from mesh to mesh, so nothing is known of \
+                their limit; finer meshes are needed"
+                    .to_owned()
+            }
+        };
+        format!("{}: {rate}", self.from)
+    }
 }
 
 /// What came out of a setting.
@@ -71,7 +96,7 @@ pub(super) struct Assessment {
     /// All settings, by series.
     pub(super) series: Vec<Series>,
     /// Meshes that are one and the same, by their labels.
-    pub(super) twins: Option<String>,
+    pub(super) identical_meshes: Option<String>,
 }
 
 /// Assesses what has been run; `records` has an entry for each setting.
@@ -95,7 +120,7 @@ pub(super) fn assess(plan: &Plan, records: &[Option<Record>]) -> Result<Assessme
     };
     Ok(Assessment {
         verdicts: plan.settings.iter().zip(&done).map(verdict).collect(),
-        twins: twins(plan, &done),
+        identical_meshes: identical_meshes(plan, &done),
         series: series(plan, &done),
         target,
         references,
@@ -132,22 +157,23 @@ fn find<'a>(numbers: &'a Numbers, target: &Target) -> Option<&'a Measure> {
 }
 
 fn target(plan: &Plan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defect> {
-    let wish = &plan.wish;
+    let request = &plan.request;
     let Some(first) = done.iter().flatten().next() else {
         return Ok(None);
     };
     let all = || done.iter().flatten().flat_map(|numbers| &numbers.measures);
-    let on = |measure: &&Measure| wish.fracture.is_none() || measure.fracture == wish.fracture;
+    let on =
+        |measure: &&Measure| request.fracture.is_none() || measure.fracture == request.fracture;
     let named = |name: &str| all().filter(on).find(|measure| measure.name == name);
     let compared = || all().filter(on).find(|measure| measure.error.is_some());
     let of_largest = || {
         let is_largest = |measure: &&Measure| {
-            wish.fracture.is_some() || measure.fracture == first.largest_fracture
+            request.fracture.is_some() || measure.fracture == first.largest_fracture
         };
         let mean = |measure: &&Measure| measure.name == "mean_aperture";
         all().filter(on).filter(is_largest).find(mean)
     };
-    let found = match &wish.measure {
+    let found = match &request.measure {
         Some(name) => named(name),
         None => compared().or_else(of_largest).or_else(|| all().find(on)),
     };
@@ -163,9 +189,9 @@ fn target(plan: &Plan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defe
 }
 
 fn unknown(plan: &Plan, numbers: &Numbers) -> Defect {
-    let wish = &plan.wish;
-    let wanted = wish.measure.as_deref().unwrap_or("any");
-    let on = wish
+    let request = &plan.request;
+    let wanted = request.measure.as_deref().unwrap_or("any");
+    let on = request
         .fracture
         .as_ref()
         .map_or_else(String::new, |name| format!(" on `{name}`"));
@@ -184,7 +210,7 @@ fn unknown(plan: &Plan, numbers: &Numbers) -> Defect {
     let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
     let problem = format!("the runs have no measure `{wanted}`{on}");
     Defect::new(
-        wish.place.as_str(),
+        request.place.as_str(),
         problem,
         format!("{near}measures of the runs: {known}"),
     )
@@ -194,7 +220,7 @@ fn unknown(plan: &Plan, numbers: &Numbers) -> Defect {
 fn reference_key(plan: &Plan, setting: &Setting) -> Vec<usize> {
     let mut setting = setting.clone();
     let closure = plan.dimensions.iter().position(|d| d.kind == Kind::Closure);
-    if let (Some(label), Some(closure)) = (&plan.wish.reference, closure) {
+    if let (Some(label), Some(closure)) = (&plan.request.reference, closure) {
         let choices = &plan.dimensions[closure].choices;
         let named = choices.iter().position(|choice| choice.label == *label);
         setting.choices[closure] = named.unwrap_or(setting.choices[closure]);
@@ -263,7 +289,7 @@ fn references(
 }
 
 /// Two meshes of a series with as many cells and unknowns: the geometry does not heed what is swept.
-fn twins(plan: &Plan, done: &[Option<&Numbers>]) -> Option<String> {
+fn identical_meshes(plan: &Plan, done: &[Option<&Numbers>]) -> Option<String> {
     let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;
     let size = |i: usize| done[i].map(|numbers| (numbers.cells, numbers.unknowns));
     let label = |i: usize| plan.label(&plan.settings[i], mesh);

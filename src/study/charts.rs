@@ -2,9 +2,9 @@
 
 use super::Study;
 use super::assess::{Assessment, Series};
+use super::dimension::Kind;
 use super::point::Numbers;
 use super::reference::slope;
-use super::settings::Kind;
 use super::words::{or_the_scene, percent, unit};
 use kluft_chart::{Axis, Band, Chart, Series as Line};
 

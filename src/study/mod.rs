@@ -6,6 +6,7 @@
 mod answer;
 mod assess;
 mod charts;
+mod dimension;
 mod edits;
 mod machine;
 mod page;
@@ -77,7 +78,7 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
         report.entry("result", &line);
     }
     report.entry("open", &study.out.join("study.html").display().to_string());
-    if answer::is_barren(&study.records) {
+    if answer::has_no_result(&study.records) {
         let why = study.records.iter().flatten().find_map(Record::failure);
         let why = why.unwrap_or_default();
         return Err(Failure::NotReached(format!(
@@ -88,7 +89,7 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
         return Ok(());
     };
     let Some(best) = answer::cheapest(&study, &found, tolerance) else {
-        return Err(Failure::NotReached(answer::missed(
+        return Err(Failure::NotReached(answer::closest_setting(
             &study, &found, tolerance,
         )));
     };
@@ -304,9 +305,14 @@ fn summary(study: &Study, found: &Assessment) -> Vec<String> {
     if found.verdicts.iter().all(|verdict| verdict.error.is_none()) {
         lines.push(format!("no errors: {}", answer::no_errors(study, found)));
     }
-    lines.extend(found.twins.as_deref().map(answer::twins));
+    lines.extend(
+        found
+            .identical_meshes
+            .as_deref()
+            .map(answer::identical_meshes),
+    );
     for reference in &found.references {
-        lines.push(page::told(reference));
+        lines.push(reference.in_words());
     }
     for index in study.front(found) {
         let error = found.verdicts[index]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::assess::{Assessment, Reference};
+use super::assess::Assessment;
 use super::charts::{Named, subject};
 use super::point::{Numbers, Record};
 use super::words::{duration, memory, percent, short};
@@ -56,26 +56,6 @@ pub(super) fn escaped(text: &str) -> String {
     out
 }
 
-/// A reference in words.
-pub(super) fn told(reference: &Reference) -> String {
-    let limit = &reference.limit;
-    let unsure = percent(limit.uncertainty / limit.value.abs());
-    let value = short(limit.value);
-    let rate = match limit.rate {
-        Some(rate) => format!(
-            "extrapolated to {value}, uncertain by {unsure}; differences shrink as cells^−{}",
-            short(rate / 3.0)
-        ),
-        None if limit.uncertainty.is_finite() => format!(
-            "the values swing, so the reference is the finest, {value}, uncertain by {unsure}"
-        ),
-        None => "the values drift: they differ no less from mesh to mesh, so nothing is known of \
-            their limit; finer meshes are needed"
-            .to_owned(),
-    };
-    format!("{}: {rate}", reference.from)
-}
-
 /// What was measured against what, and what came out.
 fn lead(study: &Study, found: &Assessment) -> String {
     let mut out = String::new();
@@ -106,12 +86,12 @@ fn lead(study: &Study, found: &Assessment) -> String {
     if !found.references.is_empty() {
         let items = found.references.iter();
         let items: String = items
-            .map(|r| format!("<li>{}</li>\n", escaped(&told(r))))
+            .map(|r| format!("<li>{}</li>\n", escaped(&r.in_words())))
             .collect();
         let _ = write!(out, "<ul>\n{items}</ul>\n");
     }
-    if let Some(labels) = &found.twins {
-        let text = escaped(&answer::twins(labels));
+    if let Some(labels) = &found.identical_meshes {
+        let text = escaped(&answer::identical_meshes(labels));
         let _ = writeln!(out, "<p class=\"failed\">{text}.</p>");
     }
     if has_errors {

@@ -6,61 +6,13 @@ use kluft_keys::Document;
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
-use super::edits::Edit;
+use super::dimension::{Dimension, Kind};
 use super::sweep;
 use kluft_scene::Scene;
 use kluft_scene::reader::{Section, Source};
 
 /// Most settings of a study; more are taken for a slip.
 const MOST_SETTINGS: usize = 2000;
-
-/// What a dimension changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Parameters of the mesh.
-    Mesh,
-    /// Order of the elements.
-    Order,
-    /// The closure law, with keys of it.
-    Closure,
-    /// A number of the fractures.
-    Value,
-    /// How facets are integrated.
-    Facets,
-    /// The linear solver.
-    Solver,
-}
-
-impl Kind {
-    /// Whether the solution that finer and finer meshes approach depends on it.
-    pub(super) fn is_physics(self) -> bool {
-        matches!(self, Self::Closure | Self::Value)
-    }
-}
-
-/// One choice of a dimension.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Choice {
-    /// What tables and charts call it.
-    pub(super) label: String,
-    /// What it changes in the scene.
-    pub(super) edits: Vec<Edit>,
-    /// The number it stands for, if it stands for one.
-    pub(super) number: Option<f64>,
-    /// Cost against that of the scene's own choice, roughly.
-    pub(super) cost: f64,
-}
-
-/// A dimension of the sweep.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Dimension {
-    /// Its name, also that of its column.
-    pub(super) name: String,
-    /// What it changes.
-    pub(super) kind: Kind,
-    /// Its choices, at least one.
-    pub(super) choices: Vec<Choice>,
-}
 
 /// A point of the product.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +27,7 @@ pub(super) struct Setting {
 
 /// What is charted.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Wish {
+pub(super) struct StudyRequest {
     /// Name of the measure; none for the first that serves.
     pub(super) measure: Option<String>,
     /// Its fracture.
@@ -96,7 +48,7 @@ pub(super) struct Plan {
     /// The product, cheapest first.
     pub(super) settings: Vec<Setting>,
     /// What is charted.
-    pub(super) wish: Wish,
+    pub(super) request: StudyRequest,
 }
 
 impl Plan {
@@ -119,9 +71,9 @@ impl Plan {
             .as_ref()
             .map(|table| Section::root(&source, table.get_ref()));
         let section = root.as_ref().and_then(|root| root.section("study"));
-        let (dimensions, wish) = match (section, asked) {
+        let (dimensions, request) = match (section, asked) {
             (Some(section), Some(asked)) => read_study(section, asked, &scene),
-            _ => (sweep::by_default(&scene, &name)?, Wish::default()),
+            _ => (sweep::by_default(&scene, &name)?, StudyRequest::default()),
         };
         let defects = source.into_defects();
         if !defects.is_empty() {
@@ -137,7 +89,7 @@ impl Plan {
             settings: product(&dimensions),
             scene,
             dimensions,
-            wish,
+            request,
         };
         let defects = defects_of(&plan, &name);
         defects.is_empty().then_some(plan).ok_or(defects)
@@ -182,10 +134,14 @@ impl Plan {
     }
 }
 
-fn read_study(section: Section<'_, '_>, asked: &Table, scene: &Table) -> (Vec<Dimension>, Wish) {
+fn read_study(
+    section: Section<'_, '_>,
+    asked: &Table,
+    scene: &Table,
+) -> (Vec<Dimension>, StudyRequest) {
     let dimensions = sweep::read(&section, asked, scene);
     let text = |key| section.text(key).map(str::to_owned);
-    let wish = Wish {
+    let request = StudyRequest {
         measure: text("measure"),
         fracture: text("fracture"),
         reference: text("reference"),
@@ -196,7 +152,7 @@ fn read_study(section: Section<'_, '_>, asked: &Table, scene: &Table) -> (Vec<Di
         .flat_map(|dimension| &dimension.choices)
         .map(|choice| choice.label.as_str())
         .collect();
-    if let Some(name) = &wish.reference
+    if let Some(name) = &request.reference
         && !labels.contains(&name.as_str())
     {
         let problem = format!("no entry of `closures` has the label \"{name}\"");
@@ -204,7 +160,7 @@ fn read_study(section: Section<'_, '_>, asked: &Table, scene: &Table) -> (Vec<Di
         section.refuse("reference", problem, remedy);
     }
     section.finish();
-    (dimensions, wish)
+    (dimensions, request)
 }
 
 /// Scenes of the settings lie in other folders.

@@ -5,8 +5,8 @@ use kluft_keys::scene::{CLOSURES, FRACTURE};
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
+use super::dimension::{Choice, Dimension, Kind};
 use super::edits::Edit;
-use super::settings::{Choice, Dimension, Kind};
 use super::words::digits;
 use kluft_scene::reader::{Entry, Section};
 use kluft_scene::refused_keys;

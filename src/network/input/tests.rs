@@ -2,7 +2,7 @@ use kluft_keys::Section as Keys;
 
 use super::*;
 
-const WISH: Wish = Wish {
+const OVERRIDES: Overrides = Overrides {
     domain: None,
     h: None,
     keep_small: false,
@@ -89,7 +89,7 @@ fn read(text: &str) -> (Option<Input>, Vec<Defect>, Vec<String>) {
     let table = source.parse().expect("TOML");
     let root = Section::root(&source, table.get_ref());
     let mut defects = Vec::new();
-    let input = read_description(&source, &root, Path::new("."), &WISH, &mut defects);
+    let input = read_description(&source, &root, Path::new("."), &OVERRIDES, &mut defects);
     root.finish();
     let unasked = source.unasked();
     defects.extend(source.into_defects());

@@ -210,10 +210,10 @@ fn meshes_that_do_not_differ_are_named() {
     let plan = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]");
     let run = |cells| solved(cells, vec![measure("mean_aperture", "b", 1.0, None)]);
     let found = assess(&plan, &[run(10), run(80), run(80)]).expect("an assessment");
-    assert_eq!(found.twins.as_deref(), Some("h=0.2 and h=0.1"));
+    assert_eq!(found.identical_meshes.as_deref(), Some("h=0.2 and h=0.1"));
     assert!(found.references.is_empty(), "two meshes have no limit");
     let found = assess(&plan, &[run(10), run(80), None]).expect("an assessment");
-    assert_eq!(found.twins, None);
+    assert_eq!(found.identical_meshes, None);
 }
 
 #[test]
