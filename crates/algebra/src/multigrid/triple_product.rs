@@ -51,16 +51,13 @@ impl PartialProduct {
         let starts = (0..rows).step_by(batch::<N>());
         let parts = starts.map(|start| {
             let rows = start..rows.min(start + batch::<N>());
-            let aggregates = transpose.columns();
-            let is_wanted = &is_wanted;
-            set_image(
-                &mut image,
+            let image_rows = ImageRows {
                 matrix,
                 prolongator,
-                aggregates,
-                &rows,
-                is_wanted,
-            );
+                aggregates: transpose.columns(),
+                rows: &rows,
+            };
+            image_rows.set(&mut image, &is_wanted);
             Self::of_image(prolongator, transpose, &rows, &image)
         });
         parts.collect()
@@ -162,47 +159,51 @@ fn places(aggregates: usize, parts: &[&PartialProduct]) -> (Vec<usize>, Vec<(u32
     (offset, places)
 }
 
-/// Some rows of `A P`, empty if not wanted.
-fn set_image<const N: usize>(
-    image: &mut Sparse<N, 6>,
-    matrix: &Sparse<N, N>,
-    prolongator: &Sparse<N, 6>,
+/// Some rows of `A P`.
+struct ImageRows<'a, const N: usize> {
+    matrix: &'a Sparse<N, N>,
+    prolongator: &'a Sparse<N, 6>,
+    /// Number of columns.
     aggregates: usize,
-    rows: &Range<usize>,
-    is_wanted: impl Fn(usize) -> bool + Sync,
-) {
-    image.rebuild(
-        rows.len(),
-        rows_per_task::<N>(),
-        || Accumulator::<N, 6>::new(aggregates),
-        |sums, row| {
-            let row = rows.start + row;
-            if !is_wanted(row) {
-                return 0;
-            }
-            for at in std::iter::once(row).chain(matrix.row(row).map(|(at, _)| at)) {
-                let columns = &prolongator.columns[prolongator.range(at)];
-                columns.iter().for_each(|&column| sums.touch(column));
-            }
-            sums.take_count()
-        },
-        #[inline(always)]
-        |sums, row, columns, blocks| {
-            let row = rows.start + row;
-            if !is_wanted(row) {
-                return;
-            }
-            for (column, block) in prolongator.row(row) {
-                add(sums.at(column as u32), 1.0, &widen(block));
-            }
-            for (at, block) in matrix.row(row) {
-                for (column, line) in prolongator.row(at) {
-                    add_product(sums.at(column as u32), 1.0, block, line);
+    rows: &'a Range<usize>,
+}
+
+impl<const N: usize> ImageRows<'_, N> {
+    /// Sets `image` to them, empty if not wanted.
+    fn set(&self, image: &mut Sparse<N, 6>, is_wanted: impl Fn(usize) -> bool + Sync) {
+        image.rebuild(
+            self.rows.len(),
+            rows_per_task::<N>(),
+            || Accumulator::<N, 6>::new(self.aggregates),
+            |sums, row| {
+                let row = self.rows.start + row;
+                if !is_wanted(row) {
+                    return 0;
                 }
-            }
-            sums.take(columns, blocks);
-        },
-    );
+                for at in std::iter::once(row).chain(self.matrix.row(row).map(|(at, _)| at)) {
+                    let columns = &self.prolongator.columns[self.prolongator.range(at)];
+                    columns.iter().for_each(|&column| sums.touch(column));
+                }
+                sums.take_count()
+            },
+            #[inline(always)]
+            |sums, row, columns, blocks| {
+                let row = self.rows.start + row;
+                if !is_wanted(row) {
+                    return;
+                }
+                for (column, block) in self.prolongator.row(row) {
+                    add(sums.at(column as u32), 1.0, &widen(block));
+                }
+                for (at, block) in self.matrix.row(row) {
+                    for (column, line) in self.prolongator.row(at) {
+                        add_product(sums.at(column as u32), 1.0, block, line);
+                    }
+                }
+                sums.take(columns, blocks);
+            },
+        );
+    }
 }
 
 /// Some rows of `P` and of `A P`.

@@ -233,6 +233,14 @@ impl Interface {
         }
     }
 
+    /// Adds the forces (N) of a fluid with these pressures (Pa), one for each facet point, to those on
+    /// all unknowns. It pushes the walls apart: it resists closing like a traction of `-p n`.
+    pub fn add_pressures(&self, pressures: &[f64], forces: &mut [DVec3]) {
+        let push = self.points.iter().zip(pressures);
+        let push: Vec<DVec3> = push.map(|(point, p)| *p * point.normal).collect();
+        self.add_forces(&push, 1.0, forces);
+    }
+
     /// [`Self::stiffness`] of fractures as stiff as the rock beside them.
     pub fn springs(&self) -> Vec<DMat3> {
         let points = self.points.iter();

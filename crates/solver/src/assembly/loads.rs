@@ -98,15 +98,15 @@ fn applied(space: Space<'_>, interface: &Interface, case: usize) -> Vec<DVec3> {
     };
     add_surface_loads(space, case, &mut on_points);
     let mut applied = on_unknowns(space, &on_points);
-    // The fluid pushes the walls apart: it resists closing like a traction of -p n.
-    let push = interface.points.iter().map(|point| {
+    let pressures = interface.points.iter().map(|point| {
         let fracture = point.fracture as usize;
-        match cases.of_fracture(fracture) == case {
-            true => space.problem.fractures[fracture].fluid_pressure * point.normal,
-            false => DVec3::ZERO,
+        if cases.of_fracture(fracture) == case {
+            space.problem.fractures[fracture].fluid_pressure
+        } else {
+            0.0
         }
     });
-    interface.add_forces(&push.collect::<Vec<_>>(), 1.0, &mut applied);
+    interface.add_pressures(&pressures.collect::<Vec<_>>(), &mut applied);
     applied
 }
 

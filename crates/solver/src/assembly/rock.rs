@@ -58,12 +58,12 @@ fn assemble(space: Space<'_>, in_tetrahedra: &[bool]) -> BlockMatrix {
         || tetrahedra.scratch(),
         |scratch, (nodes, rows)| tetrahedra.set_share(nodes.clone(), rows, scratch),
     );
-    let mut rock = Rock::of(space, in_tetrahedra, &is_plain);
-    for cells in rock.waves() {
-        rock.compute(cells);
+    let mut matrices = CellMatrices::of(space, in_tetrahedra, &is_plain);
+    for cells in matrices.waves() {
+        matrices.compute(cells);
         shares.par_iter_mut().for_each_init(
-            || Scratch::of(space),
-            |scratch, (nodes, rows)| rock.add_to_share(nodes.clone(), rows, scratch),
+            || RowScratch::of(space),
+            |scratch, (nodes, rows)| matrices.add_to_share(nodes.clone(), rows, scratch),
         );
     }
     BlockMatrix { blocks }
@@ -82,7 +82,7 @@ fn plain(space: Space<'_>) -> Vec<bool> {
 
 /// Source of the rows of cells, for the cells of one wave; nodes in linear tetrahedra only are
 /// passed over.
-struct Rock<'a> {
+struct CellMatrices<'a> {
     space: Space<'a>,
     /// Lamé's constants of each rock (Pa).
     lame: Vec<(f64, f64)>,
@@ -96,7 +96,7 @@ struct Rock<'a> {
     matrices: Vec<DMat3>,
 }
 
-impl<'a> Rock<'a> {
+impl<'a> CellMatrices<'a> {
     fn of(space: Space<'a>, in_tetrahedra: &'a [bool], is_plain: &'a [bool]) -> Self {
         let shapes = space.problem.mesh.cells.shapes.par_iter();
         let stored = shapes.filter(|&&shape| shape != Shape::Tet4);
@@ -149,7 +149,7 @@ impl<'a> Rock<'a> {
     }
 
     /// Row of a cell's stiffness; `tetrahedron` is room for it.
-    fn row<'r>(&'r self, visit: &Visit, tetrahedron: &'r mut [DMat3; 4]) -> &'r [DMat3] {
+    fn row<'r>(&'r self, visit: &CellRow, tetrahedron: &'r mut [DMat3; 4]) -> &'r [DMat3] {
         let count = visit.count as usize;
         if count != TETRAHEDRON {
             let matrix = self.stride * (visit.cell as usize - self.cells.start);
@@ -162,7 +162,7 @@ impl<'a> Rock<'a> {
         tetrahedron
     }
 
-    fn visit(&self, slot: u32) -> Visit {
+    fn visit(&self, slot: u32) -> CellRow {
         let Space {
             problem, pattern, ..
         } = self.space;
@@ -172,7 +172,7 @@ impl<'a> Rock<'a> {
         if range.len() == TETRAHEDRON {
             nodes.copy_from_slice(&cells.nodes[range.clone()]);
         }
-        Visit {
+        CellRow {
             cell: cell as u32,
             local: slot - range.start as u32,
             count: range.len() as u32,
@@ -185,11 +185,11 @@ impl<'a> Rock<'a> {
     }
 
     /// Adds what the cells of the wave contribute to the rows of consecutive nodes.
-    fn add_to_share(&self, nodes: Range<usize>, rows: &mut [DMat3], scratch: &mut Scratch) {
+    fn add_to_share(&self, nodes: Range<usize>, rows: &mut [DMat3], scratch: &mut RowScratch) {
         let Space {
             points, pattern, ..
         } = self.space;
-        let Scratch { place, visits } = scratch;
+        let RowScratch { place, visits } = scratch;
         // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
         // them.
         visits.clear();
@@ -223,7 +223,7 @@ impl<'a> Rock<'a> {
     }
 
     /// The row of a node whose neighbours, like itself, have one sector and no constraint.
-    fn add_plain(&self, slots: &[u32], visits: &[Visit], row: &mut [DMat3], place: &[u32]) {
+    fn add_plain(&self, slots: &[u32], visits: &[CellRow], row: &mut [DMat3], place: &[u32]) {
         let mut tetrahedron = [DMat3::ZERO; 4];
         for (&slot, visit) in slots.iter().zip(visits) {
             let blocks = self.row(visit, &mut tetrahedron);
@@ -243,7 +243,7 @@ impl<'a> Rock<'a> {
         &self,
         node: usize,
         slots: &[u32],
-        visits: &[Visit],
+        visits: &[CellRow],
         rows: &mut [DMat3],
         place: &[u32],
     ) {
@@ -276,7 +276,7 @@ impl<'a> Rock<'a> {
 }
 
 /// One occurrence of a node in a cell.
-struct Visit {
+struct CellRow {
     cell: u32,
     /// Number of the node within the cell.
     local: u32,
@@ -288,13 +288,13 @@ struct Visit {
 }
 
 /// Room that a thread uses again and again.
-struct Scratch {
+struct RowScratch {
     /// For the neighbours of a node, where their blocks start in its rows.
     place: Vec<u32>,
-    visits: Vec<Visit>,
+    visits: Vec<CellRow>,
 }
 
-impl Scratch {
+impl RowScratch {
     fn of(space: Space<'_>) -> Self {
         Self {
             place: vec![0; space.problem.mesh.nodes.len()],

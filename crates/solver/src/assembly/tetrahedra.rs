@@ -57,7 +57,7 @@ struct Tetrahedron {
 }
 
 /// One occurrence of a node in a cell.
-struct Visit {
+struct Corner {
     /// Number of the cell among those of the task.
     cell: u32,
     /// Number of the node within the cell.
@@ -65,14 +65,14 @@ struct Visit {
 }
 
 /// Room that a thread uses again and again.
-pub(crate) struct Scratch {
+pub(crate) struct CellScratch {
     /// Number of each cell among those of the task, plus `base`; less if it is not among them yet.
     number: Vec<u32>,
     base: u32,
     /// The first visit's slot of each cell of the task.
     firsts: Vec<u32>,
     cells: Vec<Tetrahedron>,
-    visits: Vec<Visit>,
+    visits: Vec<Corner>,
     /// For the points around a node, the number of their blocks in its rows.
     place: Vec<u32>,
 }
@@ -87,8 +87,8 @@ impl<'a> Tetrahedra<'a> {
         }
     }
 
-    pub(crate) fn scratch(&self) -> Scratch {
-        Scratch {
+    pub(crate) fn scratch(&self) -> CellScratch {
+        CellScratch {
             number: vec![0; self.space.problem.mesh.cells.len()],
             base: 1,
             firsts: Vec::new(),
@@ -100,7 +100,12 @@ impl<'a> Tetrahedra<'a> {
 
     /// Writes the rows of those of consecutive nodes that are in tetrahedra only, and zeros into
     /// the others.
-    pub(crate) fn set_share(&self, nodes: Range<usize>, rows: &mut [DMat3], scratch: &mut Scratch) {
+    pub(crate) fn set_share(
+        &self,
+        nodes: Range<usize>,
+        rows: &mut [DMat3],
+        scratch: &mut CellScratch,
+    ) {
         let Space {
             points, pattern, ..
         } = self.space;
@@ -136,16 +141,16 @@ impl<'a> Tetrahedra<'a> {
             self.sum(&scratch.cells, here, &mut rows);
             for &other in pattern.neighbours.of(node) {
                 if !(self.is_plain[node] && self.is_plain[other as usize]) {
-                    self.enrich((node, other as usize), &mut rows);
+                    self.enrich(node, other as usize, &mut rows);
                 }
             }
         }
     }
 
     /// Stiffness between the points of a node and those around it.
-    fn sum(&self, cells: &[Tetrahedron], visits: &[Visit], rows: &mut Rows<'_>) {
+    fn sum(&self, cells: &[Tetrahedron], visits: &[Corner], rows: &mut Rows<'_>) {
         let rock = cells[visits[0].cell as usize].rock;
-        let is_other = |visit: &Visit| cells[visit.cell as usize].rock != rock;
+        let is_other = |visit: &Corner| cells[visit.cell as usize].rock != rock;
         if visits.iter().any(is_other) {
             rows.add(cells, visits, |cell, moment| {
                 kernel::of_moments(moment, self.lame[cell.rock as usize])
@@ -161,7 +166,7 @@ impl<'a> Tetrahedra<'a> {
 
     /// Turns blocks between the points of the rows' node and of another one into blocks between
     /// their unknowns: `T^T (P K P + s (I - P)) T`.
-    fn enrich(&self, (node, other): (usize, usize), rows: &mut Rows<'_>) {
+    fn enrich(&self, node: usize, other: usize, rows: &mut Rows<'_>) {
         let points = self.space.points;
         let (own, others) = (points.of_node(node), points.of_node(other));
         let start = rows.place[others.start] as usize;
@@ -220,7 +225,7 @@ impl<'a> Tetrahedra<'a> {
     }
 }
 
-impl Scratch {
+impl CellScratch {
     /// Computes the cells around `nodes`, each once.
     fn gather(&mut self, source: &Tetrahedra<'_>, nodes: impl Iterator<Item = usize>) {
         let Space {
@@ -241,7 +246,7 @@ impl Scratch {
                 self.number[cell] = number;
                 self.firsts[count as usize] = slot;
                 count += u32::from(is_new);
-                Visit {
+                Corner {
                     cell: number - self.base,
                     local: slot - own.start as u32,
                 }
@@ -270,7 +275,7 @@ impl Rows<'_> {
     fn add(
         &mut self,
         cells: &[Tetrahedron],
-        visits: &[Visit],
+        visits: &[Corner],
         of: impl Fn(&Tetrahedron, DMat3) -> DMat3,
     ) {
         for visit in visits {

@@ -66,7 +66,10 @@ impl Supports {
         for (index, condition) in problem.conditions.iter().enumerate() {
             match condition.support {
                 Some(Support::Displacement(components)) => {
-                    let wanted = (components, cases.of_condition(index));
+                    let wanted = Wanted {
+                        values: components,
+                        case: cases.of_condition(index),
+                    };
                     demand_components(mesh, points, condition.boundary, wanted, &mut demands);
                 }
                 Some(Support::Symmetry) => {
@@ -76,7 +79,10 @@ impl Supports {
             }
         }
         for (index, fixed) in problem.fixed_points.iter().enumerate() {
-            let wanted = (fixed.displacement, cases.of_fixed_point(index));
+            let wanted = Wanted {
+                values: fixed.displacement,
+                case: cases.of_fixed_point(index),
+            };
             for point in points.of_node(fixed.node as usize) {
                 let list = demands.entry(point as u32).or_default();
                 list.extend(components(wanted, &fixed.name));
@@ -162,10 +168,17 @@ impl Supports {
     }
 }
 
-/// Prescribed components (m), and the load case that scales them.
-type Wanted = ([Option<f64>; 3], usize);
+/// Prescribed components.
+#[derive(Clone, Copy)]
+struct Wanted {
+    /// Displacements (m) along the axes, where they are prescribed.
+    values: [Option<f64>; 3],
+    /// The load case that scales them.
+    case: usize,
+}
 
-fn components((values, case): Wanted, source: &str) -> impl Iterator<Item = Demand<'_>> {
+fn components(wanted: Wanted, source: &str) -> impl Iterator<Item = Demand<'_>> {
+    let Wanted { values, case } = wanted;
     let named = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().zip(values);
     named.filter_map(move |(direction, value)| {
         value.map(|value| Demand {
