@@ -41,12 +41,11 @@ pub struct ConjugateGradientReport {
 }
 
 impl ConjugateGradientReport {
-    /// Nothing to solve for.
-    fn of_nothing() -> Self {
+    fn of(outcome: ConjugateGradientOutcome, residuals: Vec<f64>) -> Self {
         Self {
-            outcome: ConjugateGradientOutcome::Converged,
-            iterations: 0,
-            residuals: vec![0.0],
+            outcome,
+            iterations: residuals.len() - 1,
+            residuals,
         }
     }
 }
@@ -82,7 +81,7 @@ pub fn conjugate_gradients(
     let scale = state.length(rhs);
     if scale == 0.0 {
         solution.fill(DVec3::ZERO);
-        return ConjugateGradientReport::of_nothing();
+        return ConjugateGradientReport::of(ConjugateGradientOutcome::Converged, vec![0.0]);
     }
     // `A x` of nothing stands there already.
     if solution.par_iter().any(|entry| *entry != DVec3::ZERO) {
@@ -91,8 +90,7 @@ pub fn conjugate_gradients(
     let mut length = state.start(rhs) / scale;
     let mut residuals = Vec::with_capacity(settings.max_iterations + 1);
     residuals.push(length);
-    let mut energy = 0.0;
-    let mut step = 0.0;
+    let (mut energy, mut step) = (0.0, 0.0);
     let outcome = loop {
         if !length.is_finite() {
             break ConjugateGradientOutcome::NotFinite;
@@ -126,11 +124,7 @@ pub fn conjugate_gradients(
         length = state.advance(step, solution) / scale;
         residuals.push(length);
     };
-    ConjugateGradientReport {
-        outcome,
-        iterations: residuals.len() - 1,
-        residuals,
-    }
+    ConjugateGradientReport::of(outcome, residuals)
 }
 
 impl State {

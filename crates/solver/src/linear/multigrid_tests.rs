@@ -263,7 +263,6 @@ fn hard_boxes_are_solved() {
     ];
     for (name, case, most) in cases {
         let iterations = case.case().solve().1;
-        println!("{name}: {iterations} iterations");
         assert!(iterations <= most, "{name}: {iterations} iterations");
     }
 }
