@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use glam::DVec3;
-use kluft_keys::{Document, Range};
+use kluft_keys::Document;
 use kluft_mesh::Defect;
 use kluft_network::{
-    CellSizes, Domain, InputFracture, Orientation, Outline, Polygon, SIDES, check_name, read_list,
-    repeated_names,
+    CellSizes, Domain, InputFracture, Outline, Polygon, check_name, read_list, repeated_names,
 };
 
 use super::keys::{read_orientation, read_seed, read_sides, read_text};

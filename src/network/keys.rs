@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kluft_keys::Range;
 use kluft_mesh::Defect;
 use kluft_network::{Orientation, SIDES};
 use kluft_scene::reader::Section;

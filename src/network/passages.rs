@@ -1,5 +1,7 @@
 //! Sections of a description that go into the scene as they are.
 
+use std::fmt::Write;
+
 use kluft_scene::reader::Section;
 use toml::de::{DeTable, DeValue};
 

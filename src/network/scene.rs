@@ -6,7 +6,7 @@ use kluft_network::{Grouping, Network};
 
 use super::MADE;
 use super::input::Input;
-use super::passages::{Passage, quoted};
+use super::passages::{Passage, key_text, quoted};
 
 const ROCK: &str = "
 [rock.rock]                       # assumed: granite

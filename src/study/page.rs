@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::assess::Assessment;
 use super::charts::{Named, subject};
 use super::point::{Numbers, Record};
-use super::words::{duration, memory, percent, short};
+use super::words::{duration, memory, percent};
 use super::{Study, answer};
 
 const STYLE: &str = include_str!("page.css");

@@ -7,6 +7,7 @@ use kluft_mesh::Defect;
 use toml::{Table, Value};
 
 use super::dimension::{Dimension, Kind};
+use super::edits::Edit;
 use super::sweep;
 use kluft_scene::Scene;
 use kluft_scene::reader::{Section, Source};
