@@ -8,6 +8,7 @@ use std::time::Instant;
 use glam::DVec3;
 use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, SurfaceLoad, System,
+    unobserved,
 };
 use kluft_verification::scenes::block;
 use lie_core::FractureLaw;
@@ -33,7 +34,7 @@ fn run(system: &System<'_>, method: Option<LinearMethod>, steps: usize) -> (usiz
     let mut counts = (0, 0);
     for step in 1..=steps {
         let load = step as f64 / steps as f64;
-        let record = newton.step(system, &mut state, &Load::proportional(load), |_, _| {});
+        let record = newton.solve_step(system, &mut state, &Load::proportional(load), unobserved);
         assert!(record.converged(), "{record:?}");
         counts.0 += record.iterations.len();
         counts.1 += record.linear_iterations();
@@ -54,7 +55,7 @@ fn sweep(system: &mut System<'_>, method: Option<LinearMethod>, count: usize) ->
             law.closure.normal_stiffness *= factor;
         }
         system.set_laws(stiffened);
-        let record = newton.step(system, &mut state, &Load::proportional(1.0), |_, _| {});
+        let record = newton.solve_step(system, &mut state, &Load::proportional(1.0), unobserved);
         assert!(record.converged(), "{record:?}");
         counts.0 += record.iterations.len();
         counts.1 += record.linear_iterations();

@@ -12,7 +12,7 @@ use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_ma
 use glam::DVec3;
 use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Pattern, Plan, System, Unknowns,
-    Workload,
+    Workload, unobserved,
 };
 use rayon::prelude::*;
 
@@ -48,11 +48,11 @@ fn stages(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("one load step", cubes), |bencher| {
             let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
             bencher.iter(|| {
-                newton.step(
+                newton.solve_step(
                     &system,
                     &mut system.initial_state(),
                     &Load::proportional(1.0),
-                    |_, _| {},
+                    unobserved,
                 )
             });
         });

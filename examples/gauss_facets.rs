@@ -48,7 +48,7 @@ fn solve(problem: &Problem, system: &System<'_>) -> Result<Solution, Box<dyn Err
         Newton::new(system, NewtonSettings::default()).map_err(|failure| format!("{failure:?}"))?;
     let mut state = system.initial_state();
     for step in &problem.schedule.steps {
-        let record = newton.step(system, &mut state, &step.load, |_, _| ());
+        let record = newton.solve_step(system, &mut state, &step.load, kluft_solver::unobserved);
         if !record.converged() {
             return Err("no convergence".into());
         }

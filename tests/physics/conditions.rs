@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
     Condition, Discretisation, InitialStress, Load, Newton, NewtonSettings, Problem, Profile,
-    Support, SurfaceLoad, System, solution,
+    Support, SurfaceLoad, System, solution, unobserved,
 };
 use lie_core::ClosureKind;
 
@@ -284,7 +284,7 @@ fn load_steps_end_where_one_step_does() {
         for load in steps {
             assert!(
                 newton
-                    .step(&system, &mut state, &Load::proportional(load), |_, _| {})
+                    .solve_step(&system, &mut state, &Load::proportional(load), unobserved)
                     .converged()
             );
         }

@@ -128,7 +128,10 @@ fn a_block_that_floats_settles_if_the_loads_allow_it() {
             let problem = hung(closure, gravity);
             for (record, solution) in walk(&problem, &[0.5, 1.0, -1.0, 0.0, 1.0]) {
                 assert!(record.converged(), "{closure:?} {gravity}: {record:?}");
-                assert!(record.parts.iter().all(|&count| count <= 12), "{record:?}");
+                assert!(
+                    record.substeps.iter().all(|&count| count <= 12),
+                    "{record:?}"
+                );
                 assert!(deepest(&solution, closure.aperture) < 1e-12 * 3.0);
                 let load = record.load.factors[0];
                 let apertures = solution.facet_points.iter().map(|point| point.aperture);
@@ -188,8 +191,8 @@ fn a_block_that_is_pulled_off_is_named() {
         let mut problem = stack(closure);
         scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, 1e6));
         let (record, _) = walk(&problem, &[1.0]).remove(0);
-        assert_eq!(record.outcome, Outcome::Loose);
-        let block = &record.loose[0];
+        assert_eq!(record.outcome, Outcome::RigidBodyMotion);
+        let block = &record.rigid_motions[0];
         assert!(block.problem.contains("translation along z"), "{block}");
         assert!(block.remedy.contains("`joints`"), "{block}");
     }
@@ -218,9 +221,9 @@ fn opening_and_closing_leaves_nothing_behind() {
     for (number, (record, solution)) in steps.iter().enumerate() {
         assert!(record.converged(), "{:?}", record.outcome);
         assert!(
-            record.parts.iter().all(|&count| count <= 12),
+            record.substeps.iter().all(|&count| count <= 12),
             "{:?}",
-            record.parts
+            record.substeps
         );
         let load = path[number];
         for (point, first) in

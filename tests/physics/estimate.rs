@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use kluft_mesh::Shape;
 use kluft_mesh::structured::{Patch, cells_of};
 use kluft_solver::{
-    Discretisation, Estimator, Newton, NewtonSettings, Problem, System, norm, solution,
+    Discretisation, Estimator, Newton, NewtonSettings, Problem, System, norm, solution, unobserved,
 };
 use lie_core::{ClosureKind, Rock, kernel, recovery_rule};
 
@@ -114,7 +114,7 @@ fn the_error_at_a_crack_front_is_met() {
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("prepared");
     let mut state = system.initial_state();
     let load = &problem.schedule.steps[0].load;
-    let record = newton.step(&system, &mut state, load, |_, _| {});
+    let record = newton.solve_step(&system, &mut state, load, unobserved);
     assert!(record.converged());
     let found = solution(&system, &state);
     let points = system.discretisation().interface().points();

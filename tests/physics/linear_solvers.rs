@@ -4,7 +4,7 @@ use glam::DVec3;
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
     Discretisation, FacetResult, LinearMethod, Load, Newton, NewtonSettings, Problem, RestartState,
-    Solution, State, Support, System, solution,
+    Solution, State, Support, System, solution, unobserved,
 };
 use lie_core::Friction;
 
@@ -27,7 +27,7 @@ fn solve(problem: &Problem, method: LinearMethod, steps: usize) -> (Solution, us
     let mut iterations = 0;
     for step in 1..=steps {
         let load = step as f64 / steps as f64;
-        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
+        let record = newton.solve_step(&system, &mut state, &Load::proportional(load), unobserved);
         assert!(record.converged(), "{method}: {record:?}");
         iterations += record.iterations.len();
     }
@@ -123,7 +123,7 @@ fn a_hundred_steps_or_fifty_stiffnesses_take_few_linear_iterations() {
         (newton.expect("prepared"), system.initial_state())
     };
     let step = |system: &System<'_>, newton: &mut Newton, state: &mut State, factor: f64| {
-        let record = newton.step(system, state, &Load::proportional(factor), |_, _| {});
+        let record = newton.solve_step(system, state, &Load::proportional(factor), unobserved);
         assert!(record.converged(), "{factor}: {record:?}");
         record.linear_iterations()
     };
@@ -197,12 +197,14 @@ fn one_set_up_serves_other_laws() {
             }
             system.set_laws(stiffer.fractures.iter().map(|f| f.law).collect());
             let mut state = system.initial_state();
-            let record = newton.step(&system, &mut state, &Load::proportional(1.0), |_, _| {});
+            let record =
+                newton.solve_step(&system, &mut state, &Load::proportional(1.0), unobserved);
             assert!(record.converged(), "{method}, {factor}: {record:?}");
             let (alone, _) = solve(&stiffer, method, 1);
             let error = difference(&alone, &solution(&system, &state));
             assert!(error < 1e-6, "{method}, {factor}: {error:e}");
-            let record = newton.step(&system, &mut former, &Load::proportional(1.0), |_, _| {});
+            let record =
+                newton.solve_step(&system, &mut former, &Load::proportional(1.0), unobserved);
             assert!(record.converged(), "{method}, {factor}: {record:?}");
             let error = difference(&alone, &solution(&system, &former));
             assert!(error < 1e-6, "{method}, {factor}, continued: {error:e}");
@@ -225,11 +227,11 @@ fn iterations_are_bounded_for_stiff_and_soft_fractures() {
         let system = System::assemble(&problem, discretisation);
         let iterative = settings(LinearMethod::Iterative);
         let mut newton = Newton::new(&system, iterative).expect("prepared");
-        let record = newton.step(
+        let record = newton.solve_step(
             &system,
             &mut system.initial_state(),
             &Load::proportional(1.0),
-            |_, _| {},
+            unobserved,
         );
         assert!(record.converged(), "{factor}: {record:?}");
         counts.push(record.linear_iterations());
@@ -258,9 +260,8 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
 const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
 const STARTS: [usize; 4] = [0, 1, 4, 7];
 
-/// Runs that go on in a new solver from the bytes of a bookmark, against the one that does not
-/// stop; returns the iterations of the linear solver, and whether a bookmark is shorter than one
-/// before.
+/// Runs that go on in a new solver from the bytes of a restart state, against the one that does not stop;
+/// returns the iterations of the linear solver, and whether a restart state is shorter than one before.
 fn interrupt(
     problem: &Problem,
     method: LinearMethod,
@@ -271,32 +272,32 @@ fn interrupt(
     let system = System::assemble(problem, discretisation);
     let prepared = || Newton::new(&system, settings(method)).expect("prepared");
     let step = |newton: &mut Newton, state: &mut _, factor: f64| {
-        let record = newton.step(&system, state, &Load::proportional(factor), |_, _| {});
+        let record = newton.solve_step(&system, state, &Load::proportional(factor), unobserved);
         assert!(record.converged(), "{method}, {factor}: {record:?}");
         record.linear_iterations()
     };
     let (mut newton, mut state) = (prepared(), system.initial_state());
-    let mut bookmarks = Vec::new();
+    let mut restarts = Vec::new();
     let mut iterations = 0;
     for &factor in factors {
-        let bytes = postcard::to_stdvec(&newton.bookmark(&state));
-        bookmarks.push(bytes.expect("bytes"));
+        let bytes = postcard::to_stdvec(&newton.restart_state(&state));
+        restarts.push(bytes.expect("bytes"));
         iterations += step(&mut newton, &mut state, factor);
     }
-    let end = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes");
+    let end = postcard::to_stdvec(&newton.restart_state(&state)).expect("bytes");
     for start in starts {
         let mut newton = prepared();
-        let bookmark: RestartState<'_> =
-            postcard::from_bytes(&bookmarks[start]).expect("a bookmark");
-        assert!(bookmark.fits(&system));
-        let mut state = newton.restore(&system, bookmark).expect("prepared");
+        let restart: RestartState<'_> =
+            postcard::from_bytes(&restarts[start]).expect("a restart state");
+        assert!(restart.fits(&system));
+        let mut state = newton.restore(&system, restart).expect("prepared");
         for factor in &factors[start..] {
             step(&mut newton, &mut state, *factor);
         }
-        let same = postcard::to_stdvec(&newton.bookmark(&state)).expect("bytes") == end;
+        let same = postcard::to_stdvec(&newton.restart_state(&state)).expect("bytes") == end;
         assert!(same, "{method} from step {start}");
     }
-    let shrinks = bookmarks
+    let shrinks = restarts
         .windows(2)
         .any(|pair| pair[1].len() < pair[0].len());
     (iterations, shrinks)
@@ -305,7 +306,7 @@ fn interrupt(
 /// Whatever the solver has learnt before counts: factors of former tangents, paths that turn.
 /// Blocks smaller than these never reuse a factor.
 #[test]
-fn bookmarks_continue_to_the_last_bit() {
+fn restarts_continue_to_the_last_bit() {
     let direct = interrupt(&t_block(4), LinearMethod::Direct, &FACTORS, STARTS);
     assert_eq!(direct.0, 0);
     for method in [LinearMethod::Condensed, LinearMethod::Iterative] {
@@ -316,7 +317,7 @@ fn bookmarks_continue_to_the_last_bit() {
 
 /// So many steps that the space of their moves is condensed.
 #[test]
-fn bookmarks_of_many_steps_continue_to_the_last_bit() {
+fn restarts_of_many_steps_continue_to_the_last_bit() {
     let factors: Vec<f64> = (1..=40).map(|step| 0.025 * f64::from(step)).collect();
     let starts = [3, 14, 22, 37];
     let (_, is_condensed) = interrupt(&sheared_block(6), LinearMethod::Iterative, &factors, starts);
@@ -325,7 +326,7 @@ fn bookmarks_of_many_steps_continue_to_the_last_bit() {
 
 /// Joints that slide and open by it remember that.
 #[test]
-fn bookmarks_continue_sliding_to_the_last_bit() {
+fn restarts_continue_sliding_to_the_last_bit() {
     let mut problem = t_block(4);
     scenes::load(&mut problem, "right", DVec3::new(-5e6, 0.0, 0.0));
     for fracture in &mut problem.fractures {
@@ -346,12 +347,12 @@ fn bookmarks_continue_sliding_to_the_last_bit() {
 }
 
 #[test]
-fn a_bookmark_of_another_system_does_not_fit() {
+fn a_restart_state_of_another_system_does_not_fit() {
     let (small, large) = (t_block(4), t_block(6));
     let system = |problem| System::assemble(problem, Discretisation::of(problem).expect("held"));
     let (small, large) = (system(&small), system(&large));
     let newton = Newton::new(&small, settings(LinearMethod::Direct)).expect("prepared");
     let state = small.initial_state();
-    let bookmark = newton.bookmark(&state);
-    assert!(bookmark.fits(&small) && !bookmark.fits(&large));
+    let restart = newton.restart_state(&state);
+    assert!(restart.fits(&small) && !restart.fits(&large));
 }

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Problem, Schedule, Solution, Step,
-    Support, System, solution,
+    Support, System, solution, unobserved,
 };
 use lie_core::ClosureKind;
 
@@ -54,7 +54,7 @@ fn follow(problem: &Problem, linear: LinearMethod, check: impl Fn(&Load, &System
     let mut newton = Newton::new(&system, settings).expect("prepared");
     let mut state = system.initial_state();
     for step in &problem.schedule.steps {
-        let record = newton.step(&system, &mut state, &step.load, |_, _| {});
+        let record = newton.solve_step(&system, &mut state, &step.load, unobserved);
         assert!(record.converged(), "{linear}, {:?}: {record:?}", step.load);
         check(&step.load, &system, &solution(&system, &state));
     }

@@ -10,6 +10,7 @@ use kluft_mesh::Shape;
 use kluft_mesh::structured::{Patch, cells_of};
 use kluft_solver::{
     CaseLoads, Discretisation, Load, Loads, Newton, NewtonSettings, Problem, Support, System,
+    unobserved,
 };
 use lie_core::{kernel, rule};
 
@@ -95,7 +96,7 @@ fn error(shape: Shape, cubes: usize) -> f64 {
     let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
     assert!(
         newton
-            .step(&system, &mut state, &Load::proportional(1.0), |_, _| {})
+            .solve_step(&system, &mut state, &Load::proportional(1.0), unobserved)
             .converged()
     );
     let fine = match shape.corner_count() {

@@ -4,10 +4,16 @@
     reason = "the table of counts is what the test is read for"
 )]
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
-use kluft_solver::{Linearisation, NewtonSettings, Problem, StepRecord, Support};
+use kluft_solver::{
+    Discretisation, Load, Newton, NewtonSettings, Outcome, Problem, StepRecord, Support, System,
+    unobserved,
+};
 use lie_core::ClosureKind;
 
+use kluft_verification::methods::plain_newton;
 use kluft_verification::scenes::closing::{column, inclined_joint, three_planes};
 use kluft_verification::scenes::{self, EXACT};
 
@@ -27,12 +33,8 @@ const CUTOFFS: [Option<f64>; 12] = [
     Some(1e-12),
 ];
 
-fn solve(problem: &Problem, linearisation: Linearisation) -> StepRecord {
-    let settings = NewtonSettings {
-        linearisation,
-        ..NewtonSettings::default()
-    };
-    scenes::try_solve(problem, settings).0
+fn solve(problem: &Problem) -> StepRecord {
+    scenes::try_solve(problem, NewtonSettings::default()).0
 }
 
 fn count(record: &StepRecord) -> String {
@@ -56,8 +58,8 @@ fn table(name: &str, scene: impl Fn(ClosureKind, f64) -> Problem) {
         text += &cutoff.map_or("none       ".to_owned(), |c| format!("{c:<11e}"));
         for q in LOADS {
             let problem = scene(kind, q);
-            let ours = solve(&problem, Linearisation::Balanced);
-            let plain = solve(&problem, Linearisation::Landed);
+            let ours = solve(&problem);
+            let plain = plain_newton::solve(&problem, NewtonSettings::default()).0;
             text += &format!("{:>9}", format!("{} ({})", count(&ours), count(&plain)));
             assert!(
                 ours.converged() && ours.iterations.len() <= 8,
@@ -110,7 +112,7 @@ fn any_stiffness_of_the_rock_beside_the_joint() {
             let push = Support::Displacement([None, None, Some(shortening)]);
             scenes::support(&mut pushed, "top", push);
             for problem in [loaded, pushed] {
-                let record = solve(&problem, Linearisation::Balanced);
+                let record = solve(&problem);
                 let count = record.iterations.len();
                 assert!(
                     record.converged() && count <= 8,
@@ -119,4 +121,38 @@ fn any_stiffness_of_the_rock_beside_the_joint() {
             }
         }
     }
+}
+
+/// An observer that stops a step leaves the state that the step began with, and the solver ready to
+/// go on.
+#[test]
+fn a_stopped_step_leaves_the_last_state() {
+    let problem = three_planes(EXACT, 20.0);
+    let discretisation = Discretisation::of(&problem).expect("supported");
+    let system = System::assemble(&problem, discretisation);
+    let mut newton = Newton::new(&system, NewtonSettings::default()).expect("prepared");
+    let load = Load::proportional(1.0);
+    let mut state = system.initial_state();
+    let record = newton.solve_step(&system, &mut state, &load, |number, _| match number {
+        2 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    });
+    assert_eq!(
+        (record.outcome, record.iterations.len()),
+        (Outcome::Stopped, 2)
+    );
+    assert!(state.unknowns.iter().all(|unknown| *unknown == DVec3::ZERO));
+    let whole = newton.solve_step(&system, &mut state, &load, unobserved);
+    assert!(whole.converged() && whole.iterations[..2] == record.iterations);
+    // Who stops after the last iteration has the whole step.
+    let last = whole.iterations.len();
+    let mut state = system.initial_state();
+    let stopped = newton.solve_step(&system, &mut state, &load, |number, _| {
+        if number == last {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    assert!(stopped.converged());
 }

@@ -62,9 +62,9 @@ fn walls_rub_on_facets_of_second_order() {
         for (record, solution) in steps {
             assert!(record.converged(), "{shape:?}: {record:?}");
             assert!(
-                record.parts.iter().all(|&count| count <= 12),
+                record.substeps.iter().all(|&count| count <= 12),
                 "{shape:?}: {:?}",
-                record.parts
+                record.substeps
             );
             let nodes = solution.facet_nodes(&problem, &interface);
             assert!(

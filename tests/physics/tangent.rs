@@ -5,8 +5,9 @@ use kluft_mesh::structured::Patch;
 use kluft_solver::{
     Analysis, Cholesky, Discretisation, Load, NodeOrder, Problem, Support, System, norm,
 };
-use lie_core::ClosureKind;
+use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
 
+use kluft_verification::methods::plain_newton::{response, response_at, responses};
 use kluft_verification::scenes::{self, EXACT, joint};
 
 fn three_planes(kind: ClosureKind) -> Problem {
@@ -44,7 +45,7 @@ fn noise(count: usize, mut seed: u64) -> Vec<DVec3> {
 }
 
 fn residual(system: &System<'_>, unknowns: &[DVec3]) -> Vec<DVec3> {
-    let responses = system.responses(unknowns, &Load::proportional(1.0));
+    let responses = responses(system, unknowns, &Load::proportional(1.0));
     let tractions: Vec<DVec3> = responses.iter().map(|response| response.traction).collect();
     system.residual(
         &system.rock_forces(unknowns),
@@ -72,8 +73,7 @@ fn tangent_is_the_derivative_of_the_residual() {
             residual(&system, &moved(1.0)),
             residual(&system, &moved(-1.0)),
         );
-        let tangents: Vec<_> = system
-            .responses(&unknowns, &Load::proportional(1.0))
+        let tangents: Vec<_> = responses(&system, &unknowns, &Load::proportional(1.0))
             .iter()
             .map(|response| response.tangent)
             .collect();
@@ -117,7 +117,7 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
             .map(|point| {
                 let law = system.law(point);
                 let separation = law.closure.opened(1e-4 * (closure - 1.0));
-                law.at(separation, DVec3::ZERO, point.normal).tangent
+                response_at(law, separation, DVec3::ZERO, point.normal).tangent
             })
             .collect();
         let tangent = system.tangent(&tangents);
@@ -144,5 +144,29 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
         let analysis = Analysis::of(rows.row_offset, rows.columns, order).expect("analysis");
         let mut solver = Cholesky::new(analysis, rows);
         assert_eq!(solver.factorise(), Ok(()), "closed to {closure}");
+    }
+}
+
+#[test]
+fn tractions_are_the_derivatives_of_the_energy_and_tangents_theirs() {
+    let kind = ClosureKind::Logarithmic { cutoff: Some(1e-6) };
+    let mut closure = Closure::new(1e-4, 1e11, kind);
+    let normal = DVec3::new(1.0, -2.0, 0.5).normalize();
+    for tension in [Tension::Elastic, Tension::CutOff] {
+        closure.tension = tension;
+        let law = FractureLaw::elastic(closure, 3e10);
+        for opening in [-9.95e-5, -5e-5, 2e-5, 7e-5, 2e-4] {
+            let jump = opening * normal + DVec3::new(1e-5, 2e-5, -1e-5);
+            let here = response(&law, jump, normal);
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let beside = |sign: f64| response(&law, jump + sign * 1e-11 * axis, normal);
+                let (above, below) = (beside(1.0), beside(-1.0));
+                let change = above.traction - below.traction;
+                let difference = change / 2e-11 - here.tangent * axis;
+                assert!(difference.length() < 1e-5 * 1e11);
+                let force = (above.potential - below.potential) / 2e-11;
+                assert!((force - here.traction.dot(axis)).abs() < 1e-4 * 1e7);
+            }
+        }
     }
 }

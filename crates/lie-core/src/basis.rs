@@ -145,8 +145,8 @@ fn monomials(shape: Shape) -> Vec<Monomial> {
 const BILINEAR: [Monomial; 3] = [[1, 1, 0, 1], [2, 1, 0, 1], [1, 2, 0, 1]];
 
 /// Reference coordinates of the nodes. Triangles and tetrahedra: unit corners; quadrangles and
-/// hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids: `[-1, 1]^2` below the apex
-/// at `z = 1`.
+/// hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids: `[-1, 1]^2` below the
+/// apex at `z = 1`.
 pub(crate) fn reference_nodes(shape: Shape) -> Vec<DVec3> {
     let mut nodes = reference_corners(shape);
     let corners = nodes.clone();

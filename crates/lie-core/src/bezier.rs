@@ -1,11 +1,11 @@
 //! Facets of second order in Bezier form: `w = sum_a N_a w_a = sum_q B_q c_q`.
 //!
-//! Along every edge the functions are Bernstein's: `B_c = N_c + sum_e N_e / 4` at a corner with its two
-//! edges `e`, `B_e = N_e / 2` in the middle of an edge (Quad9: the product of both directions). So the
-//! control values are those of the nodes at corners and `c_e = 2 w_e - (w_1 + w_2) / 2` on an edge
-//! between corners 1 and 2. No function is negative anywhere on Tri6 and Quad9 (nor below -1/27 on
-//! Quad8), and no integral of one is: a field whose control values are not negative is not negative.
-//! Facets of first order are their own Bezier form.
+//! Along every edge the functions are Bernstein's: `B_c = N_c + sum_e N_e / 4` at a corner with its
+//! two edges `e`, `B_e = N_e / 2` in the middle of an edge (Quad9: the product of both directions).
+//! So the control values are those of the nodes at corners and `c_e = 2 w_e - (w_1 + w_2) / 2` on
+//! an edge between corners 1 and 2. No function is negative anywhere on Tri6 and Quad9 (nor below
+//! -1/27 on Quad8), and no integral of one is: a field whose control values are not negative is not
+//! negative. Facets of first order are their own Bezier form.
 
 use kluft_mesh::Shape;
 

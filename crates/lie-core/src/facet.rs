@@ -10,16 +10,17 @@
 //! `A_a = int N_a n dA - N_a(c) A_c`, which is positive: every node is controlled. The quadrangle's
 //! middle takes 4/9, which makes Simpson's rule (corners 1/36, edges 1/9). The triangle's takes 1/3
 //! (corners 1/27, edges 5/27). Any share passes patch tests; with shares from 0.2 to 0.4 a stiff
-//! joint ahead of a crack has no traction of the wrong sign, while the closed rule of degree 3 (9/20)
-//! has some and the rule on edges alone (0) has many (`tests/physics/oscillation.rs`).
+//! joint ahead of a crack has no traction of the wrong sign, while the closed rule of degree 3
+//! (9/20) has some and the rule on edges alone (0) has many (`tests/physics/oscillation.rs`).
 //!
-//! That is more points than nodes, which a law that may be rigid cannot have: walls in contact at all
-//! of them share their tractions in more than one way, and friction depends on how. Such laws are
-//! evaluated at the control points of the facet's Bezier form, as many as nodes, with the control
-//! values of the jump and the area vectors `A_q = int B_q n dA`, all positive (Tri6: 1/6 each; Quad8:
-//! corners 1/12, edges 1/6; Quad9: 1/9 each). A uniform traction still reaches the nodes exactly, and
-//! walls that do not overlap at the control points do so nowhere on a facet, see [`crate::bezier_function`].
-//! Where a compliant law is integrated in this way it is of second order, the rule above of third.
+//! That is more points than nodes, which a law that may be rigid cannot have: walls in contact at
+//! all of them share their tractions in more than one way, and friction depends on how. Such laws
+//! are evaluated at the control points of the facet's Bezier form, as many as nodes, with the
+//! control values of the jump and the area vectors `A_q = int B_q n dA`, all positive (Tri6: 1/6
+//! each; Quad8: corners 1/12, edges 1/6; Quad9: 1/9 each). A uniform traction still reaches the
+//! nodes exactly, and walls that do not overlap at the control points do so nowhere on a facet, see
+//! [`crate::bezier_function`]. Where a compliant law is integrated in this way it is of second
+//! order, the rule above of third.
 
 use glam::DVec3;
 use kluft_mesh::Shape;
@@ -46,13 +47,13 @@ pub struct FacetRulePoint {
     pub area: DVec3,
     /// Where a linear field is to be taken so that it does its exact work (m).
     pub position: DVec3,
-    /// Local nodes and their factors in the jump of the point: shape functions, or those of a control
-    /// value; zeros left out.
+    /// Local nodes and their factors in the jump of the point: shape functions, or those of a
+    /// control value; zeros left out.
     pub nodes: Vec<(u8, f64)>,
 }
 
-/// Points of a facet with the given `nodes` (m); with all but Gauss's rule the first ones are those of
-/// the nodes, in order.
+/// Points of a facet with the given `nodes` (m); with all but Gauss's rule the first ones are those
+/// of the nodes, in order.
 pub fn facet_points(
     shape: Shape,
     nodes: &[DVec3],

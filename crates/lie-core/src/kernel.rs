@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use kluft_mesh::Shape;
 
 use crate::element::{RulePoint, rule};
-use crate::fracture_law::outer;
+use crate::outer::outer;
 use crate::rock::Rock;
 
 /// Most nodes a cell can have.
@@ -77,11 +77,11 @@ pub fn tetrahedron_row(nodes: &[DVec3; 4], lame: (f64, f64), a: usize, row: &mut
     row[a] = -sum;
 }
 
-/// Gradients of the shape functions of a linear tetrahedron of positive volume, times the root of that
-/// volume: `sqrt(V) grad N_a` (m^1/2).
+/// Gradients of the shape functions of a linear tetrahedron of positive volume, times the root of
+/// that volume: `sqrt(V) grad N_a` (m^1/2).
 ///
-/// With edges `e` from node 0, the gradients at the other nodes are `e x e / 6V`; all four add up to
-/// zero.
+/// With edges `e` from node 0, the gradients at the other nodes are `e x e / 6V`; all four add up
+/// to zero.
 #[inline]
 pub fn tetrahedron_gradients(nodes: &[DVec3; 4]) -> [DVec3; 4] {
     let [e1, e2, e3] = [1, 2, 3].map(|k| nodes[k] - nodes[0]);
@@ -159,8 +159,8 @@ pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
     sum / whole
 }
 
-/// Displacement gradient `H = sum_a u_a (x) grad N_a` at a point of a cell, and the volume (m^3) of that
-/// point.
+/// Displacement gradient `H = sum_a u_a (x) grad N_a` at a point of a cell, and the volume (m^3) of
+/// that point.
 pub fn gradient_at(point: &RulePoint, nodes: &[DVec3], displacement: &[DVec3]) -> (DMat3, f64) {
     let jacobian = reference_gradient(point, nodes);
     let gradient = reference_gradient(point, displacement) * jacobian.inverse();

@@ -21,8 +21,8 @@ pub struct FinePoint {
 /// The tables of a cell's shape.
 #[derive(Debug, Clone)]
 pub struct RecoveryRule {
-    /// Where the stress of the cell is most accurate: the centre of linear cells, the points of the next
-    /// lower rule of quadratic ones (J. Barlow, Int. J. Numer. Meth. Engng 10, 1976).
+    /// Where the stress of the cell is most accurate: the centre of linear cells, the points of the
+    /// next lower rule of quadratic ones (J. Barlow, Int. J. Numer. Meth. Engng 10, 1976).
     pub samples: Vec<RulePoint>,
     /// Points of a rule fine enough for the square of an error.
     pub fine: Vec<FinePoint>,

@@ -11,8 +11,8 @@ const NORMAL: DVec3 = DVec3::Z;
 /// A fracture whose walls are moved.
 struct Driven {
     law: FractureLaw,
-    walls: JointState,
-    memory: JointHistory,
+    state: JointState,
+    history: JointHistory,
     /// Jump at the last commit.
     jump: DVec3,
 }
@@ -21,36 +21,36 @@ impl Driven {
     fn new(law: FractureLaw) -> Self {
         Self {
             law,
-            walls: law.under_initial_stress(DVec3::ZERO, NORMAL),
-            memory: JointHistory::default(),
+            state: law.under_initial_stress(DVec3::ZERO, NORMAL),
+            history: JointHistory::default(),
             jump: DVec3::ZERO,
         }
     }
 
     /// The state at a jump, without commit: rock many times stiffer than the fracture.
     fn at(&self, jump: DVec3) -> JointState {
-        let spring = 1e4 * self.law.closure.normal_stiffness;
-        let springs = RockStiffness {
-            normal: spring,
-            shear: spring,
+        let stiffness = 1e4 * self.law.closure.normal_stiffness;
+        let rock = RockStiffness {
+            normal: stiffness,
+            shear: stiffness,
         };
-        let mut walls = self.walls;
+        let mut state = self.state;
         for _ in 0..20 {
-            let landing = TrialState {
+            let trial = TrialState {
                 separation: self.law.closure.opened(jump.dot(NORMAL)),
-                slip: self.walls.slip + (jump - self.jump).reject_from(NORMAL),
-                normal_traction: walls.normal_traction,
-                shear: walls.shear,
+                slip: self.state.slip + (jump - self.jump).reject_from(NORMAL),
+                normal_traction: state.normal_traction,
+                shear: state.shear,
             };
-            walls = self.law.return_map(&landing, springs, &self.memory);
+            state = self.law.return_map(&trial, rock, &self.history);
         }
-        walls
+        state
     }
 
     fn go(&mut self, jump: DVec3) -> DVec3 {
-        self.walls = self.at(jump);
-        let traction = self.walls.traction(NORMAL);
-        self.law.commit(&mut self.walls, &mut self.memory);
+        self.state = self.at(jump);
+        let traction = self.state.traction(NORMAL);
+        self.law.commit(&mut self.state, &mut self.history);
         self.jump = jump;
         traction
     }
@@ -187,8 +187,8 @@ fn tangents_are_derivatives() {
             DVec3::new(2e-5, -1e-5, 2e-5),
             DVec3::new(2e-5, -1e-5, 1.5e-4),
         ] {
-            let walls = path.at(jump);
-            let tangent = law.tangent(&walls, &path.memory, NORMAL, 1e20);
+            let state = path.at(jump);
+            let tangent = law.tangent(&state, &path.history, NORMAL, 1e20);
             for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
                 let h = 1e-10 * axis;
                 let moved = path.at(jump + h).traction(NORMAL) - path.at(jump - h).traction(NORMAL);

@@ -61,7 +61,7 @@ pub struct Progress<'a> {
     /// Largest resident memory so far (bytes).
     pub peak_memory_bytes: u64,
     /// Where the solver stands; none after the last load step.
-    pub bookmark: Option<RestartState<'a>>,
+    pub restart: Option<RestartState<'a>>,
 }
 
 /// Sum of a file's bytes.
@@ -263,7 +263,7 @@ mod tests {
             measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,
-            bookmark: None,
+            restart: None,
         }
     }
 

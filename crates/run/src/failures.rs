@@ -56,23 +56,24 @@ pub fn not_converged(
             "the tests do not hold after {count} iterations; the closure error is largest{}",
             at(record.worst_facet_point)
         ),
-        Outcome::Loose => "the loads push rock that nothing holds any more".to_owned(),
+        Outcome::RigidBodyMotion => "the loads push rock that nothing holds any more".to_owned(),
         Outcome::NotFinite(point) => format!(
             "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
             count + 1,
             at(*point)
         ),
         Outcome::Linear(failure) => linear_failure(problem, system, failure),
+        Outcome::Stopped => format!("it was stopped after {count} iterations"),
     };
-    let walked = (record.walked > 0.0).then(|| {
-        let percent = 100.0 * record.walked;
-        format!("; {percent:.1} % of the way from the step before could be walked")
+    let completed = (record.completed > 0.0).then(|| {
+        let percent = 100.0 * record.completed;
+        format!("; {percent:.1} % of the load increment was completed")
     });
-    let loose = record.loose.iter().map(|block| {
+    let motions = record.rigid_motions.iter().map(|block| {
         let (place, problem, remedy) = (&block.place, &block.problem, &block.remedy);
         format!("; {place}: {problem}: {remedy}")
     });
-    let rest: String = walked.into_iter().chain(loose).collect();
+    let rest: String = completed.into_iter().chain(motions).collect();
     format!("step {number} ({step}): {why}{rest}")
 }
 

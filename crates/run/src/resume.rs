@@ -22,7 +22,7 @@ pub struct Former {
 impl Former {
     /// Whether all its load steps are finished.
     pub fn is_finished(&self) -> bool {
-        self.progress.bookmark.is_none()
+        self.progress.restart.is_none()
     }
 }
 

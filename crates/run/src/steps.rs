@@ -1,10 +1,11 @@
 //! The load steps of a run: each is solved, estimated, written, and can be resumed from.
 
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use kluft_io::Grid;
-use kluft_solver::{Estimator, Newton, Plan, Problem, State, StepRecord, System, solution};
+use kluft_solver::{
+    Estimator, Newton, Outcome, Plan, Problem, State, StepRecord, System, solution,
+};
 
 use crate::accuracy::{self, Accuracy};
 use crate::checkpoint::{self, Progress};
@@ -123,12 +124,12 @@ impl Run<'_> {
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
         let mut newton = self.set_up(system, plan)?;
-        let bookmark = former.bookmark.filter(|bookmark| bookmark.fits(system));
-        let Some(bookmark) = bookmark else {
+        let restart = former.restart.filter(|restart| restart.fits(system));
+        let Some(restart) = restart else {
             let path = self.output.path(checkpoint::NAME);
             return Err(checkpoint::other_build(&path).into());
         };
-        let state = self.stage(Stage::RestoreSolver, |_| newton.restore(system, bookmark));
+        let state = self.stage(Stage::RestoreSolver, |_| newton.restore(system, restart));
         let text = format!("after step {} of {}", self.finished.len(), steps.len());
         self.observer.note("resumed", &text);
         Ok(Prepared {
@@ -153,18 +154,17 @@ impl Run<'_> {
             count: schedule.steps.len(),
             what: &decisions::of_step(schedule, step),
         });
-        let mut is_stopped = false;
         let record = self.stage(Stage::Solve, |run| {
             let Prepared { newton, state, .. } = prepared;
-            newton.step(system, state, &step.load, |number, iteration| {
-                is_stopped |= run.observer.iteration(number, iteration) == ControlFlow::Break(());
+            newton.solve_step(system, state, &step.load, |number, iteration| {
+                run.observer.iteration(number, iteration)
             })
         });
         self.summary.seconds.factorise += record.factorise_seconds;
         self.summary.seconds.solve += record.solve_seconds;
         let summary = StepSummary::of(step, (&record).into());
         self.summary.steps.push(summary);
-        if is_stopped {
+        if record.outcome == Outcome::Stopped {
             return Err(Interruption::Stopped);
         }
         if !record.converged() {
@@ -253,7 +253,7 @@ impl Run<'_> {
             stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),
             peak_memory_bytes: self.summary.peak_memory_bytes,
-            bookmark: is_left.then(|| newton.bookmark(state)),
+            restart: is_left.then(|| newton.restart_state(state)),
         };
         let path = self.output.path(checkpoint::NAME);
         let written = checkpoint::write(&path, &self.identity, &progress);

@@ -134,7 +134,7 @@ impl From<&StepRecord> for StepMeasures {
         let measure = |of: fn(&kluft_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
         Self {
             newton_iterations: record.iterations.len(),
-            parts: record.parts.clone(),
+            parts: record.substeps.clone(),
             linear_iterations: record.linear_iterations(),
             force_residual: measure(|last| last.force_residual),
             increment: measure(|last| last.increment),

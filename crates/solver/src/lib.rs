@@ -46,7 +46,7 @@ pub use linear::{
     Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns, Workload,
 };
 pub use newton::{
-    Iteration, Linearisation, Newton, NewtonSettings, Outcome, RestartState, StepRecord,
+    Iteration, Newton, NewtonSettings, Outcome, RestartState, StepRecord, unobserved,
 };
 pub use problem::{
     Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,

@@ -4,7 +4,7 @@ use kluft_mesh::Mesh;
 
 use crate::estimate::estimate_bytes;
 use crate::linear::{ExtraMemory, Workload};
-use crate::newton::subspace_bytes;
+use crate::newton::recycling_bytes;
 
 impl Workload {
     /// Counts in what estimates of errors and moves of former steps take, on a mesh with this
@@ -12,7 +12,7 @@ impl Workload {
     pub fn with_extra_memory(self, mesh: &Mesh, unknowns: usize) -> Self {
         let recycles = self.is_smooth && self.steps > 1;
         let iterative = if recycles {
-            subspace_bytes(unknowns, self.steps)
+            recycling_bytes(unknowns, self.steps)
         } else {
             0
         };

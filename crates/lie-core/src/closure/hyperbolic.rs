@@ -1,7 +1,7 @@
 //! The hyperbolic closure of Barton and Bandis.
 //!
-//! S. C. Bandis, A. C. Lumsden and N. R. Barton, "Fundamentals of rock joint deformation", Int. J. Rock
-//! Mech. Min. Sci. 20 (1983). With the closure `v = -w_n` and its largest value `v_m`:
+//! S. C. Bandis, A. C. Lumsden and N. R. Barton, "Fundamentals of rock joint deformation", Int. J.
+//! Rock Mech. Min. Sci. 20 (1983). With the closure `v = -w_n` and its largest value `v_m`:
 //! `-sigma_n = K_n0 v / (1 - v / v_m)`. Below, `x = b / b0`, `y = x - 1`, `m = v_m / b0`, and
 //! `g = m + y` is what is left to close.
 

@@ -86,7 +86,8 @@ impl Tension {
         }
     }
 
-    /// Root `w` of `sigma_n(w) + k w = load > 0`, with `k = spring >= 0` (Pa/m); 0 if nothing resists.
+    /// Root `w` of `sigma_n(w) + k w = load > 0`, with `k = spring >= 0` (Pa/m); 0 if nothing
+    /// resists.
     pub(super) fn balanced(&self, stiffness: f64, spring: f64, load: f64, largest: f64) -> f64 {
         let alone = if spring > 0.0 { load / spring } else { 0.0 };
         match *self {
@@ -111,8 +112,8 @@ impl Tension {
         }
     }
 
-    /// Share of the bond that is broken after the largest opening of the past (m): 0 of a whole bond
-    /// and of a fracture that has none.
+    /// Share of the bond that is broken after the largest opening of the past (m): 0 of a whole
+    /// bond and of a fracture that has none.
     pub(crate) fn damage(&self, stiffness: f64, largest: f64) -> f64 {
         match *self {
             Self::Cohesive { strength, energy } => {

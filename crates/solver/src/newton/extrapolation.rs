@@ -1,9 +1,10 @@
-//! A first guess for a load step: the path of the last states, continued.
+//! Extrapolation: the path of the last states, continued.
 //!
-//! Displacements and tractions are continued alike, as polynomials of the load factor, or of time if
-//! there are several load cases. Both enter the balance of forces linearly, so the guess is in balance
-//! with the loads continued alike; all that is wrong with it is how far the apertures are from the law,
-//! and how far the loads are from their own continuation. A path is not continued around a corner.
+//! Displacements and tractions are continued alike, as polynomials of the load factor, or of time
+//! if there are several load cases. Both enter the balance of forces linearly, so the guess is in
+//! balance with the loads continued alike; all that is wrong with it is how far the apertures are
+//! from the law, and how far the loads are from their own continuation. A path is not continued
+//! around a corner.
 
 use std::collections::VecDeque;
 
@@ -12,16 +13,17 @@ use lie_core::{FractureLaw, TrialState};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::facet_points::interface;
 use crate::problem::Load;
 use crate::system::{FacetPointState, State, System};
 
 /// States that are kept: with the present one enough for a cubic.
-const KEPT: usize = 3;
+const FORMER_STATES: usize = 3;
 /// Largest sum of the sizes of the weights; 15 for a cubic through equal steps. A longer way would
 /// magnify what the states have of error.
-const WEIGHTIEST: f64 = 15.0;
+const LARGEST_WEIGHTS: f64 = 15.0;
 /// Largest distance of the loads continued from those wanted, against the whole step.
-const CORNER: f64 = 0.5;
+const LARGEST_LOAD_ERROR: f64 = 0.5;
 
 /// Converged states, the latest first, beside the one that a step starts from.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -35,10 +37,18 @@ struct Former {
     tractions: Vec<DVec3>,
 }
 
+/// Weights of the states of a path.
+#[derive(Debug, Clone, PartialEq)]
+struct Weights {
+    present: f64,
+    /// Of former states, the latest first.
+    former: Vec<f64>,
+}
+
 impl Path {
     /// Remembers a converged state that a step has left.
     pub(super) fn remember(&mut self, system: &System<'_>, state: &State) {
-        self.0.truncate(KEPT - 1);
+        self.0.truncate(FORMER_STATES - 1);
         self.0.push_front(Former {
             load: state.load.clone(),
             unknowns: state.unknowns.clone(),
@@ -52,22 +62,23 @@ impl Path {
         formers.all(|f| f.unknowns.len() == unknowns && f.tractions.len() == facet_points)
     }
 
-    /// Continues the path through `state` to `load`, or close to it, if there is one and `load` is not
-    /// too far.
+    /// Continues the path through `state` to `load`, or close to it, if there is one and `load` is
+    /// not too far.
     pub(super) fn continue_through(&self, system: &System<'_>, state: &mut State, load: &Load) {
         let smooth = system.is_smooth();
-        let Some((own, weights)) = self.weights(&state.load, load).filter(|_| smooth) else {
+        let Some(weights) = self.weights(&state.load, load).filter(|_| smooth) else {
             return;
         };
-        let continued = self.continued(&state.load, load, own, &weights);
-        let formers = || self.0.iter().zip(&weights);
+        let continued = self.continued(&state.load, load, &weights);
+        let own = weights.present;
+        let formers = || self.0.iter().zip(&weights.former);
         let tractions: Vec<DVec3> = system
             .law_tractions(state)
             .into_par_iter()
             .enumerate()
             .map(|(i, now)| own * now + formers().map(|(f, w)| *w * f.tractions[i]).sum::<DVec3>())
             .collect();
-        let interface = &system.discretisation.interface;
+        let interface = interface(system);
         let before = interface.jumps(&state.unknowns, &state.load);
         let unknowns = state.unknowns.par_iter_mut().enumerate();
         unknowns.for_each(|(i, now)| {
@@ -90,7 +101,7 @@ impl Path {
 
     /// Lagrange's weights of the present state and of the former ones, of as many as are close
     /// enough together and continue the loads as they are; none if there is nothing to continue.
-    fn weights(&self, present: &Load, load: &Load) -> Option<(f64, Vec<f64>)> {
+    fn weights(&self, present: &Load, load: &Load) -> Option<Weights> {
         (1..=self.0.len()).rev().find_map(|count| {
             let formers = self.0.iter().take(count).map(|former| &former.load);
             let points: Vec<f64> = [present]
@@ -98,27 +109,30 @@ impl Path {
                 .chain(formers)
                 .map(Load::abscissa)
                 .collect();
-            let weights = lagrange(&points, load.abscissa());
+            let all = lagrange(&points, load.abscissa());
             // Two states at one point have infinite weights, or none that are numbers.
-            let size: f64 = weights.iter().map(|weight| weight.abs()).sum();
-            let (own, weights) = (weights[0], &weights[1..]);
-            let continues = || {
-                let continued = self.continued(present, load, own, weights);
-                continued.distance(load) <= CORNER * present.distance(load)
+            let size: f64 = all.iter().map(|weight| weight.abs()).sum();
+            let weights = Weights {
+                present: all[0],
+                former: all[1..].to_vec(),
             };
-            (size <= WEIGHTIEST && continues()).then(|| (own, weights.to_vec()))
+            let continues = || {
+                let continued = self.continued(present, load, &weights);
+                continued.distance(load) <= LARGEST_LOAD_ERROR * present.distance(load)
+            };
+            (size <= LARGEST_WEIGHTS && continues()).then_some(weights)
         })
     }
 
     /// The load that the path leads to on the way to `load`.
-    fn continued(&self, present: &Load, load: &Load, own: f64, weights: &[f64]) -> Load {
+    fn continued(&self, present: &Load, load: &Load, weights: &Weights) -> Load {
         // A single factor is continued to itself; rounding would only spoil it.
         if load.single_factor().is_some() {
             return load.clone();
         }
-        let formers = self.0.iter().zip(weights);
+        let formers = self.0.iter().zip(&weights.former);
         let terms = formers.map(|(former, weight)| (*weight, &former.load));
-        Load::combination([(own, present)].into_iter().chain(terms))
+        Load::combination([(weights.present, present)].into_iter().chain(terms))
     }
 }
 
@@ -133,7 +147,8 @@ fn lagrange(points: &[f64], x: f64) -> Vec<f64> {
     (0..points.len()).map(weight).collect()
 }
 
-/// Takes a facet point to where its law carries `traction` (Pa), its walls having moved by `moved` (m).
+/// Takes a facet point to where its law carries `traction` (Pa), its walls having moved by `moved`
+/// (m).
 fn follow(
     law: &FractureLaw,
     normal: DVec3,
@@ -144,10 +159,10 @@ fn follow(
     let (opened, across) = (moved.dot(normal), traction.dot(normal));
     let shear = traction - across * normal;
     let former = state.joint.separation;
-    let landed = former.moved(state.jump_residual.dot(normal) + opened);
-    let landing = TrialState {
+    let reached = former.moved(state.jump_residual.dot(normal) + opened);
+    let trial = TrialState {
         separation: if law.closure.normal_stiffness == 0.0 {
-            landed
+            reached
         } else {
             law.closure.balanced(0.0, across)
         },
@@ -159,8 +174,8 @@ fn follow(
         normal_traction: across,
         shear,
     };
-    state.joint = law.state_at(&landing);
-    state.jump_residual = landed.beyond(landing.separation) * normal;
+    state.joint = law.state_at(&trial);
+    state.jump_residual = reached.beyond(trial.separation) * normal;
 }
 
 #[cfg(test)]
@@ -181,29 +196,34 @@ mod tests {
     }
 
     impl Path {
-        fn weights_at(&self, present: f64, load: f64) -> Option<(f64, Vec<f64>)> {
+        fn weights_at(&self, present: f64, load: f64) -> Option<Weights> {
             self.weights(&Load::proportional(present), &Load::proportional(load))
         }
     }
 
     #[test]
     fn weights_continue_cubics_through_equal_steps() {
-        let (own, weights) = path(&[0.3, 0.2, 0.1]).weights_at(0.4, 0.5).expect("a path");
-        for (weight, exact) in [own].iter().chain(&weights).zip([4.0, -6.0, 4.0, -1.0]) {
+        let weights = path(&[0.3, 0.2, 0.1]).weights_at(0.4, 0.5);
+        let Weights { present, former } = weights.expect("a path");
+        for (weight, exact) in [present].iter().chain(&former).zip([4.0, -6.0, 4.0, -1.0]) {
             assert!((weight - exact).abs() < 1e-12);
         }
     }
 
     #[test]
     fn a_return_to_a_former_load_takes_its_state() {
-        let (own, weights) = path(&[0.5]).weights_at(1.0, 0.5).expect("a path");
-        assert_eq!((own, weights), (0.0, vec![1.0]));
+        let weights = path(&[0.5]).weights_at(1.0, 0.5);
+        let expected = Weights {
+            present: 0.0,
+            former: vec![1.0],
+        };
+        assert_eq!(weights, Some(expected));
     }
 
     #[test]
     fn loads_that_repeat_or_lie_far_off_are_left_out() {
-        let (_, weights) = path(&[0.5, 1.0]).weights_at(1.0, 0.5).expect("a path");
-        assert_eq!(weights.len(), 1);
+        let weights = path(&[0.5, 1.0]).weights_at(1.0, 0.5);
+        assert_eq!(weights.expect("a path").former.len(), 1);
         assert!(path(&[0.99]).weights_at(1.0, 2.0).is_none());
         assert!(path(&[]).weights_at(1.0, 2.0).is_none());
         assert!(path(&[1.0]).weights_at(1.0, 2.0).is_none());
@@ -223,9 +243,13 @@ mod tests {
         let straight = loads(&[[3.0, 3.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 1.0]]);
         let further = loads(&[[4.0, 4.0, 1.0], [4.0, 3.0, 2.0], [4.0, 3.0, 1.0]]);
         let path = path_of(straight[1..].to_vec());
-        let (own, weights) = path.weights(&straight[0], &further[0]).expect("a path");
-        assert_eq!((own, weights.clone()), (3.0, vec![-3.0, 1.0]));
-        let continued = path.continued(&straight[0], &further[0], own, &weights);
+        let weights = path.weights(&straight[0], &further[0]).expect("a path");
+        let expected = Weights {
+            present: 3.0,
+            former: vec![-3.0, 1.0],
+        };
+        assert_eq!(weights, expected);
+        let continued = path.continued(&straight[0], &further[0], &weights);
         assert_eq!(continued, further[0]);
         for corner in &further[1..] {
             assert!(path.weights(&straight[0], corner).is_none());

@@ -1,102 +1,70 @@
-//! How far a trial follows the correction of a linear solve.
+//! How far an iterate follows the correction of a linear solve.
 //!
-//! All the way, as long as the iteration is on its way. Once it has taken more iterations than it should
-//! and its errors grow, the way is halved until they do not: a search for a smaller residual.
+//! All the way, as long as the iteration is on its way. Once it has taken more iterations than it
+//! should and its errors grow, the correction is halved until they do not: a search for a smaller
+//! residual.
 
-use rayon::prelude::*;
+use super::iteration::{Iterate, Update};
+use super::{Iteration, Outcome, Step};
 
-use super::{
-    Iteration, Linearisation, Move, Newton, Outcome, StepRecord, Trial, assess, interface, walls,
-};
-use crate::linear::Tangents;
-use crate::problem::Load;
-use crate::system::System;
-
-/// Iterations that take the whole way.
-const WHOLE: usize = 6;
-/// How often the way is halved.
+/// Iterations that take the whole correction.
+const WHOLE_CORRECTIONS: usize = 6;
+/// How often a correction is halved.
 const HALVINGS: usize = 4;
 
 /// What a search compares: both measures are against what is large.
-fn merit(iteration: &Iteration) -> f64 {
+pub(super) fn merit(iteration: &Iteration) -> f64 {
     iteration.force_residual + iteration.closure_error
 }
 
-impl Newton {
-    /// Follows a move on the planes of `tangents`, in iteration `count` of the step.
-    ///
-    /// # Errors
-    /// If numbers are no longer finite.
-    pub(super) fn advance(
-        &self,
-        system: &System<'_>,
-        trial: &mut Trial,
-        (moved, tangents): (&Move, &Tangents),
-        (count, former): (usize, Option<f64>),
-        record: &mut StepRecord,
-    ) -> Result<Iteration, Outcome> {
-        let plain = self.settings.linearisation == Linearisation::Landed;
-        let Some(former) = former.filter(|_| count > WHOLE && !plain) else {
-            return self.follow(system, trial, (moved, tangents), record);
-        };
-        let start = trial.clone();
-        let mut best: Option<(Iteration, Trial)> = None;
-        for halvings in 0..=HALVINGS {
-            let share = 0.5_f64.powi(halvings as i32);
-            let part = moved.scaled(share);
-            let mut next = start.clone();
-            let reached = self.follow(system, &mut next, (&part, tangents), record);
-            let Ok(iteration) = reached else {
-                continue;
-            };
-            let better = |best: &(Iteration, Trial)| merit(&iteration) < merit(&best.0);
-            if best.as_ref().is_none_or(better) {
-                best = Some((iteration, next));
-            }
-            if merit(&iteration) < former {
-                break;
-            }
-        }
-        let Some((iteration, next)) = best else {
-            return self.follow(system, trial, (moved, tangents), record);
-        };
-        *trial = next;
-        Ok(iteration)
-    }
+/// Corrects an iterate in iteration `count` of its increment.
+///
+/// # Errors
+/// If numbers are no longer finite.
+pub(super) fn advance(
+    step: &mut Step<'_>,
+    iterate: &mut Iterate,
+    update: Update<'_>,
+    count: usize,
+) -> Result<Iteration, Outcome> {
+    let former = iterate.merit.filter(|_| count > WHOLE_CORRECTIONS);
+    let best = former.and_then(|former| search(step, iterate, update, former));
+    let Some((iteration, next)) = best else {
+        return iterate.correct(step, update);
+    };
+    *iterate = next;
+    Ok(iteration)
+}
 
-    fn follow(
-        &self,
-        system: &System<'_>,
-        trial: &mut Trial,
-        (moved, tangents): (&Move, &Tangents),
-        record: &mut StepRecord,
-    ) -> Result<Iteration, Outcome> {
-        let unknowns = &mut trial.state.unknowns;
-        for (unknown, change) in unknowns.iter_mut().zip(&moved.unknowns) {
-            *unknown += *change;
+/// The first share of a correction that makes the errors smaller than `former`, else the best one;
+/// none if all lead to numbers that are not finite.
+fn search(
+    step: &mut Step<'_>,
+    start: &Iterate,
+    update: Update<'_>,
+    former: f64,
+) -> Option<(Iteration, Iterate)> {
+    let mut best: Option<(Iteration, Iterate)> = None;
+    for halvings in 0..=HALVINGS {
+        let share = 0.5_f64.powi(halvings as i32);
+        let scaled = update.correction.scaled(share);
+        let mut next = start.clone();
+        let part = Update {
+            correction: &scaled,
+            ..update
+        };
+        let Ok(iteration) = next.correct(step, part) else {
+            continue;
+        };
+        let better = |best: &(Iteration, Iterate)| merit(&iteration) < merit(&best.0);
+        if best.as_ref().is_none_or(better) {
+            best = Some((iteration, next));
         }
-        if !unknowns.iter().all(|unknown| unknown.is_finite()) {
-            return Err(Outcome::NotFinite(None));
+        if merit(&iteration) < former {
+            break;
         }
-        match &moved.rock_forces {
-            Some(change) => {
-                let pairs = trial.rock_forces.par_iter_mut().zip(change);
-                pairs.for_each(|(force, change)| *force += *change);
-            }
-            None => trial.rock_forces = system.rock_forces(&trial.state.unknowns),
-        }
-        let errors = walls::follow(
-            system,
-            self.settings.linearisation,
-            &mut trial.state,
-            &mut trial.landed,
-            &interface(system).jumps(&moved.unknowns, &Load::NONE),
-            tangents,
-        );
-        let iteration = assess(system, trial, moved.size, &errors, record)?;
-        trial.merit = Some(merit(&iteration));
-        Ok(iteration)
     }
+    best
 }
 
 #[cfg(test)]
@@ -107,7 +75,11 @@ mod tests {
     use lie_core::Rock;
 
     use super::*;
-    use crate::{Condition, Discretisation, NewtonSettings, Problem, Support, SurfaceLoad};
+    use crate::newton::facet_points;
+    use crate::newton::iteration::Correction;
+    use crate::newton::{Newton, NewtonSettings, unobserved};
+    use crate::problem::Load;
+    use crate::{Condition, Discretisation, Problem, Support, SurfaceLoad, System};
 
     /// A block on a fixed base, pulled at its top.
     fn block() -> Problem {
@@ -144,28 +116,32 @@ mod tests {
         }
     }
 
-    /// Without fractures the correction of one solve is exact. Four times of it leaves three times the
-    /// loads out of balance; a search halves it twice and is there.
+    /// Without fractures the correction of one solve is exact. Four times of it leaves three times
+    /// the loads out of balance; a search halves it twice and is there.
     #[test]
     fn a_correction_that_goes_too_far_is_halved_once_the_iteration_is_late() {
         let problem = block();
         let system = System::assemble(&problem, Discretisation::of(&problem).expect("held"));
         let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
         let load = Load::proportional(1.0);
-        let start = newton.start(&system, &system.initial_state(), &load);
-        let tangents = walls::tangents(&system, &start.state);
+        let start = newton.predict(&system, &system.initial_state(), &load);
+        let tangents = facet_points::tangents(&system, &start.state);
         newton.linear.update(&system, &tangents).expect("definite");
         let residual = system.residual(&start.rock_forces, &[], &load);
         let solved = newton.linear.solve(&system, &residual, 1e-12);
         let exact = solved.expect("solvable").unknowns;
         let far: Vec<DVec3> = exact.iter().map(|change| 4.0 * *change).collect();
-        let far = [true, false].map(|remembered| Move::of(&system, far.clone(), remembered));
-        let mut record = StepRecord::new(load);
-        let mut residual_in = |far: &Move, count: usize| {
-            let mut trial = start.clone();
-            let former = (count, Some(1e-3));
-            let reached =
-                newton.advance(&system, &mut trial, (far, &tangents), former, &mut record);
+        let far = [true, false].map(|recycled| Correction::of(&system, far.clone(), recycled));
+        let mut observe = unobserved;
+        let mut step = Step::new(&system, &load, &mut observe);
+        let mut residual_in = |correction: &Correction, count: usize| {
+            let mut iterate = start.clone();
+            iterate.merit = Some(1e-3);
+            let update = Update {
+                correction,
+                tangents: &tangents,
+            };
+            let reached = advance(&mut step, &mut iterate, update, count);
             reached.expect("finite").force_residual
         };
         for far in &far {

@@ -1,55 +1,9 @@
-//! Settings of a nonlinear solve, and its record.
+//! What is known of a load step once it has been solved, or not.
 
 use kluft_algebra::LinearFailure;
 use kluft_mesh::Defect;
 
-use crate::linear::LinearMethod;
 use crate::problem::Load;
-
-/// Where a facet point is linearised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Linearisation {
-    /// At the aperture that balances law and surrounding rock.
-    #[default]
-    Balanced,
-    /// At the opening where the last step landed: plain Newton, for comparison.
-    Landed,
-}
-
-/// When an iteration counts as converged. All measures are free of units.
-#[derive(Debug, Clone, Copy)]
-pub struct NewtonSettings {
-    /// Where facet points are linearised.
-    pub linearisation: Linearisation,
-    /// Largest out-of-balance force against the largest force.
-    pub force: f64,
-    /// Largest change of displacement against the largest displacement or opening. Newton's error
-    /// is the square of its last step, so this bound is the root of the others.
-    pub increment: f64,
-    /// Largest closure error, see [`Iteration::closure_error`].
-    pub closure: f64,
-    /// Iterations after which a step has failed.
-    pub max_iterations: usize,
-    /// Largest difference, against the largest jump, between a path in one step and in two, where
-    /// the laws depend on the path.
-    pub path: f64,
-    /// How linear systems are solved; chosen by predicted cost if not given.
-    pub linear: Option<LinearMethod>,
-}
-
-impl Default for NewtonSettings {
-    fn default() -> Self {
-        Self {
-            linearisation: Linearisation::default(),
-            force: 1e-9,
-            increment: 1e-5,
-            closure: 1e-9,
-            max_iterations: 25,
-            path: 1e-3,
-            linear: None,
-        }
-    }
-}
 
 /// Measures of one iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,12 +28,14 @@ pub enum Outcome {
     Converged,
     /// The iterations ran out.
     OutOfIterations,
-    /// Loads push blocks that nothing holds any more, see [`StepRecord::loose`].
-    Loose,
+    /// Loads push blocks that nothing holds any more, see [`StepRecord::rigid_motions`].
+    RigidBodyMotion,
     /// An iterate is not a number or not finite; the facet point where it showed, if there.
     NotFinite(Option<usize>),
     /// The linear system could not be solved.
     Linear(LinearFailure),
+    /// The observer of the iterations stopped it.
+    Stopped,
 }
 
 /// Record of a load step.
@@ -87,16 +43,16 @@ pub enum Outcome {
 pub struct StepRecord {
     /// Load at its end.
     pub load: Load,
-    /// Every iteration, in order, of all parts that the step was divided into.
+    /// Every iteration, in order, of all substeps.
     pub iterations: Vec<Iteration>,
-    /// Iterations of each part that converged.
-    pub parts: Vec<usize>,
-    /// Share of the way from the load before that was walked.
-    pub walked: f64,
+    /// Iterations of each substep that converged.
+    pub substeps: Vec<usize>,
+    /// Share of the step, from the load before to that at its end, that was solved.
+    pub completed: f64,
     /// How it ended.
     pub outcome: Outcome,
     /// Blocks that nothing held when it failed, each with its free motions.
-    pub loose: Vec<Defect>,
+    pub rigid_motions: Vec<Defect>,
     /// The facet point with the largest closure error at the end.
     pub worst_facet_point: Option<usize>,
     /// Time spent in factorisations (s).
@@ -110,9 +66,9 @@ impl StepRecord {
         Self {
             load,
             iterations: Vec::new(),
-            parts: Vec::new(),
-            walked: 0.0,
-            loose: Vec::new(),
+            substeps: Vec::new(),
+            completed: 0.0,
+            rigid_motions: Vec::new(),
             outcome: Outcome::OutOfIterations,
             worst_facet_point: None,
             factorise_seconds: 0.0,

@@ -5,7 +5,7 @@ mod state;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, norm};
-use lie_core::{FractureLaw, JointHistory, Response, TrialState};
+use lie_core::{FractureLaw, JointHistory, TrialState};
 use rayon::prelude::*;
 
 use crate::assembly::facet_point::FacetPoint;
@@ -131,19 +131,19 @@ impl<'a> System<'a> {
             let seen = point.initial_jump() + jump;
             let opening = seen.dot(point.normal);
             let aperture = state.joint.separation.aperture;
-            let landing = TrialState {
+            let trial = TrialState {
                 separation: law.closure.opened(aperture - law.closure.aperture),
                 slip: seen - opening * point.normal,
                 normal_traction: state.joint.normal_traction,
                 shear: state.joint.shear,
             };
             state.joint = if law.is_smooth() {
-                law.state_at(&landing)
+                law.state_at(&trial)
             } else {
-                law.return_map(&landing, point.rock_stiffness(), &state.history)
+                law.return_map(&trial, point.rock_stiffness(), &state.history)
             };
             let beyond = opening - state.joint.separation.opening;
-            state.jump_residual = beyond * point.normal + landing.slip - state.joint.slip;
+            state.jump_residual = beyond * point.normal + trial.slip - state.joint.slip;
         }
     }
 
@@ -158,19 +158,6 @@ impl<'a> System<'a> {
         points
             .zip(&state.facet_points)
             .map(|(point, state)| state.joint.traction(point.normal))
-            .collect()
-    }
-
-    /// Responses of the laws to the jumps of `unknowns`.
-    pub fn responses(&self, unknowns: &[DVec3], load: &Load) -> Vec<Response> {
-        let interface = &self.discretisation.interface;
-        let jumps = interface.jumps(unknowns, load);
-        let points = interface.points.par_iter().zip(jumps);
-        points
-            .map(|(point, jump)| {
-                let seen = point.initial_jump() + jump;
-                self.law(point).response(seen, point.normal)
-            })
             .collect()
     }
 

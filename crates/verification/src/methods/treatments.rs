@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use kluft_solver::{
     Discretisation, LinearMethod, Load, Newton, NewtonSettings, Plan, Problem, System, Unknowns,
-    Workload, solution,
+    Workload, solution, unobserved,
 };
 use lie_core::{Closure, ClosureKind, Tension};
 
@@ -171,7 +171,7 @@ fn by_law(problem: &Problem, system: &System<'_>, settings: NewtonSettings) -> O
     let memory = plan.prediction().memory_bytes;
     let mut newton = Newton::planned(system, settings, plan).ok()?;
     let mut state = system.initial_state();
-    let record = newton.step(system, &mut state, &Load::proportional(1.0), |_, _| {});
+    let record = newton.solve_step(system, &mut state, &Load::proportional(1.0), unobserved);
     if !record.converged() {
         return None;
     }

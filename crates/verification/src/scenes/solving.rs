@@ -2,7 +2,7 @@
 
 use kluft_solver::{
     Discretisation, Load, Newton, NewtonSettings, Problem, Solution, State, StepRecord, System,
-    solution,
+    solution, unobserved,
 };
 
 /// Solves one load step at factor 1 with the given settings.
@@ -11,7 +11,7 @@ pub fn try_solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, So
     let system = System::assemble(problem, discretisation);
     let mut newton = Newton::new(&system, settings).expect("analysis");
     let mut state = system.initial_state();
-    let record = newton.step(&system, &mut state, &Load::proportional(1.0), |_, _| {});
+    let record = newton.solve_step(&system, &mut state, &Load::proportional(1.0), unobserved);
     let solution = solution(&system, &state);
     (record, solution, state)
 }
@@ -35,7 +35,7 @@ pub fn solve_path(
     let mut newton = Newton::new(&system, settings).expect("analysis");
     let mut state = system.initial_state();
     let solved = loads.into_iter().map(|load| {
-        let record = newton.step(&system, &mut state, &Load::proportional(load), |_, _| {});
+        let record = newton.solve_step(&system, &mut state, &Load::proportional(load), unobserved);
         (record, solution(&system, &state))
     });
     solved.collect()

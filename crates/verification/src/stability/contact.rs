@@ -1,11 +1,12 @@
 //! Contact: a penalty against exact contact.
 
 use kluft_chart::{Axis, Chart, Rate, Series};
-use kluft_solver::{Linearisation, NewtonSettings, Problem, Solution, StepRecord};
+use kluft_solver::{NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
 
 use super::blocks::{fracture, tilting};
 use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most};
+use crate::methods::plain_newton;
 use crate::scenes::{self, ROCK};
 
 /// The study.
@@ -61,24 +62,20 @@ struct Case {
     plain: StepRecord,
 }
 
-fn solved(problem: &Problem, linearisation: Linearisation) -> (StepRecord, Solution) {
-    let settings = NewtonSettings {
-        linearisation,
-        ..NewtonSettings::default()
-    };
-    let (record, solution, _) = scenes::try_solve(problem, settings);
+fn solved(problem: &Problem) -> (StepRecord, Solution) {
+    let (record, solution, _) = scenes::try_solve(problem, NewtonSettings::default());
     (record, solution)
 }
 
 fn case(contrast: f64, exact: &Solution) -> Case {
     let problem = penalty(contrast);
-    let (ours, solution) = solved(&problem, Linearisation::Balanced);
+    let (ours, solution) = solved(&problem);
     Case {
         contrast,
         penetration: penetration(&solution),
         traction: traction_error(&solution, exact),
         ours,
-        plain: solved(&problem, Linearisation::Landed).0,
+        plain: plain_newton::solve(&problem, NewtonSettings::default()).0,
     }
 }
 
@@ -170,7 +167,7 @@ struct Compared {
 
 impl Compared {
     fn of(exponents: impl IntoIterator<Item = i32>) -> Self {
-        let (record, reference) = solved(&exact(), Linearisation::Balanced);
+        let (record, reference) = solved(&exact());
         let contrasts = exponents.into_iter().map(|power| 10.0_f64.powi(power));
         let cases = contrasts.map(|contrast| case(contrast, &reference));
         Self {

@@ -7,6 +7,7 @@ use kluft_solver::{Discretisation, LinearMethod, Load, NewtonSettings, Problem, 
 use lie_core::ClosureKind;
 
 use super::{Effort, Finding, Study, Table, entry, height, hold_promise, most};
+use crate::methods::plain_newton;
 use crate::methods::split_nodes;
 use crate::scenes::closing::three_planes_of;
 use crate::scenes::{self, ROCK};
@@ -46,7 +47,7 @@ fn of_jumps(problem: &Problem) -> Equations {
     let system = System::assemble(problem, Discretisation::of(problem).expect("supported"));
     let load = Load::proportional(1.0);
     let unknowns = system.initial_state().unknowns;
-    let responses = system.responses(&unknowns, &load);
+    let responses = plain_newton::responses(&system, &unknowns, &load);
     let tangents: Vec<_> = responses.iter().map(|response| response.tangent).collect();
     let tangent = system.tangent(&tangents);
     let rows = tangent.rows(&system.discretisation().pattern().blocks);

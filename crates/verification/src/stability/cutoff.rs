@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use kluft_chart::{Axis, Chart, Series};
-use kluft_solver::{Linearisation, NewtonSettings, Problem, StepRecord};
+use kluft_solver::{NewtonSettings, Problem, StepRecord};
 use lie_core::ClosureKind;
 
 use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, most};
+use crate::methods::plain_newton;
 use crate::scenes;
 use crate::scenes::closing::{column, inclined_joint, three_planes};
 
@@ -49,14 +50,6 @@ struct Case {
     plain: StepRecord,
 }
 
-fn solved(problem: &Problem, linearisation: Linearisation) -> StepRecord {
-    let settings = NewtonSettings {
-        linearisation,
-        ..NewtonSettings::default()
-    };
-    scenes::try_solve(problem, settings).0
-}
-
 fn cases(effort: Effort) -> Vec<Case> {
     let draft = scenes::geometry("inclined-joint", &[("h", 0.4)]);
     let inclined = |kind, load| inclined_joint(&draft, kind, load);
@@ -65,6 +58,7 @@ fn cases(effort: Effort) -> Vec<Case> {
         ("inclined joint", &inclined),
         ("three planes", &three_planes),
     ];
+    let settings = NewtonSettings::default();
     let mut cases = Vec::new();
     for (scene, problem) in scenes {
         for cutoff in cutoffs(effort) {
@@ -77,8 +71,8 @@ fn cases(effort: Effort) -> Vec<Case> {
                     scene,
                     cutoff,
                     load,
-                    ours: solved(&problem, Linearisation::Balanced),
-                    plain: solved(&problem, Linearisation::Landed),
+                    ours: scenes::try_solve(&problem, settings).0,
+                    plain: plain_newton::solve(&problem, settings).0,
                 });
             }
         }

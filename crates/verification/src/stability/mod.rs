@@ -107,7 +107,7 @@ pub fn hold_promise(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
 /// Notes a step with friction that did not converge within the promise: each of the parts that the
 /// program divides it into is a step of its own.
 pub fn hold_promise_with_friction(misses: &mut Vec<String>, case: &str, record: &StepRecord) {
-    match record.parts.iter().max() {
+    match record.substeps.iter().max() {
         Some(&most) if record.converged() && most > PROMISE_WITH_FRICTION => {
             misses.push(format!("{case}: {most} Newton iterations in one part"));
         }

@@ -193,7 +193,7 @@ fn area_of_top(problem: &Problem) -> f64 {
 
 /// Most iterations of one part of a step.
 fn most_of_part(records: &[StepRecord]) -> usize {
-    let parts = records.iter().flat_map(|record| &record.parts);
+    let parts = records.iter().flat_map(|record| &record.substeps);
     parts.copied().max().unwrap_or(0)
 }
 
@@ -226,7 +226,7 @@ fn wedges(effort: Effort, table: &mut Table, misses: &mut Vec<String>) -> Vec<Se
                 case,
                 String::new(),
                 entry(count(&record)),
-                record.parts.len().to_string(),
+                record.substeps.len().to_string(),
                 most_of_part(std::slice::from_ref(&record)).to_string(),
                 format!("{beyond:.2e}"),
                 format!("{error:.2e}"),
@@ -315,7 +315,9 @@ fn shear(cycles: usize) -> (Vec<Case>, Table, Vec<String>) {
                 name.to_owned(),
                 (cycle + 1).to_string(),
                 entry(most(records.iter().map(count))),
-                entry(most(records.iter().map(|record| Some(record.parts.len())))),
+                entry(most(
+                    records.iter().map(|record| Some(record.substeps.len())),
+                )),
                 most_of_part(records).to_string(),
                 format!("{:.2e}", case.beyond),
                 repeats.map_or(String::new(), |value| format!("{value:.2e}")),

@@ -3,12 +3,13 @@
 
 use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{
-    Discretisation, LinearMethod, Linearisation, Load, NewtonSettings, Problem, Solution,
-    StepRecord, Support, SurfaceLoad, System, norm,
+    Discretisation, LinearMethod, Load, NewtonSettings, Problem, Solution, StepRecord, Support,
+    SurfaceLoad, System, norm,
 };
 use lie_core::ClosureKind;
 
 use super::{Effort, Finding, Study, Table, count, entry, hold_promise, largest};
+use crate::methods::plain_newton;
 use crate::scenes::closing::{inclined_joint, three_planes};
 use crate::scenes::networks;
 use crate::scenes::{self, EXACT};
@@ -113,10 +114,9 @@ fn absolute_test(problem: &Problem, exact: &Solution, newton: f64) -> f64 {
         force: ABSOLUTE * newton / norm(&system.load_forces(&Load::proportional(1.0))),
         increment: f64::INFINITY,
         closure: f64::INFINITY,
-        linearisation: Linearisation::Landed,
         ..NewtonSettings::default()
     };
-    let (record, solution, _) = scenes::try_solve(problem, settings);
+    let (record, solution) = plain_newton::solve(problem, settings);
     if record.converged() {
         difference(exact, &solution, 1.0, 1.0)
     } else {

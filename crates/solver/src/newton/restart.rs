@@ -1,13 +1,13 @@
 //! Where a run stands between two load steps, so that another process can go on from there.
 
+use kluft_algebra::LinearFailure;
 use std::borrow::Cow;
 
-use kluft_algebra::LinearFailure;
 use serde::{Deserialize, Serialize};
 
 use super::Newton;
 use super::extrapolation::Path;
-use super::subspace::Subspace;
+use super::recycling::RecycledSpace;
 use crate::linear::SolverHistory;
 use crate::system::{State, System};
 
@@ -17,7 +17,7 @@ use crate::system::{State, System};
 pub struct RestartState<'a> {
     state: Cow<'a, State>,
     path: Cow<'a, Path>,
-    subspace: Cow<'a, Option<Subspace>>,
+    recycled: Cow<'a, Option<RecycledSpace>>,
     linear: SolverHistory,
 }
 
@@ -27,37 +27,39 @@ impl RestartState<'_> {
         let unknowns = system.discretisation.points.len();
         let facet_points = system.discretisation.interface.points.len();
         let blocks = system.discretisation.interface.columns.entries.len();
+        let recycled = (*self.recycled).as_ref();
         self.state.unknowns.len() == unknowns
             && self.state.facet_points.len() == facet_points
             && self.path.fits(unknowns, facet_points)
-            && (*self.subspace).as_ref().is_none_or(|s| s.fits(unknowns))
+            && recycled.is_none_or(|space| space.fits(unknowns))
             && self.linear.fits(blocks)
     }
 }
 
 impl Newton {
-    /// Marks the place after a load step that led to `state`.
-    pub fn bookmark<'a>(&'a self, state: &'a State) -> RestartState<'a> {
+    /// What a run continues from after a load step that led to `state`.
+    pub fn restart_state<'a>(&'a self, state: &'a State) -> RestartState<'a> {
         RestartState {
             state: Cow::Borrowed(state),
             path: Cow::Borrowed(&self.path),
-            subspace: Cow::Borrowed(&self.subspace),
+            recycled: Cow::Borrowed(&self.recycled),
             linear: self.linear.history(),
         }
     }
 
-    /// Goes back to a place that fits the system, and returns its state.
+    /// Brings the solver to where it was when `restart`, which fits the system, was made; returns
+    /// the state of that time.
     ///
     /// # Errors
-    /// If the linear solver cannot be brought to where it was.
+    /// If the linear solver cannot be brought there.
     pub fn restore(
         &mut self,
         system: &System<'_>,
-        bookmark: RestartState<'_>,
+        restart: RestartState<'_>,
     ) -> Result<State, LinearFailure> {
-        self.linear.restore(system, bookmark.linear)?;
-        self.path = bookmark.path.into_owned();
-        self.subspace = bookmark.subspace.into_owned();
-        Ok(bookmark.state.into_owned())
+        self.linear.restore(system, restart.linear)?;
+        self.path = restart.path.into_owned();
+        self.recycled = restart.recycled.into_owned();
+        Ok(restart.state.into_owned())
     }
 }

@@ -1,4 +1,4 @@
-//! Small dense algebra of a subspace.
+//! Small dense algebra of a recycled space.
 
 use faer::{Mat, Side};
 
@@ -7,8 +7,8 @@ use kluft_algebra::dense_kernels::apart;
 /// Eigenvalue, against the largest, below which directions are not told from each other.
 const DEPENDENT: f64 = 1e-12;
 
-/// Solves a small symmetric system of directions with energies on the diagonal, leaving out what they
-/// do not tell apart; none if the eigenvalues are not found.
+/// Solves a small symmetric system of directions with energies on the diagonal, leaving out what
+/// they do not tell apart; none if the eigenvalues are not found.
 pub(super) fn solve(mut matrix: Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
     let count = right.len();
     let scale: Vec<f64> = (0..count)
@@ -32,8 +32,8 @@ pub(super) fn solve(mut matrix: Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// The directions along which vectors lie, the most important first, at most `count`; each vector
-/// counts `fading` times the one before it. Singular vectors, because the eigenvectors of the sum of
-/// squares would lose half of the digits.
+/// counts `fading` times the one before it. Singular vectors, because the eigenvectors of the sum
+/// of squares would lose half of the digits.
 pub(super) fn principal_axes(vectors: &[Vec<f64>], fading: f64, count: usize) -> Vec<Vec<f64>> {
     let length = vectors.first().map_or(0, Vec::len);
     let weight = |j: usize| fading.powi(j as i32);

@@ -1,0 +1,200 @@
+//! Return mapping: the state of a law that balances the rock beside a facet point.
+//!
+//! After a linear solve has put the walls at a jump `w` with a traction `t`, the trial state, the
+//! state `w~, t~` of the law is the one with `t~ + k w~ = t + k w`, `k` the stiffness of the rock.
+//! Friction is integrated on the total normal law. With the slip `s` since the walls last stuck
+//! without shear, the plastic slip `lambda` of the step and the limit `L = c - tan(phi) sigma_n`:
+//!
+//! ```text
+//! stick   t_s = K_s s,         |t_s| < L
+//! slip    t_s = L s / |s|,     |s| = L / K_s + lambda,    w_n = w_n(sigma_n) + tan(psi) lambda
+//! ```
+
+use glam::DVec3;
+
+use crate::closure::{NormalBalance, Separation, Tension};
+use crate::fracture_law::{FractureLaw, Friction};
+use crate::joint_state::{JointHistory, JointState, TrialState};
+use crate::root::root;
+use crate::shear_retention::ShearRetention;
+
+/// Stiffness of the rock beside a facet point (Pa/m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RockStiffness {
+    /// Across.
+    pub normal: f64,
+    /// Along; positive if the law has friction.
+    pub shear: f64,
+}
+
+impl FractureLaw {
+    /// The state of the law that balances the rock, see the module.
+    pub fn return_map(
+        &self,
+        trial: &TrialState,
+        rock: RockStiffness,
+        history: &JointHistory,
+    ) -> JointState {
+        match &self.friction {
+            Some(friction) => FrictionalReturn {
+                law: self,
+                friction,
+                trial,
+                rock,
+                history,
+            }
+            .state(),
+            None => self.elastic_return(trial, rock, history),
+        }
+    }
+
+    /// The state of the law at the jump of a trial state, of a law without friction that never
+    /// broke.
+    pub fn state_at(&self, trial: &TrialState) -> JointState {
+        let across = NormalBalance {
+            separation: trial.separation,
+            traction: self.closure.at(trial.separation).traction,
+        };
+        self.elastic_state(across, trial.slip, self.shear_stiffness)
+    }
+
+    fn elastic_return(
+        &self,
+        trial: &TrialState,
+        rock: RockStiffness,
+        history: &JointHistory,
+    ) -> JointState {
+        let load = trial.normal_traction + rock.normal * trial.separation.opening;
+        let slip = trial.slip;
+        let stiffness = self.shear_stiffness * (1.0 - self.damage(history));
+        let thrust = |separation: Separation| self.thrust(separation, slip, stiffness);
+        let mut balance = self
+            .closure
+            .balanced_after(rock.normal, load, history.largest_opening);
+        // Where the fracture lets go of its shear, what pushes its walls apart is part of the
+        // balance.
+        if thrust(balance.separation) < 0.0 {
+            let from = balance.separation;
+            let longest = self.closure.aperture - from.opening;
+            let excess = |moved: f64| rock.normal * moved + thrust(from.moved(moved));
+            balance.separation = from.moved(root(excess, longest));
+        }
+        self.elastic_state(balance, slip, stiffness)
+    }
+
+    /// A state without friction: `across` is where the walls are and what the closure law carries
+    /// there.
+    fn elastic_state(&self, across: NormalBalance, slip: DVec3, stiffness: f64) -> JointState {
+        JointState {
+            separation: across.separation,
+            slip,
+            normal_traction: across.traction + self.thrust(across.separation, slip, stiffness),
+            shear: self.shear_retention(across.separation).share * stiffness * slip,
+            ..JointState::default()
+        }
+    }
+
+    /// Normal traction (Pa) by which a fracture that lets go of its shear pushes its walls apart.
+    fn thrust(&self, separation: Separation, slip: DVec3, stiffness: f64) -> f64 {
+        self.shear_retention(separation).slope * (0.5 * stiffness * slip.length_squared())
+    }
+
+    /// Separation as the closure law sees it: without what dilation opened.
+    pub(crate) fn undilated(&self, state: &JointState, history: &JointHistory) -> Separation {
+        let dilation = self.friction.map_or(0.0, |friction| friction.dilation);
+        let opened = history.dilation + dilation * state.plastic_slip;
+        state.separation.moved(-opened)
+    }
+
+    /// Largest shear traction (Pa).
+    pub(crate) fn limit(
+        &self,
+        friction: &Friction,
+        state: &JointState,
+        history: &JointHistory,
+    ) -> f64 {
+        let (bond, _) = self.bond(state, history);
+        (friction.cohesion * bond - friction.coefficient * state.normal_traction).max(0.0)
+    }
+
+    /// Share of the cohesion that is left, and how it changes with the opening (1/m).
+    pub(crate) fn bond(&self, state: &JointState, history: &JointHistory) -> (f64, f64) {
+        match self.closure.tension {
+            Tension::Elastic => (1.0, 0.0),
+            Tension::Cohesive { .. } => (1.0 - self.damage(history), 0.0),
+            Tension::CutOff => {
+                let gap = self.closure.gap(self.undilated(state, history));
+                let retention = ShearRetention::fading(gap, self.closure.aperture);
+                (retention.share, retention.slope)
+            }
+        }
+    }
+}
+
+/// Return mapping of one trial state with friction.
+struct FrictionalReturn<'a> {
+    law: &'a FractureLaw,
+    friction: &'a Friction,
+    trial: &'a TrialState,
+    rock: RockStiffness,
+    history: &'a JointHistory,
+}
+
+impl FrictionalReturn<'_> {
+    fn state(&self) -> JointState {
+        let compliance = self.law.shear_stiffness.recip();
+        let k = self.rock.shear;
+        let pull = self.trial.shear + k * self.trial.slip;
+        let size = pull.length();
+        let (missing, stick) = self.excess(size, 0.0);
+        if missing >= 0.0 {
+            let slip = pull / (self.law.shear_stiffness + k);
+            return JointState {
+                // The stiffness may be infinite.
+                slip: if compliance > 0.0 { slip } else { DVec3::ZERO },
+                shear: pull / (1.0 + k * compliance),
+                ..stick
+            };
+        }
+        let lambda = if self.friction.dilation > 0.0 {
+            root(|lambda| self.excess(size, lambda).0, -missing / k)
+        } else {
+            -missing / k
+        };
+        let state = self.after(lambda);
+        let limit = self.law.limit(self.friction, &state, self.history);
+        let direction = pull / size;
+        JointState {
+            slip: (limit * compliance + lambda) * direction,
+            shear: limit * direction,
+            sliding: true,
+            ..state
+        }
+    }
+
+    /// What a plastic slip `lambda` (m) asks for beyond the `pull` (Pa) that there is, and the
+    /// state after it.
+    fn excess(&self, pull: f64, lambda: f64) -> (f64, JointState) {
+        let (k, compliance) = (self.rock.shear, self.law.shear_stiffness.recip());
+        let state = self.after(lambda);
+        let limit = self.law.limit(self.friction, &state, self.history);
+        (limit * (1.0 + k * compliance) + k * lambda - pull, state)
+    }
+
+    /// The state balanced across, after a plastic slip (m).
+    fn after(&self, plastic_slip: f64) -> JointState {
+        let (trial, rock) = (self.trial, self.rock);
+        let dilation = self.history.dilation + self.friction.dilation * plastic_slip;
+        let load = trial.normal_traction + rock.normal * (trial.separation.opening - dilation);
+        let balance =
+            self.law
+                .closure
+                .balanced_after(rock.normal, load, self.history.largest_opening);
+        JointState {
+            separation: balance.separation.moved(dilation),
+            normal_traction: balance.traction,
+            plastic_slip,
+            ..JointState::default()
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! How the traction of a law changes with the jump around a state.
+
+use glam::{DMat3, DVec3};
+
+use crate::fracture_law::{FractureLaw, Friction};
+use crate::joint_state::{JointHistory, JointState};
+use crate::outer::outer;
+
+/// How the traction changes with the jump (Pa/m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tangent {
+    /// `dt/dw`; neither symmetric nor definite where friction or a softening bond is at work.
+    pub exact: DMat3,
+    /// A symmetric positive semidefinite tangent that is close to it: the same wherever that is
+    /// one.
+    pub positive: DMat3,
+}
+
+impl FractureLaw {
+    /// How the traction changes around a state of the law. `rigid` (Pa/m) takes the place of
+    /// infinite stiffness: it changes how fast an iteration converges, not to what.
+    pub fn tangent(
+        &self,
+        state: &JointState,
+        history: &JointHistory,
+        normal: DVec3,
+        rigid: f64,
+    ) -> Tangent {
+        let point = TangentPoint {
+            law: self,
+            state,
+            history,
+            normal,
+            rigid,
+        };
+        match &self.friction {
+            Some(friction) if state.sliding => point.slip(friction),
+            _ => point.stick(),
+        }
+    }
+}
+
+/// A state of a law at a facet with unit `normal`.
+struct TangentPoint<'a> {
+    law: &'a FractureLaw,
+    state: &'a JointState,
+    history: &'a JointHistory,
+    normal: DVec3,
+    rigid: f64,
+}
+
+impl TangentPoint<'_> {
+    fn stick(&self) -> Tangent {
+        let (law, normal, slip) = (self.law, self.normal, self.state.slip);
+        let across = self.slope();
+        let retention = law.shear_retention(self.state.separation);
+        let whole = if law.friction.is_some() {
+            law.shear_stiffness.min(self.rigid)
+        } else {
+            law.shear_stiffness * (1.0 - law.damage(self.history))
+        };
+        let along = retention.share * whole;
+        let coupling = retention.slope * whole * slip;
+        let curved = across + 0.5 * retention.curvature * whole * slip.length_squared();
+        let uncoupled = |across: f64| isotropic(across, along, normal);
+        let exact = uncoupled(curved) + outer(normal, coupling) + outer(coupling, normal);
+        let convex = curved * along >= coupling.length_squared() && curved >= 0.0;
+        Tangent {
+            exact,
+            positive: if convex {
+                exact
+            } else {
+                uncoupled(across.max(0.0))
+            },
+        }
+    }
+
+    /// From `d lambda = a (m . dw + tan(phi) / K_s d sigma)`, `d sigma = sigma' (dw_n - tan(psi) d
+    /// lambda)` and `d|t_s| = -tan(phi) d sigma`, with the direction `m` of the slip.
+    fn slip(&self, friction: &Friction) -> Tangent {
+        let (law, state, normal) = (self.law, self.state, self.normal);
+        let direction = self.direction();
+        let slope = self.slope();
+        let compliance = law.shear_stiffness.recip();
+        let limit = self.limit_slope(friction, slope);
+        let share = 1.0 / (1.0 - compliance * friction.dilation * limit);
+        let lambda = share * (direction - compliance * limit * normal);
+        let apart = normal - friction.dilation * lambda;
+        let turning = (state.shear.length() / state.slip.length().max(f64::MIN_POSITIVE))
+            .min(law.shear_stiffness.min(self.rigid));
+        let transverse = DMat3::IDENTITY - outer(normal, normal) - outer(direction, direction);
+        let exact =
+            outer(normal, slope * apart) + outer(direction, limit * apart) + turning * transverse;
+        let across = (slope * apart.dot(normal)).max(0.0);
+        let along = (limit * apart.dot(direction)).max(0.0);
+        Tangent {
+            exact,
+            positive: outer(normal, across * normal)
+                + outer(direction, along * direction)
+                + turning * transverse,
+        }
+    }
+
+    /// Unit vector of the slip. Right after a commit walls without elastic slip have none, but
+    /// still know where they slid.
+    fn direction(&self) -> DVec3 {
+        if self.state.slip == DVec3::ZERO {
+            self.state.shear.normalize_or_zero()
+        } else {
+            self.state.slip.normalize_or_zero()
+        }
+    }
+
+    /// Growth of the limit of friction with the opening (Pa/m), at fixed plastic slip; none once
+    /// there is no limit left. `slope` is that of the closure law.
+    fn limit_slope(&self, friction: &Friction, slope: f64) -> f64 {
+        let (_, bond) = self.law.bond(self.state, self.history);
+        if self.law.limit(friction, self.state, self.history) > 0.0 {
+            friction.cohesion * bond - friction.coefficient * slope
+        } else {
+            0.0
+        }
+    }
+
+    /// Slope of the closure law (Pa/m).
+    fn slope(&self) -> f64 {
+        let closure = &self.law.closure;
+        let separation = self.law.undilated(self.state, self.history);
+        let touching = closure.normal_stiffness.is_infinite();
+        if touching {
+            let open = self.state.normal_traction >= 0.0 && separation.aperture > 0.0;
+            return if open { 0.0 } else { self.rigid };
+        }
+        closure
+            .at_after(separation, self.history.largest_opening)
+            .tangent
+    }
+}
+
+/// `across n n^T + along (I - n n^T)`.
+fn isotropic(across: f64, along: f64, normal: DVec3) -> DMat3 {
+    DMat3::from_diagonal(DVec3::splat(along)) + outer(normal, (across - along) * normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closure::{Closure, ClosureKind, Tension};
+    use crate::joint_state::TrialState;
+
+    /// State of a law without friction at a jump (m).
+    fn state(law: &FractureLaw, jump: DVec3, normal: DVec3) -> JointState {
+        let opening = jump.dot(normal);
+        law.state_at(&TrialState {
+            separation: law.closure.opened(opening),
+            slip: jump - opening * normal,
+            normal_traction: 0.0,
+            shear: DVec3::ZERO,
+        })
+    }
+
+    #[test]
+    fn tangent_is_the_derivative_of_the_traction() {
+        let kind = ClosureKind::Logarithmic { cutoff: Some(1e-6) };
+        let mut closure = Closure::new(1e-4, 1e11, kind);
+        let normal = DVec3::new(1.0, -2.0, 0.5).normalize();
+        for tension in [Tension::Elastic, Tension::CutOff] {
+            closure.tension = tension;
+            let law = FractureLaw::elastic(closure, 3e10);
+            for opening in [-9.95e-5, -5e-5, 2e-5, 7e-5, 2e-4] {
+                let jump = opening * normal + DVec3::new(1e-5, 2e-5, -1e-5);
+                let here = state(&law, jump, normal);
+                let tangent = law.tangent(&here, &JointHistory::default(), normal, 1e20);
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    let traction = |sign: f64| {
+                        state(&law, jump + sign * 1e-11 * axis, normal).traction(normal)
+                    };
+                    let difference = (traction(1.0) - traction(-1.0)) / 2e-11;
+                    assert!((difference - tangent.exact * axis).length() < 1e-5 * 1e11);
+                }
+            }
+        }
+    }
+}

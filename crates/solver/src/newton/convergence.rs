@@ -1,0 +1,104 @@
+//! The test of convergence: how far an iterate is from a solution, against how large its quantities
+//! are.
+
+use glam::DVec3;
+use kluft_algebra::norm;
+
+use super::facet_points::interface;
+use super::iteration::Iterate;
+use super::{Iteration, NewtonSettings, Outcome, Step};
+use crate::system::{State, StateScales, System};
+
+/// Share of the largest sizes of a path that still counts once the loads are gone: what is left
+/// then is rounding, and would be compared with nothing but itself.
+pub(super) const SHARE_OF_FORMER_SIZES: f64 = 1e-3;
+/// Share of the largest increment allowed where laws have kinks: the error of a stabilised
+/// iteration falls by a factor, not as a square.
+const INCREMENT_AT_KINKS: f64 = 1e-2;
+/// Share of the traction that would close an open fracture, below which the errors of its own count
+/// as small.
+const RECLOSING_SHARE: f64 = 1e-3;
+
+impl NewtonSettings {
+    /// Whether all tests hold.
+    pub(super) fn accept(&self, system: &System<'_>, iteration: &Iteration) -> bool {
+        let increment = if system.is_smooth() {
+            self.increment
+        } else {
+            INCREMENT_AT_KINKS * self.increment
+        };
+        iteration.force_residual <= self.force
+            && iteration.closure_error <= self.closure
+            && (!system.is_nonlinear() || iteration.increment <= increment)
+    }
+}
+
+/// Measures how far an iterate is from a solution, given the closure errors of its facet points
+/// (Pa) and the largest displacement of its last correction (m).
+///
+/// # Errors
+/// If a traction is not finite.
+pub(super) fn measure(
+    step: &mut Step<'_>,
+    iterate: &mut Iterate,
+    errors: &[f64],
+    change: f64,
+) -> Result<Iteration, Outcome> {
+    let (system, state) = (step.system, &iterate.state);
+    let tractions = system.law_tractions(state);
+    if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
+        return Err(Outcome::NotFinite(Some(broken)));
+    }
+    let residual = norm(&system.residual(&iterate.rock_forces, &tractions, &state.load));
+    let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+    step.record.worst_facet_point = worst;
+    let points = state.facet_points.iter();
+    let apertures = points.map(|point| point.joint.separation.aperture);
+    let smallest_aperture = apertures.fold(f64::INFINITY, f64::min);
+    let own_sizes = sizes(system, iterate, &tractions);
+    let sizes = own_sizes.or_share(SHARE_OF_FORMER_SIZES, state.reached);
+    iterate.sizes = sizes;
+    Ok(Iteration {
+        force_residual: ratio(residual, sizes.force),
+        increment: ratio(change, sizes.displacement),
+        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction),
+        smallest_aperture,
+        linear_iterations: 0,
+    })
+}
+
+/// How large the quantities of an iterate are.
+fn sizes(system: &System<'_>, iterate: &Iterate, tractions: &[DVec3]) -> StateScales {
+    let state = &iterate.state;
+    let displacements = system.displacements(&state.unknowns, &state.load);
+    // A body that does not move may still hold joints closed by its initial stress.
+    let points = state.facet_points.iter();
+    let openings = points.map(|point| point.joint.separation.opening.abs());
+    StateScales {
+        force: system.force_scale(&iterate.rock_forces, tractions, &state.load),
+        displacement: openings.fold(largest(&displacements), f64::max),
+        traction: largest(tractions).max(RECLOSING_SHARE * reclosing_traction(system, state)),
+    }
+}
+
+/// Traction (Pa) that would close the widest of the fractures again, if any may be free of
+/// traction.
+fn reclosing_traction(system: &System<'_>, state: &State) -> f64 {
+    if system.is_smooth() {
+        return 0.0;
+    }
+    let points = interface(system).points.iter().zip(&state.facet_points);
+    points
+        .map(|(point, state)| point.spring * state.joint.separation.opening.abs())
+        .fold(0.0, f64::max)
+}
+
+/// Length of the largest vector.
+pub(super) fn largest(vectors: &[DVec3]) -> f64 {
+    vectors.iter().map(|v| v.length()).fold(0.0, f64::max)
+}
+
+/// `value / scale`, and 0 where there is nothing to compare with nothing.
+pub(super) fn ratio(value: f64, scale: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / scale }
+}

@@ -1,0 +1,200 @@
+//! The facet points of an increment: where each is linearised, and how it follows the linear
+//! solves.
+
+use glam::{DMat3, DVec3};
+use lie_core::{FractureLaw, RockStiffness, Separation, Tangent, TrialState};
+use rayon::prelude::*;
+
+use crate::assembly::facet_point::FacetPoint;
+use crate::assembly::interface::Interface;
+use crate::linear::Tangents;
+use crate::problem::Load;
+use crate::system::{FacetPointState, State, System};
+
+/// Stiffness that stands for walls in contact, against that of the rock beside them. Their
+/// tractions follow by increments, so it decides how fast they converge and not where.
+const RIGID: f64 = 1e6;
+/// Stiffness against sudden motions of walls that nothing holds, against that of the rock beside
+/// them. It enters the matrix only and no balance.
+const STABILISATION: f64 = 1e-6;
+
+pub(super) fn interface<'a>(system: &'a System<'_>) -> &'a Interface {
+    &system.discretisation.interface
+}
+
+/// Where the last linear solve of an increment put a facet point.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct LastTrial {
+    /// Separation of the walls; none before the first solve.
+    separation: Option<Separation>,
+    /// Normal traction on the tangent plane (Pa).
+    traction: f64,
+}
+
+impl LastTrial {
+    /// Stiffness of the surrounding rock (Pa/m) as two linear solves tell it, `-dt/dw`; 0 where
+    /// they tell nothing.
+    fn secant_to(&self, trial: &TrialState) -> f64 {
+        let secant = self.separation.map(|before| {
+            (self.traction - trial.normal_traction) / trial.separation.beyond(before)
+        });
+        secant.filter(|secant| secant.is_finite()).unwrap_or(0.0)
+    }
+}
+
+/// Takes the state to another load: prescribed displacements move walls that are held.
+pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: &Load) {
+    let jumps = interface(system).prescribed_change(&state.load, load);
+    state.load.clone_from(load);
+    for (jump, state) in jumps.into_iter().zip(&mut state.facet_points) {
+        state.jump_residual += jump;
+    }
+}
+
+/// Makes a converged state the one that the next increment starts from.
+pub(super) fn commit(system: &System<'_>, state: &mut State) {
+    let points = &interface(system).points;
+    for (point, state) in points.iter().zip(&mut state.facet_points) {
+        let law = system.law(point);
+        law.commit(&mut state.joint, &mut state.history);
+    }
+}
+
+/// Tangents of the laws at the state (Pa/m).
+pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
+    let points = interface(system).points.par_iter();
+    let all: Vec<Tangent> = points
+        .zip(&state.facet_points)
+        .map(|(point, state)| tangent(system.law(point), point, state))
+        .collect();
+    let exact: Vec<DMat3> = all.iter().map(|tangent| tangent.exact).collect();
+    if system.is_smooth() {
+        return exact.into();
+    }
+    let positive: Vec<DMat3> = all.iter().map(|tangent| tangent.positive).collect();
+    Tangents {
+        positive: (positive != exact).then_some(positive),
+        exact,
+    }
+}
+
+/// The tangents with some stiffness for walls that nothing may hold.
+pub(super) fn stabilised(system: &System<'_>, tangents: &Tangents) -> Tangents {
+    let points = &interface(system).points;
+    let stabilised = |tangents: &Vec<DMat3>| {
+        let pairs = tangents.iter().zip(points);
+        pairs
+            .map(|(tangent, point)| *tangent + STABILISATION * point.spring * DMat3::IDENTITY)
+            .collect()
+    };
+    Tangents {
+        exact: stabilised(&tangents.exact),
+        positive: tangents.positive.as_ref().map(stabilised),
+    }
+}
+
+pub(super) fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointState) -> Tangent {
+    law.tangent(
+        &state.joint,
+        &state.history,
+        point.normal,
+        RIGID * point.spring,
+    )
+}
+
+/// Tractions on the tangent planes of the laws (Pa).
+pub(super) fn linearised_tractions(
+    system: &System<'_>,
+    state: &State,
+    tangents: &Tangents,
+) -> Vec<DVec3> {
+    let points = interface(system).points.par_iter();
+    points
+        .zip(&state.facet_points)
+        .zip(&tangents.exact)
+        .map(|((point, state), tangent)| {
+            state.joint.traction(point.normal) + *tangent * state.jump_residual
+        })
+        .collect()
+}
+
+/// Moves all facet points by the change of their jumps (m) to where they are linearised next;
+/// returns their closure errors (Pa).
+pub(super) fn follow(
+    system: &System<'_>,
+    state: &mut State,
+    last: &mut [LastTrial],
+    changes: &[DVec3],
+    tangents: &Tangents,
+) -> Vec<f64> {
+    let points = interface(system).points.par_iter();
+    points
+        .zip(changes)
+        .zip(&tangents.exact)
+        .zip(state.facet_points.par_iter_mut().zip(last))
+        .map(|(((point, change), tangent), (state, last))| {
+            let trial = trial(point, state, *tangent, *change);
+            follow_point(system.law(point), point, &trial, state, last)
+        })
+        .collect()
+}
+
+/// Where a change of the jump (m) takes a facet point on the tangent plane of its law.
+fn trial(point: &FacetPoint, state: &FacetPointState, tangent: DMat3, change: DVec3) -> TrialState {
+    let joint = &state.joint;
+    let beyond = state.jump_residual + change;
+    let opening = beyond.dot(point.normal);
+    let traction = joint.traction(point.normal) + tangent * beyond;
+    let across = traction.dot(point.normal);
+    TrialState {
+        separation: joint.separation.moved(opening),
+        slip: joint.slip + beyond - opening * point.normal,
+        normal_traction: across,
+        shear: traction - across * point.normal,
+    }
+}
+
+fn follow_point(
+    law: &FractureLaw,
+    point: &FacetPoint,
+    trial: &TrialState,
+    state: &mut FacetPointState,
+    last: &mut LastTrial,
+) -> f64 {
+    let secant = last.secant_to(trial).clamp(0.0, point.spring);
+    *last = LastTrial {
+        separation: Some(trial.separation),
+        traction: trial.normal_traction,
+    };
+    state.joint = if law.is_linear() {
+        law.state_at(trial)
+    } else {
+        let rock = rock_stiffness(law, point, trial, secant);
+        law.return_map(trial, rock, &state.history)
+    };
+    let joint = &state.joint;
+    let opening = trial.separation.beyond(joint.separation);
+    state.jump_residual = opening * point.normal + trial.slip - joint.slip;
+    let traction = trial.normal_traction * point.normal + trial.shear;
+    (traction - joint.traction(point.normal))
+        .length()
+        .max(point.spring * state.jump_residual.length())
+}
+
+/// The secant serves where the law is smooth. Two linear solves on different sides of a kink tell
+/// nothing of the rock, so there it is the bound.
+fn rock_stiffness(
+    law: &FractureLaw,
+    point: &FacetPoint,
+    trial: &TrialState,
+    secant: f64,
+) -> RockStiffness {
+    let bound = point.rock_stiffness();
+    let touching = law.closure.normal_stiffness.is_infinite();
+    let parted = trial.normal_traction + bound.normal * law.closure.gap(trial.separation) > 0.0;
+    let kinked = touching || (parted && !law.closure.is_smooth());
+    RockStiffness {
+        normal: if kinked { bound.normal } else { secant },
+        ..bound
+    }
+}

@@ -1,0 +1,205 @@
+//! One iteration: linearise, solve, correct, measure; and iterations until the tests hold.
+
+use kluft_algebra::{LinearFailure, norm};
+use std::time::Instant;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::convergence::{self, largest};
+use super::facet_points::{self, LastTrial, interface};
+use super::forcing_term;
+use super::line_search;
+use super::recycling::LastCorrection;
+use super::rigid_motion::RigidBodyMotion;
+use super::{Iteration, Newton, Outcome, Step};
+use crate::linear::{LinearSolution, Tangents};
+use crate::problem::Load;
+use crate::system::{State, StateScales, System};
+
+/// What the iterations of an increment work on.
+#[derive(Clone)]
+pub(super) struct Iterate {
+    pub(super) state: State,
+    pub(super) last_trials: Vec<LastTrial>,
+    /// Forces by which the rock resists the unknowns (N).
+    pub(super) rock_forces: Vec<DVec3>,
+    /// StateScales that its errors are measured against.
+    pub(super) sizes: StateScales,
+    /// Largest error allowed in the next linear solve, against its right-hand side.
+    pub(super) forcing_term: f64,
+    /// Errors after the last iteration, see `line_search`.
+    pub(super) merit: Option<f64>,
+    /// The guess that it began with, if it was made in the recycled space.
+    pub(super) guess: Option<LastCorrection>,
+    /// Its corrections, if they are to be recycled.
+    pub(super) corrections: Vec<Correction>,
+}
+
+/// What a linear solve does to the unknowns.
+#[derive(Debug, Clone)]
+pub(super) struct Correction {
+    /// Change of the unknowns (m).
+    pub(super) unknowns: Vec<DVec3>,
+    /// Forces by which the rock resists it (N), if it is to be recycled.
+    pub(super) rock_forces: Option<Vec<DVec3>>,
+    /// Its largest displacement (m).
+    pub(super) size: f64,
+}
+
+/// A correction, and the tangents of the facet points (Pa/m) on whose planes it was found.
+#[derive(Clone, Copy)]
+pub(super) struct Update<'a> {
+    pub(super) correction: &'a Correction,
+    pub(super) tangents: &'a Tangents,
+}
+
+impl Correction {
+    pub(super) fn of(system: &System<'_>, unknowns: Vec<DVec3>, is_recycled: bool) -> Self {
+        Self {
+            rock_forces: is_recycled.then(|| system.rock_forces(&unknowns)),
+            size: largest(&system.displacements(&unknowns, &Load::NONE)),
+            unknowns,
+        }
+    }
+
+    pub(super) fn scaled(&self, share: f64) -> Self {
+        let scaled = |vector: &Vec<DVec3>| vector.iter().map(|entry| share * *entry).collect();
+        Self {
+            unknowns: scaled(&self.unknowns),
+            rock_forces: self.rock_forces.as_ref().map(scaled),
+            size: share * self.size,
+        }
+    }
+}
+
+impl Iterate {
+    /// Adds a correction to the unknowns, lets the facet points follow, and measures the errors.
+    ///
+    /// # Errors
+    /// If numbers are no longer finite.
+    pub(super) fn correct(
+        &mut self,
+        step: &mut Step<'_>,
+        update: Update<'_>,
+    ) -> Result<Iteration, Outcome> {
+        let (system, correction) = (step.system, update.correction);
+        let unknowns = &mut self.state.unknowns;
+        for (unknown, change) in unknowns.iter_mut().zip(&correction.unknowns) {
+            *unknown += *change;
+        }
+        if !unknowns.iter().all(|unknown| unknown.is_finite()) {
+            return Err(Outcome::NotFinite(None));
+        }
+        self.correct_rock_forces(system, correction);
+        let errors = facet_points::follow(
+            system,
+            &mut self.state,
+            &mut self.last_trials,
+            &interface(system).jumps(&correction.unknowns, &Load::NONE),
+            update.tangents,
+        );
+        let iteration = convergence::measure(step, self, &errors, correction.size)?;
+        self.merit = Some(line_search::merit(&iteration));
+        Ok(iteration)
+    }
+
+    fn correct_rock_forces(&mut self, system: &System<'_>, correction: &Correction) {
+        match &correction.rock_forces {
+            Some(change) => {
+                let pairs = self.rock_forces.par_iter_mut().zip(change);
+                pairs.for_each(|(force, change)| *force += *change);
+            }
+            None => self.rock_forces = system.rock_forces(&self.state.unknowns),
+        }
+    }
+}
+
+impl Newton {
+    /// Iterates until the tests hold.
+    ///
+    /// # Errors
+    /// Once it is clear that they will not, or the observer stops the step.
+    pub(super) fn iterate_to_convergence(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+    ) -> Result<(), Outcome> {
+        if let Some(iteration) = self.test_guess(step, iterate)? {
+            step.report(iteration);
+            return Ok(());
+        }
+        let mut rigid_body_motion = RigidBodyMotion::default();
+        for count in 1..=self.settings.max_iterations {
+            let iteration = self.iterate(step, iterate, count)?;
+            step.report(iteration);
+            if self.settings.accept(step.system, &iteration) {
+                return Ok(());
+            }
+            step.go_on()?;
+            rigid_body_motion.test(step, &iterate.state, &iteration, count)?;
+        }
+        Err(Outcome::OutOfIterations)
+    }
+
+    /// Iteration `count` of an increment.
+    ///
+    /// # Errors
+    /// If the linear solve fails or numbers are no longer finite.
+    fn iterate(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+        count: usize,
+    ) -> Result<Iteration, Outcome> {
+        let system = step.system;
+        let tangents = facet_points::tangents(system, &iterate.state);
+        self.update_tangent(step, &tangents)?;
+        let solution = self.solve_linearised(system, iterate, &tangents);
+        let solution = solution.map_err(Outcome::Linear)?;
+        let is_recycled = self.recycled.is_some() && system.is_smooth();
+        let correction = Correction::of(system, solution.unknowns, is_recycled);
+        let update = Update {
+            correction: &correction,
+            tangents: &tangents,
+        };
+        let mut iteration = line_search::advance(step, iterate, update, count)?;
+        iteration.linear_iterations = solution.iterations;
+        if is_recycled {
+            iterate.corrections.push(correction);
+        }
+        iterate.forcing_term = forcing_term::after(iteration.increment);
+        Ok(iteration)
+    }
+
+    /// Gives the linear solver the tangents.
+    fn update_tangent(&mut self, step: &mut Step<'_>, tangents: &Tangents) -> Result<(), Outcome> {
+        let start = Instant::now();
+        let system = step.system;
+        let updated = if system.is_smooth() {
+            self.linear.update(system, tangents)
+        } else {
+            let stabilised = facet_points::stabilised(system, tangents);
+            self.linear.update(system, &stabilised)
+        };
+        updated.map_err(Outcome::Linear)?;
+        step.record.factorise_seconds += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Change of the unknowns that leaves no force out of balance on the tangent planes, to the
+    /// forcing term.
+    fn solve_linearised(
+        &mut self,
+        system: &System<'_>,
+        iterate: &Iterate,
+        tangents: &Tangents,
+    ) -> Result<LinearSolution, LinearFailure> {
+        let state = &iterate.state;
+        let tractions = facet_points::linearised_tractions(system, state, tangents);
+        let residual = system.residual(&iterate.rock_forces, &tractions, &state.load);
+        let size = norm(&residual);
+        let tolerance = forcing_term::tolerance(system, &self.settings, iterate, size);
+        self.linear.solve(system, &residual, tolerance)
+    }
+}

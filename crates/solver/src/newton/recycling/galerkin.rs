@@ -1,0 +1,155 @@
+//! Newton's method in the recycled space.
+
+use rayon::prelude::*;
+
+use super::{MOST_DIRECTIONS, RecycledSpace, dense, dot};
+use crate::newton::facet_points::{self, LastTrial, interface};
+use crate::problem::Load;
+use crate::system::{State, System};
+
+/// Most iterations in the space.
+const MOST_ITERATIONS: usize = 8;
+/// Energy of the last correction, against the first, that ends the iterations.
+const CONVERGED_ENERGY: f64 = 1e-18;
+/// Energy of the last correction, against the first, that a guess may have at most.
+const LARGEST_ENERGY: f64 = 1e-6;
+
+/// A guess.
+pub(in crate::newton) struct GalerkinGuess {
+    pub(in crate::newton) state: State,
+    pub(in crate::newton) last_trials: Vec<LastTrial>,
+    pub(in crate::newton) last: LastCorrection,
+}
+
+/// The last iteration of a guess.
+#[derive(Debug, Clone)]
+pub(in crate::newton) struct LastCorrection {
+    /// The guess as coefficients of the directions.
+    pub(super) coefficients: Vec<f64>,
+    /// Closure errors (Pa).
+    pub(in crate::newton) errors: Vec<f64>,
+    /// Bound of the displacements of the iteration (m).
+    pub(in crate::newton) displacement: f64,
+}
+
+/// What the iterations in the space work on.
+struct ReducedIterate {
+    state: State,
+    last_trials: Vec<LastTrial>,
+    coefficients: Vec<f64>,
+    errors: Vec<f64>,
+    /// `V^T (loads - K y_0)` (J).
+    projected_residual: Vec<f64>,
+}
+
+/// Measures of a correction in the space.
+#[derive(Default)]
+struct Measures {
+    /// Its energy (J).
+    energy: f64,
+    /// Bound of its displacements (m).
+    displacement: f64,
+}
+
+impl RecycledSpace {
+    /// Solves for the load in the space around a state; none if that leads nowhere.
+    pub(in crate::newton) fn solve(
+        &mut self,
+        system: &System<'_>,
+        from: &State,
+        load: &Load,
+    ) -> Option<GalerkinGuess> {
+        if self.directions.is_empty() || !system.is_smooth() {
+            return None;
+        }
+        let mut state = from.clone();
+        facet_points::move_supports(system, &mut state, load);
+        if self.directions.len() > MOST_DIRECTIONS {
+            self.condense(system, &state);
+        }
+        let mut iterate = self.start(system, state);
+        let last = self.iterate_to_convergence(system, &mut iterate)?;
+        Some(self.guess(iterate, &last))
+    }
+
+    fn start(&self, system: &System<'_>, state: State) -> ReducedIterate {
+        let rock = system.rock_forces(&state.unknowns);
+        let mut forces = system.load_forces(&state.load);
+        let pairs = forces.par_iter_mut().zip(rock);
+        pairs.for_each(|(force, rock)| *force -= rock);
+        let directions = self.directions.par_iter();
+        ReducedIterate {
+            projected_residual: directions.map(|v| dot(v, &forces)).collect(),
+            last_trials: vec![LastTrial::default(); state.facet_points.len()],
+            coefficients: vec![0.0; self.directions.len()],
+            errors: Vec::new(),
+            state,
+        }
+    }
+
+    /// The last correction of the iterations; none if they lead nowhere.
+    fn iterate_to_convergence(
+        &self,
+        system: &System<'_>,
+        iterate: &mut ReducedIterate,
+    ) -> Option<Measures> {
+        let mut first = None;
+        let mut last = Measures::default();
+        for _ in 0..MOST_ITERATIONS {
+            last = self.iterate(system, iterate)?;
+            if last.energy <= CONVERGED_ENERGY * *first.get_or_insert(last.energy) {
+                break;
+            }
+        }
+        let is_finite =
+            last.energy.is_finite() && iterate.errors.iter().all(|error| error.is_finite());
+        if !is_finite || last.energy > LARGEST_ENERGY * first? {
+            return None;
+        }
+        Some(last)
+    }
+
+    /// One iteration of Newton's method in the space.
+    fn iterate(&self, system: &System<'_>, iterate: &mut ReducedIterate) -> Option<Measures> {
+        let tangents = facet_points::tangents(system, &iterate.state);
+        let projected = self.project(system, &iterate.state, &tangents);
+        let rock = self.rock_forces(&iterate.coefficients);
+        let fractures = projected.fracture_forces;
+        let residual: Vec<f64> = (0..rock.len())
+            .map(|i| iterate.projected_residual[i] - rock[i] - fractures[i])
+            .collect();
+        let change = dense::solve(projected.matrix, &residual)?;
+        let correction = self.combined_on_fractures(system, &change);
+        iterate.errors = facet_points::follow(
+            system,
+            &mut iterate.state,
+            &mut iterate.last_trials,
+            &interface(system).jumps(&correction, &Load::NONE),
+            &tangents,
+        );
+        for (coefficient, change) in iterate.coefficients.iter_mut().zip(&change) {
+            *coefficient += change;
+        }
+        let sizes = self.known.iter().zip(&change);
+        Some(Measures {
+            energy: change.iter().zip(&residual).map(|(c, r)| c * r).sum(),
+            displacement: sizes.map(|(known, c)| c.abs() * known.size).sum(),
+        })
+    }
+
+    /// The state that the coefficients stand for.
+    fn guess(&self, iterate: ReducedIterate, last: &Measures) -> GalerkinGuess {
+        let mut state = iterate.state;
+        let unknowns = state.unknowns.par_iter_mut().enumerate();
+        unknowns.for_each(|(i, unknown)| *unknown += self.combined(&iterate.coefficients, i));
+        GalerkinGuess {
+            state,
+            last_trials: iterate.last_trials,
+            last: LastCorrection {
+                coefficients: iterate.coefficients,
+                errors: iterate.errors,
+                displacement: last.displacement,
+            },
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! A Galerkin solve in a recycled space: Newton's method in the space of the corrections of former
+//! steps, for the first guess of an increment.
+//!
+//! States along a path lie close to a space of few dimensions, which the corrections that led to
+//! them span. With `y = y_0 + V c` the balance of forces becomes
+//! `V^T (loads - K y - fractures) = 0`. The rock enters by the small matrix `V^T K V`, which never
+//! changes, and the fractures by the jumps of `V`, so an iteration costs what the facet points
+//! cost, whatever the size of the rock. Smooth laws are convex, so this is the state of least
+//! energy in the space. What the guess leaves out of balance is orthogonal to the space, and so, in
+//! energy, is the correction that removes it: the next direction (Erhel and Guyomarc'h 2000 start
+//! conjugate gradients alike). Directions beyond a number are condensed to the principal ones
+//! (proper orthogonal decomposition).
+
+mod condensation;
+mod dense;
+mod galerkin;
+mod projection;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::iteration::Correction;
+use condensation::PRINCIPAL_DIRECTIONS;
+
+pub(super) use galerkin::{GalerkinGuess, LastCorrection};
+
+/// Most directions that a guess is made of; beyond, they are condensed to the principal ones.
+const MOST_DIRECTIONS: usize = 24;
+/// Corrections that are kept as coefficients.
+const KEPT_CORRECTIONS: usize = 48;
+/// Directions that the first load step adds, by experience.
+const DIRECTIONS_OF_FIRST_STEP: usize = 5;
+
+/// The space.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct RecycledSpace {
+    directions: Vec<Vec<DVec3>>,
+    /// Corrections of the last steps as coefficients of the directions, the latest first; those of
+    /// directions that came later are left out.
+    corrections: Vec<Vec<f64>>,
+    /// What is computed once for each direction.
+    known: Vec<Known>,
+}
+
+/// What is known of a direction.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Known {
+    /// `v_i . K v_j` (J) for the directions up to it.
+    energies: Vec<f64>,
+    /// Its largest displacement (m).
+    size: f64,
+}
+
+/// Memory that it takes in a run at most, while the principal directions are made (bytes).
+pub(crate) fn bytes(unknowns: usize, steps: usize) -> usize {
+    let directions = (DIRECTIONS_OF_FIRST_STEP + steps).min(MOST_DIRECTIONS + PRINCIPAL_DIRECTIONS);
+    directions * unknowns * size_of::<DVec3>()
+}
+
+impl RecycledSpace {
+    /// Whether its directions are of this number of unknowns.
+    pub(super) fn fits(&self, unknowns: usize) -> bool {
+        let count = self.directions.len();
+        let known = self.known.iter().zip(1..);
+        let mut corrections = self.corrections.iter();
+        self.directions.iter().all(|v| v.len() == unknowns)
+            && corrections.all(|correction| correction.len() <= count)
+            && self.known.len() == count
+            && known.into_iter().all(|(k, i)| k.energies.len() == i)
+    }
+
+    /// Adds the corrections of an increment that converged: its guess, and those after it whose
+    /// forces are known.
+    pub(super) fn add(&mut self, guess: Option<LastCorrection>, corrections: Vec<Correction>) {
+        if let Some(guess) = guess {
+            self.corrections.insert(0, guess.coefficients);
+        }
+        for correction in corrections {
+            let Some(rock_forces) = correction.rock_forces else {
+                continue;
+            };
+            let mut alone = vec![0.0; self.directions.len()];
+            alone.push(1.0);
+            self.corrections.insert(0, alone);
+            self.add_direction(correction.unknowns, &rock_forces, correction.size);
+        }
+        self.corrections.truncate(KEPT_CORRECTIONS);
+    }
+
+    /// Adds a direction `v`, given `K v` (N) and its largest displacement (m).
+    fn add_direction(&mut self, direction: Vec<DVec3>, rock_forces: &[DVec3], size: f64) {
+        self.directions.push(direction);
+        let directions = self.directions.par_iter();
+        self.known.push(Known {
+            energies: directions.map(|other| dot(other, rock_forces)).collect(),
+            size,
+        });
+    }
+}
+
+/// Scalar product, summed in a fixed order.
+fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+}

@@ -1,0 +1,84 @@
+//! Vectors and matrices of the system in the recycled space.
+
+use faer::Mat;
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::{RecycledSpace, dot};
+use crate::linear::Tangents;
+use crate::newton::facet_points::{self, interface};
+use crate::system::{State, System};
+
+/// A linearised system in the space.
+pub(super) struct Projected {
+    /// The tangent, `V^T (K + fractures) V` (J).
+    pub(super) matrix: Mat<f64>,
+    /// Forces of the fractures on the tangent planes of the laws, `V^T fractures` (J).
+    pub(super) fracture_forces: Vec<f64>,
+}
+
+impl RecycledSpace {
+    /// `v_i . K v_j` (J).
+    fn energy(&self, i: usize, j: usize) -> f64 {
+        self.known[i.max(j)].energies[i.min(j)]
+    }
+
+    /// `V^T K V c` (J).
+    pub(super) fn rock_forces(&self, coefficients: &[f64]) -> Vec<f64> {
+        let terms = |i: usize| coefficients.iter().enumerate().map(move |(j, c)| (i, j, c));
+        (0..coefficients.len())
+            .map(|i| terms(i).map(|(i, j, c)| self.energy(i, j) * c).sum())
+            .collect()
+    }
+
+    /// The system linearised at a state.
+    pub(super) fn project(
+        &self,
+        system: &System<'_>,
+        state: &State,
+        tangents: &Tangents,
+    ) -> Projected {
+        let interface = interface(system);
+        let own = |vector: &[DVec3]| -> Vec<DVec3> {
+            let unknowns = interface.unknowns.iter();
+            unknowns.map(|&unknown| vector[unknown as usize]).collect()
+        };
+        let tractions = facet_points::linearised_tractions(system, state, tangents);
+        let mut all_forces = vec![DVec3::ZERO; state.unknowns.len()];
+        interface.add_forces(&tractions, 1.0, &mut all_forces);
+        let forces = own(&all_forces);
+        let stiffness: Vec<DMat3> = interface.stiffness(&tangents.exact);
+        let jumps: Vec<Vec<DVec3>> = self.directions.par_iter().map(|v| own(v)).collect();
+        let images: Vec<Vec<f64>> = self
+            .directions
+            .par_iter()
+            .map(|v| interface.resistance(&stiffness, v))
+            .map(|image| jumps.iter().map(|own| dot(own, &image)).collect())
+            .collect();
+        Projected {
+            matrix: Mat::from_fn(jumps.len(), jumps.len(), |i, j| {
+                self.energy(i, j) + images[i.max(j)][i.min(j)]
+            }),
+            fracture_forces: jumps.iter().map(|own| dot(own, &forces)).collect(),
+        }
+    }
+
+    /// `V c`, on the unknowns that move facet points only (m).
+    pub(super) fn combined_on_fractures(
+        &self,
+        system: &System<'_>,
+        coefficients: &[f64],
+    ) -> Vec<DVec3> {
+        let mut combined = vec![DVec3::ZERO; system.discretisation.points.len()];
+        for &unknown in &interface(system).unknowns {
+            combined[unknown as usize] = self.combined(coefficients, unknown as usize);
+        }
+        combined
+    }
+
+    /// Entry of `V c` (m).
+    pub(super) fn combined(&self, coefficients: &[f64], entry: usize) -> DVec3 {
+        let directions = self.directions.iter().zip(coefficients);
+        directions.map(|(v, c)| *c * v[entry]).sum()
+    }
+}

@@ -1,0 +1,71 @@
+//! The load step at hand: its system, its record, and who observes it.
+
+use std::ops::ControlFlow;
+
+use super::rigid_motion;
+use super::{Iteration, Outcome, StepRecord};
+use crate::problem::Load;
+use crate::system::{State, System};
+
+/// Who is told of each iteration, by its number and measures, and may stop the step.
+type Observe<'a> = dyn FnMut(usize, &Iteration) -> ControlFlow<()> + 'a;
+
+/// What all that is done in a load step works with.
+pub(super) struct Step<'a> {
+    pub(super) system: &'a System<'a>,
+    pub(super) record: StepRecord,
+    observe: &'a mut Observe<'a>,
+    is_stopped: bool,
+}
+
+impl<'a> Step<'a> {
+    pub(super) fn new(system: &'a System<'a>, load: &Load, observe: &'a mut Observe<'a>) -> Self {
+        Self {
+            system,
+            record: StepRecord::new(load.clone()),
+            observe,
+            is_stopped: false,
+        }
+    }
+
+    /// Records an iteration and tells the observer.
+    pub(super) fn report(&mut self, iteration: Iteration) {
+        self.record.iterations.push(iteration);
+        let answer = (self.observe)(self.record.iterations.len(), &iteration);
+        self.is_stopped |= answer.is_break();
+    }
+
+    /// Whether the observer wants more.
+    ///
+    /// # Errors
+    /// [`Outcome::Stopped`] if not.
+    pub(super) fn go_on(&self) -> Result<(), Outcome> {
+        if self.is_stopped {
+            Err(Outcome::Stopped)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Records the blocks that nothing holds in the state where an increment failed, unless they
+    /// are known.
+    pub(super) fn explain(&mut self, outcome: &Outcome, state: &State) {
+        let is_known = !self.record.rigid_motions.is_empty() || *outcome == Outcome::Stopped;
+        if !is_known && !self.system.is_smooth() {
+            self.record.rigid_motions = rigid_motion::find(self.system, state);
+        }
+    }
+
+    /// The record after `seconds` altogether.
+    pub(super) fn finished(mut self, outcome: Outcome, seconds: f64) -> StepRecord {
+        self.record.outcome = outcome;
+        self.record.solve_seconds = seconds - self.record.factorise_seconds;
+        self.record
+    }
+}
+
+/// The observer of [`Newton::solve_step`](super::Newton::solve_step) that takes no notice and never
+/// stops.
+pub fn unobserved(_: usize, _: &Iteration) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
