@@ -201,7 +201,7 @@ class WholeRun:
         try:
             ours = kluft.opened_facets(ROOT, self.folder / "kluft")
         except subprocess.CalledProcessError:
-            say("    the example `gauss_facets` failed")
+            say("    the measurement `gauss_facets` failed")
             return None
         return difference(matched(*ours, centres), theirs)
 
@@ -283,10 +283,10 @@ def keep_lines(output, key, results):
 
 
 def measure_own_linear(counts, build, results, prefix):
-    """Measures Kluft's own solvers, by the example `linear_system`, which makes the same cube by itself."""
-    example = ["--quiet", "--release", "--locked", "--example", "linear_system"]
-    if subprocess.run(["cargo", "build", *example], cwd=ROOT, check=False, stderr=subprocess.DEVNULL).returncode:
-        say("Kluft's own linear solvers are left out: the example `linear_system` does not build")
+    """Measures Kluft's own solvers, by the measurement `linear_system`, which makes the same cube by itself."""
+    bench = ["cargo", "bench", "--quiet", "--locked", "--bench", "linear_system"]
+    if subprocess.run([*bench, "--no-run"], cwd=ROOT, check=False, stderr=subprocess.DEVNULL).returncode:
+        say("Kluft's own linear solvers are left out: the measurement `linear_system` does not build")
         return
     manifest = ["--manifest-path", ROOT / "Cargo.toml"]
     for count in counts:
@@ -294,7 +294,7 @@ def measure_own_linear(counts, build, results, prefix):
             key = {"kind": "linear", "count": count, "round": number, "build": build}
             if not results.find(**key):
                 say(f"{count} cubes an edge, round {number + 1}: Kluft")
-                keep_lines(run(["cargo", "run", *example, *manifest, "--", count], prefix), key, results)
+                keep_lines(run([*bench, *manifest, "--", count], prefix), key, results)
 
 
 def main():

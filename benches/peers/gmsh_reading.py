@@ -9,6 +9,7 @@ opening the file to the numbered mesh, and for the whole process.
 """
 
 import argparse
+import json
 import os
 import re
 import statistics
@@ -83,15 +84,20 @@ def rewritten(mesh, folder, is_binary):
     return copy
 
 
+def built():
+    """The program of the measurement `reading`, which Cargo puts where it likes."""
+    build = ["cargo", "bench", "--quiet", "--no-run", "--bench", "reading", "--message-format", "json"]
+    output = subprocess.run(build, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+    artifacts = [json.loads(line) for line in output.splitlines()]
+    return next(a["executable"] for a in artifacts if a.get("executable") and a["target"]["name"] == "reading")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("mesh", nargs="?", type=Path)
     parser.add_argument("--runs", type=int, default=7)
     arguments = parser.parse_args()
-    build = ["cargo", "build", "--release", "--quiet", "--example", "reading"]
-    subprocess.run(build, cwd=ROOT, check=True)
-    target = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target")
-    program = target / "release" / "examples" / "reading"
+    program = built()
     mesh = (arguments.mesh or network()).resolve()
     print(timed([str(program), str(mesh)])[2].strip())
     with tempfile.TemporaryDirectory() as folder:

@@ -1,9 +1,10 @@
 //! One linear elastic system, solved by multigrid or by factorisation.
 //!
-//! `cargo run --release -p kluft-solver --example linear_system -- CUBES [multigrid|cholesky]`: the
-//! unit cube of `CUBES^3` cubes of six tetrahedra, the face z = 0 clamped, E = 1, nu = 0.3, a
+//!     cargo bench --bench linear_system -- CUBES [multigrid|cholesky]
+//!
+//! The unit cube of `CUBES^3` cubes of six tetrahedra, the face z = 0 clamped, E = 1, nu = 0.3, a
 //! pseudo-random right-hand side. Prints one line of JSON for each solver.
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, reason = "the lines are what it is run for")]
 
 use std::time::Instant;
 
@@ -14,6 +15,7 @@ use kluft_algebra::{
 };
 use kluft_mesh::structured::{Patch, tetrahedra};
 use kluft_mesh::{Mesh, SurfaceRole};
+use kluft_run::memory;
 use kluft_solver::{Condition, Discretisation, Problem, Support, System};
 use lie_core::Rock;
 
@@ -21,7 +23,9 @@ use lie_core::Rock;
 const LARGEST_FACTORISED: usize = 600_000;
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    // Cargo adds `--bench`.
+    let arguments = std::env::args().skip(1).filter(|a| a != "--bench");
+    let arguments: Vec<String> = arguments.collect();
     let cubes = arguments.first().and_then(|text| text.parse().ok());
     let (Some(cubes), solver) = (cubes, arguments.get(1).map(String::as_str)) else {
         println!("usage: linear_system CUBES [multigrid|cholesky]");
@@ -129,17 +133,9 @@ fn by_cholesky(system: &System<'_>, right: &[DVec3]) {
 
 fn print(system: &System<'_>, solver: &str, setup: f64, solve: f64, iterations: usize) {
     let unknowns = system.discretisation().unknown_count();
-    let memory = peak_memory().unwrap_or(0);
+    let memory = memory::peak_bytes();
     println!(
         "{{\"unknowns\":{unknowns},\"solver\":\"{solver}\",\"setup_seconds\":{setup:.3},\
          \"solve_seconds\":{solve:.3},\"iterations\":{iterations},\"peak_memory_bytes\":{memory}}}"
     );
-}
-
-/// Largest resident memory of this process so far (bytes), where the system tells.
-fn peak_memory() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
-    let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(1024 * kilobytes)
 }

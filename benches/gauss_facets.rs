@@ -1,8 +1,8 @@
-//! The mean aperture of every facet of a scene in its last load step, with the fractures integrated at Gauss points
-//! instead of at their nodes: what programs that use Gauss points there must get too. One line a facet, its centre (m)
-//! and its aperture (m); for `benches/peers`.
+//! The mean aperture of every facet of a scene in its last load step, with the fractures integrated
+//! at Gauss points instead of at their nodes: what programs that use Gauss points there must get
+//! too. One line a facet, its centre (m) and its aperture (m); for `benches/peers`.
 //!
-//!     cargo run --release --example gauss_facets -- SCENE.toml
+//!     cargo bench --bench gauss_facets -- SCENE.toml
 
 use std::env;
 use std::error::Error;

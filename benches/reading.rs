@@ -1,7 +1,9 @@
-//! Times the way from a mesh file to a checked, numbered mesh: `reading FILE.msh [RUNS]` prints the
-//! seconds of each stage, one line a run. Surfaces inside the rock are taken for fractures.
+//! Times the way from a mesh file to a checked, numbered mesh: prints the seconds of each stage, one
+//! line a run. Surfaces inside the rock are taken for fractures.
+//!
+//!     cargo bench --bench reading -- FILE.msh [RUNS]
 
-#![allow(clippy::print_stdout, reason = "it is a program")]
+#![allow(clippy::print_stdout, reason = "seconds are what it is run for")]
 
 use std::error::Error;
 use std::path::Path;
@@ -12,7 +14,8 @@ use kluft_mesh::{Defect, Faces, Mesh, SurfaceRole};
 use kluft_solver::SectorNodes;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
+    // Cargo adds `--bench`.
+    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
     let file = arguments.next().ok_or("usage: reading FILE.msh [RUNS]")?;
     let runs: usize = arguments.next().map_or(Ok(1), |runs| runs.parse())?;
     for _ in 0..runs {
