@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use kluft_keys::Document;
 use kluft_network::{Domain, Grouping};
 
 use crate::inspect::InspectOptions;
@@ -39,6 +40,39 @@ pub enum Command {
     /// Run a scene with many meshes, orders, laws and solvers: what each yields, and what it costs
     #[command(after_help = include_str!("help/study.txt").trim_end())]
     Study(StudyArgs),
+    /// Say what a key of a scene, a network description or a study means
+    Explain {
+        /// A key, SECTION.KEY or a section; without one, all are listed
+        key: Option<String>,
+    },
+    /// Print the JSON Schema of a document, for an editor to complete and check keys
+    #[command(after_help = include_str!("help/schema.txt").trim_end())]
+    Schema {
+        /// The document
+        #[arg(value_enum, default_value = "scene")]
+        document: SchemaOf,
+    },
+}
+
+/// A document that has a schema.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub enum SchemaOf {
+    /// A scene, with [study]
+    Scene,
+    /// A description for `kluft network`
+    Network,
+    /// The table [study] alone
+    Study,
+}
+
+impl From<SchemaOf> for Document {
+    fn from(document: SchemaOf) -> Self {
+        match document {
+            SchemaOf::Scene => Self::Scene,
+            SchemaOf::Network => Self::Network,
+            SchemaOf::Study => Self::Study,
+        }
+    }
 }
 
 /// Arguments of `kluft study`.

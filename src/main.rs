@@ -3,6 +3,7 @@
 //! Arguments come in, an exit code goes out. Only here anything is printed.
 
 mod args;
+mod explain;
 mod failure;
 mod inspect;
 mod network;
@@ -22,6 +23,11 @@ fn main() -> ExitCode {
         Command::Network(args) => network::make_network(&args.input.clone(), &args.into()),
         Command::Inspect(args) => inspect::inspect(&args.input.clone(), &args.into()),
         Command::Study(args) => study::study(&args.scene.clone(), &args.into()),
+        Command::Explain { key } => explain::explain(key.as_deref()),
+        Command::Schema { document } => {
+            explain::print_schema(document.into());
+            Ok(())
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,7 @@
 mod adapt;
 mod bad_input;
 mod book;
+mod doubts;
 mod fuzz_scene;
 mod harness;
 mod inspect;

@@ -46,6 +46,7 @@ fn wrong_arguments_are_named_with_the_usage() {
             "above the first",
         ),
         (&["network", "list.csv", "-o", "x", "--h", "-1"], "--h"),
+        (&["schema", "mesh"], "scene, network, study"),
         (
             &["network", "list.csv", "-o", "x", "--name", "a/b"],
             "without folders",
@@ -65,10 +66,27 @@ fn help_and_version_are_answers() {
         (&["network", "--help"], "dip_direction"),
         (&["inspect", "--help"], "inspect.vtu"),
         (&["study", "--help"], "orders = [1, 2]"),
+        (&["explain", "rock.young_modulus"], "[rock.NAME]"),
+        (&["explain", "[load]"], "phase"),
+        (&["explain"], "[[fixed_point]]"),
+        (&["schema"], "\"young_modulus\""),
+        (&["schema", "network"], "\"fracture_set\""),
         (&["--version"], env!("CARGO_PKG_VERSION")),
     ] {
         let run = kluft(arguments);
         assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
         assert!(run.out.contains(named), "{arguments:?}: {}", run.out);
     }
+}
+
+#[test]
+fn an_unknown_key_is_explained_by_the_nearest() {
+    let run = refused(&["explain", "yung_modulus"]);
+    assert!(
+        run.err.contains("did you mean young_modulus"),
+        "{}",
+        run.err
+    );
+    let run = refused(&["explain", "qqqqqq"]);
+    assert!(run.err.contains("lists all keys"), "{}", run.err);
 }

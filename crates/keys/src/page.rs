@@ -8,8 +8,25 @@ use crate::table::{Key, Kind, Need, Section};
 /// The reference page of a document, in Markdown.
 pub fn page(document: Document) -> String {
     let mut out = format!("# {}\n\n{}\n", heading(document), introduction(document));
-    for section in document.sections() {
+    let elsewhere = elsewhere(document);
+    let (own, others): (Vec<_>, Vec<_>) = document.sections().into_iter().partition(|section| {
+        let mut others = elsewhere.iter().flat_map(|other| other.sections());
+        !others.any(|other| std::ptr::eq(other, *section))
+    });
+    for section in own {
         write_section(&mut out, section, document);
+    }
+    if let [other] = elsewhere
+        && !others.is_empty()
+    {
+        let name = other.name();
+        let _ = writeln!(
+            out,
+            "\n## Other sections\n\nThey are in the [keys of a {name}](keys-{name}.md):\n"
+        );
+        for section in others {
+            let _ = writeln!(out, "- `{}`: {}", section.pattern, section.says);
+        }
     }
     if document == Document::Network {
         let _ = writeln!(
@@ -20,6 +37,15 @@ pub fn page(document: Document) -> String {
         write_table(&mut out, Document::List.root().keys);
     }
     out
+}
+
+/// The document on whose page sections stand that this one has too.
+fn elsewhere(document: Document) -> &'static [Document] {
+    match document {
+        Document::Scene => &[Document::Study],
+        Document::Network => &[Document::Scene],
+        Document::Study | Document::List => &[],
+    }
 }
 
 fn heading(document: Document) -> &'static str {
@@ -33,16 +59,28 @@ fn heading(document: Document) -> &'static str {
 
 fn introduction(document: Document) -> &'static str {
     match document {
-        Document::Scene => "\
+        Document::Scene => {
+            "\
 A scene is a TOML file; paths in it are relative to it, and unknown keys are errors.
 Plain numbers are in the unit of the table. A number with a unit is written as text,
-`young_modulus = \"60 GPa\"`, and may have any unit of the same dimension. `kluft explain KEY` says the
-same in a terminal, `kluft schema` lets an editor complete and check keys.",
-        Document::Network => "\
+`young_modulus = \"60 GPa\"`, and may have any unit of the same dimension. `kluft explain KEY`
+says the same in a terminal, `kluft schema` lets an editor complete and check keys.
+
+This page is made from the table of keys in `crates/keys`."
+        }
+        Document::Network => {
+            "\
 A description for `kluft network` is a TOML file. Plain numbers are in the unit of the table; a
-number with a unit is written as text, `h = \"50 cm\"`.",
-        Document::Study => "\
-The table `[study]` of a scene says what `kluft study` sweeps.",
+number with a unit is written as text, `h = \"50 cm\"`.
+
+This page is made from the table of keys in `crates/keys`."
+        }
+        Document::Study => {
+            "\
+The table `[study]` of a scene says what `kluft study` sweeps.
+
+This page is made from the table of keys in `crates/keys`."
+        }
         Document::List => "A list is a CSV file.",
     }
 }

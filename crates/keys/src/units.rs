@@ -171,15 +171,15 @@ fn symbol_with_power(factor: &str) -> Option<(Exponents, i32, i32)> {
     let is_letter = |c: char| c.is_alphabetic();
     let end = factor.find(|c| !is_letter(c)).unwrap_or(factor.len());
     let (symbol, power) = factor.split_at(end);
-    let power = match power.trim_start_matches('^') {
+    let power = match power {
         "" => 1,
         "²" => 2,
         "³" => 3,
-        digits => digits
-            .parse::<i8>()
-            .ok()
-            .filter(|power| *power != 0)?
-            .into(),
+        digits => {
+            let digits = digits.strip_prefix('^').unwrap_or(digits);
+            let power = digits.parse::<i8>().ok();
+            power.filter(|power| *power != 0)?.into()
+        }
     };
     let (exponents, ten) = read_symbol(symbol)?;
     Some((exponents, ten, power))

@@ -63,9 +63,9 @@ pub static DISPLACEMENT: Section = Section {
     pattern: "displacement",
     says: "Prescribed components of a displacement, at least one",
     keys: &[
-        component("x", "Towards the east"),
-        component("y", "Towards the north"),
-        component("z", "Upwards"),
+        component("x", "Along x"),
+        component("y", "Along y"),
+        component("z", "Along z"),
     ],
     also: None,
 };

@@ -1,0 +1,41 @@
+//! `kluft explain` and `kluft schema`: what the table of keys says.
+
+use std::io::Write;
+
+use kluft_keys::Document;
+use kluft_mesh::Defect;
+
+use crate::failure::Failure;
+
+/// Prints what a key or a section means; without one, all keys.
+///
+/// # Errors
+/// If no key or section has that name.
+pub fn explain(key: Option<&str>) -> Result<(), Failure> {
+    let text = match key {
+        None => kluft_keys::overview(),
+        Some(key) => kluft_keys::explain(key).map_err(|near| unknown(key, &near))?,
+    };
+    print(&text);
+    Ok(())
+}
+
+fn unknown(key: &str, near: &[&str]) -> Defect {
+    let remedy = if near.is_empty() {
+        "`kluft explain` lists all keys".to_owned()
+    } else {
+        format!("did you mean {}?", near.join(", "))
+    };
+    Defect::new(key, "no key or section has that name", remedy)
+}
+
+/// Prints the JSON Schema of a document.
+pub fn print_schema(document: Document) {
+    let schema = kluft_keys::schema(document);
+    print(&format!("{schema:#}\n"));
+}
+
+/// Prints a text; a closed pipe (`| head`) ends it.
+fn print(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}
