@@ -6,8 +6,8 @@ use kluft_chart::{Axis, Chart};
 use kluft_mesh::Shape;
 use kluft_solver::LinearMethod;
 
-use super::equal_terms::{below, chart, curves, exponents, misses, of, table};
-use super::measured::{Case, Curve, Terms, newton, range, seconds, solve_memory};
+use super::equal_terms::{Charted, below, chart, curves, exponents, misses, of, table};
+use super::measured::{Curve, Terms, newton, range, seconds, solve_memory};
 use super::memory::Place;
 use super::words::{breaks, closure_text, iterations_text, memory_text, ours};
 use crate::methods::treatments::{Point, Solved, Treatment, solve, traction_error};
@@ -200,7 +200,7 @@ fn crack_charts(curves: &[Curve]) -> [(&'static str, Chart); 6] {
         "traction against the finer mesh",
         "openings against exact contact",
     ];
-    let drawn: [(&'static str, &str, Axis, fn(&Case) -> f64); 6] = [
+    let drawn: [(&'static str, &str, Axis, Charted); 6] = [
         ("crack-closure", "deepest closure", closure_axis, |case| {
             case.closure
         }),

@@ -35,6 +35,9 @@ pub fn chart(curves: &[Curve], title: &str, y: Axis, of: impl Fn(&Case) -> f64) 
     measured::chart(curves, title, STIFFNESS, y, of)
 }
 
+/// A number of a case that is charted.
+pub type Charted = fn(&Case) -> f64;
+
 /// The curve of a treatment.
 pub fn of(curves: &[Curve], treatment: Treatment) -> &Curve {
     let found = curves

@@ -4,8 +4,8 @@ use glam::DVec3;
 use kluft_chart::{Axis, Chart};
 use kluft_solver::{Discretisation, LinearMethod, System};
 
-use super::equal_terms::{chart, curves, exponents, misses, of, table};
-use super::measured::{Case, Curve, Terms, newton, solve_memory, worst};
+use super::equal_terms::{Charted, chart, curves, exponents, misses, of, table};
+use super::measured::{Curve, Terms, newton, solve_memory, worst};
 use super::memory::Place;
 use super::words::{breaks, closure_text, iterations_text, memory_text, ours};
 use crate::methods::treatments::{
@@ -53,7 +53,7 @@ fn charts(curves: &[Curve]) -> [(&'static str, Chart); 4] {
     let traction_axis = Axis::logarithmic("error of the traction, L2").from(1e-16);
     let newton_axis = Axis::logarithmic("linear solves");
     let memory_axis = Axis::linear("measured growth of resident memory (MB)");
-    let drawn: [(&'static str, &str, Axis, fn(&Case) -> f64); 4] = [
+    let drawn: [(&'static str, &str, Axis, Charted); 4] = [
         ("inclined-closure", "closure", closure_axis, |case| {
             case.closure
         }),
