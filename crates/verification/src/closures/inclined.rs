@@ -5,7 +5,7 @@ use kluft_chart::{Axis, Chart};
 use kluft_solver::{Discretisation, LinearMethod, System};
 
 use super::equal_terms::{Charted, chart, curves, exponents, misses, of, table};
-use super::measured::{Curve, Terms, newton, solve_memory, worst};
+use super::measured::{Case, Curve, Terms, newton, solve_memory, worst};
 use super::memory::Place;
 use super::words::{breaks, closure_text, iterations_text, memory_text, ours};
 use crate::methods::treatments::{
