@@ -56,6 +56,7 @@ fn meeting(closure: &Closure) -> (&'static str, Option<f64>) {
     match closure.kind {
         ClosureKind::Contact => ("contact", None),
         ClosureKind::Hyperbolic { .. } => ("hyperbolic", None),
+        ClosureKind::Own(law) => (law.name, None),
         _ if scale == 0.0 => ("free crack", Some(0.0)),
         ClosureKind::Linear => ("linear", Some(scale)),
         ClosureKind::Logarithmic { cutoff: None } => ("logarithmic", None),

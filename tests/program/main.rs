@@ -4,6 +4,7 @@ mod adapt;
 mod bad_input;
 mod book;
 mod doubts;
+mod examples;
 mod fuzz_scene;
 mod harness;
 mod inspect;

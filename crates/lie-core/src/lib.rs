@@ -43,7 +43,9 @@ mod tangent;
 
 pub use basis::Basis;
 pub use bezier::{bezier_function, control_value};
-pub use closure::{Closure, ClosureKind, NormalBalance, NormalResponse, Separation, Tension};
+pub use closure::{
+    Closure, ClosureKind, NormalBalance, NormalResponse, OwnLaw, OwnResponse, Separation, Tension,
+};
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};
 pub use fracture_law::{FractureLaw, Friction};

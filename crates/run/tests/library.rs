@@ -13,7 +13,6 @@ use rayon::ThreadPool;
 /// A cube of rock cut in two by a joint that closes under 7 MPa, in two load steps.
 const SCENE: &str = r#"
 title = "a joint"
-steps = [0.5, 1.0]
 [mesh]
 file = "in memory.msh"
 [rock.default]
@@ -28,6 +27,8 @@ closure = "logarithmic"
 traction = [0, 0, -7e6]
 [boundary.bottom]
 displacement = [0, 0, 0]
+[load]
+steps = [0.5, 1.0]
 "#;
 
 fn scene() -> Scene {

@@ -18,12 +18,14 @@
 
 mod hyperbolic;
 mod logarithmic;
+mod own;
 mod tension;
 #[cfg(test)]
 mod tests;
 
 use serde::{Deserialize, Serialize};
 
+pub use own::{OwnLaw, OwnResponse};
 pub use tension::Tension;
 
 /// How the normal stiffness depends on the aperture, in compression.
@@ -45,6 +47,8 @@ pub enum ClosureKind {
     },
     /// Unilateral contact: the walls touch or they do not, without a stiffness.
     Contact,
+    /// A law of one's own; the walls never overlap.
+    Own(OwnLaw),
 }
 
 /// How far the walls of a fracture are apart, to full relative precision wherever that matters:
@@ -188,6 +192,7 @@ impl Closure {
             ClosureKind::Hyperbolic { max_closure } => {
                 hyperbolic::at(x, y, max_closure / self.aperture)
             }
+            ClosureKind::Own(law) if y < 0.0 => law.at(x, y),
             _ => (y, 1.0, 0.5 * y * y),
         };
         NormalResponse {
@@ -256,6 +261,7 @@ impl Closure {
             ClosureKind::Hyperbolic { max_closure } => {
                 hyperbolic::balance(kappa, q, max_closure / self.aperture)
             }
+            ClosureKind::Own(law) if load < 0.0 => law.balance(kappa, q),
             _ => return self.opened(load / (self.normal_stiffness + spring)),
         };
         Separation {
