@@ -59,6 +59,7 @@ pub fn errors(problem: &Problem) -> [f64; 4] {
                 law.closure.aperture - max_closure * q / (q + max_closure / law.closure.aperture)
             }
             ClosureKind::Contact => 0.0,
+            ClosureKind::Own(_) => unreachable!("no scene here has such a law"),
         };
         let slip = (traction - across * normal) / law.shear_stiffness;
         let jump = (aperture - law.closure.aperture) * normal + slip;

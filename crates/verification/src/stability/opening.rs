@@ -80,6 +80,7 @@ fn closed_form(closure: &Closure, z: f64) -> (f64, f64) {
         ClosureKind::Logarithmic { .. } => b0 * (closed_aperture(-sigma / stiffness / b0) - 1.0),
         ClosureKind::Hyperbolic { max_closure } => sigma / (stiffness - sigma / max_closure),
         ClosureKind::Contact => 0.0,
+        ClosureKind::Own(_) => unreachable!("no column here has such a law"),
     };
     let (mut low, mut high) = (rock * z, 0.0);
     for _ in 0..200 {
