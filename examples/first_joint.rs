@@ -30,15 +30,18 @@ displacement = [0, 0, 0]
 steps = [0.25, 0.5, 0.75, 1.0]
 "#;
 
+static PLANES: [(&str, fn([f64; 3]) -> bool); 3] = [
+    ("joint", |x| x[2] == 0.5),
+    ("top", |x| x[2] == 1.0),
+    ("bottom", |x| x[2] == 0.0),
+];
+
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new("."));
     let scene = scene.unwrap_or_else(|defects| panic!("{defects:?}"));
-    let planes: [(&str, &dyn Fn([f64; 3]) -> bool); 3] = [
-        ("joint", &|x| x[2] == 0.5),
-        ("top", &|x| x[2] == 1.0),
-        ("bottom", &|x| x[2] == 0.0),
-    ];
-    let surfaces = planes.map(|(name, contains)| Patch { name, contains });
+    let surfaces = PLANES
+        .each_ref()
+        .map(|(name, contains)| Patch { name, contains });
     let mesh = MeshInput::Draft(Box::new(tetrahedra([8; 3], [1.0; 3], &surfaces)));
     let pool = rayon::ThreadPoolBuilder::new().build().expect("threads");
 

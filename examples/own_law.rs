@@ -1,4 +1,4 @@
-//! A closure law of one's own: the semi-logarithmic law of rough joints, beside its closed form.
+//! A closure law of one's own, beside its closed form: the semi-logarithmic law of rough joints.
 //!
 //!     cargo run --release --example own_law
 #![allow(clippy::print_stdout, reason = "the table is what it is run for")]
@@ -36,14 +36,17 @@ pressure = "10 MPa"
 displacement = [0, 0, 0]
 "#;
 
+static PLANES: [(&str, fn([f64; 3]) -> bool); 3] = [
+    ("joint", |x| x[2] == 0.5),
+    ("top", |x| x[2] == 1.0),
+    ("bottom", |x| x[2] == 0.0),
+];
+
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new(".")).expect("a sound scene");
-    let planes: [(&str, &dyn Fn([f64; 3]) -> bool); 3] = [
-        ("joint", &|x| x[2] == 0.5),
-        ("top", &|x| x[2] == 1.0),
-        ("bottom", &|x| x[2] == 0.0),
-    ];
-    let surfaces = planes.map(|(name, contains)| Patch { name, contains });
+    let surfaces = PLANES
+        .each_ref()
+        .map(|(name, contains)| Patch { name, contains });
     let draft = tetrahedra([4; 3], [1.0; 3], &surfaces);
     let mut problem = scene.problem(draft).expect("a mesh that fits").problem;
     problem.fractures[0].law.closure.kind = ClosureKind::Own(SEMI_LOGARITHMIC);
@@ -56,7 +59,7 @@ fn main() {
     for factor in [0.1, 1.0, 5.0, 20.0] {
         let record =
             newton.solve_step(&system, &mut state, &Load::proportional(factor), unobserved);
-        assert!(record.converged(), "{record:?}");
+        assert!(record.converged());
         let aperture = 1e6 * solution(&system, &state).facet_points[0].aperture;
         let exact = 100.0 * f64::exp(-factor);
         println!("{:14.1}  {aperture:13.7}  {exact:16.7}", 10.0 * factor);

@@ -26,14 +26,17 @@ pressure = "20 MPa"
 displacement = [0, 0, 0]
 "#;
 
+static PLANES: [(&str, fn([f64; 3]) -> bool); 3] = [
+    ("joint", |x| x[2] == 0.5),
+    ("top", |x| x[2] == 1.0),
+    ("bottom", |x| x[2] == 0.0),
+];
+
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new(".")).expect("a sound scene");
-    let planes: [(&str, &dyn Fn([f64; 3]) -> bool); 3] = [
-        ("joint", &|x| x[2] == 0.5),
-        ("top", &|x| x[2] == 1.0),
-        ("bottom", &|x| x[2] == 0.0),
-    ];
-    let surfaces = planes.map(|(name, contains)| Patch { name, contains });
+    let surfaces = PLANES
+        .each_ref()
+        .map(|(name, contains)| Patch { name, contains });
     let draft = tetrahedra([8; 3], [1.0; 3], &surfaces);
     let problem = scene.problem(draft).expect("a mesh that fits").problem;
 
