@@ -30,12 +30,6 @@ displacement = [0, 0, 0]
 steps = [0.25, 0.5, 0.75, 1.0]
 "#;
 
-static PLANES: [(&str, fn([f64; 3]) -> bool); 3] = [
-    ("joint", |x| x[2] == 0.5),
-    ("top", |x| x[2] == 1.0),
-    ("bottom", |x| x[2] == 0.0),
-];
-
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new("."));
     let scene = scene.unwrap_or_else(|defects| panic!("{defects:?}"));

@@ -26,12 +26,6 @@ pressure = "20 MPa"
 displacement = [0, 0, 0]
 "#;
 
-static PLANES: [(&str, fn([f64; 3]) -> bool); 3] = [
-    ("joint", |x| x[2] == 0.5),
-    ("top", |x| x[2] == 1.0),
-    ("bottom", |x| x[2] == 0.0),
-];
-
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new(".")).expect("a sound scene");
     let surfaces = PLANES

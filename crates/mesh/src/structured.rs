@@ -13,6 +13,13 @@ pub struct Patch<'a> {
     pub contains: &'a dyn Fn([f64; 3]) -> bool,
 }
 
+impl<'a> Patch<'a> {
+    /// The patch `name` of all triangles whose corners satisfy `contains`.
+    pub fn new(name: &'a str, contains: &'a dyn Fn([f64; 3]) -> bool) -> Self {
+        Self { name, contains }
+    }
+}
+
 /// How a cube of the grid is cut into cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cut {
