@@ -1,5 +1,5 @@
-//! Times the way from a mesh file to a checked, numbered mesh: prints the seconds of each stage, one
-//! line a run. Surfaces inside the rock are taken for fractures.
+//! Times the way from a mesh file to a checked, numbered mesh: prints the seconds of each stage,
+//! one line a run. Surfaces inside the rock are taken for fractures.
 //!
 //!     cargo bench --bench reading -- FILE.msh [RUNS]
 

@@ -131,8 +131,8 @@ pub(super) fn identical_meshes(labels: &str) -> String {
     )
 }
 
-/// The cell size at which a series should reach the tolerance, by the rate observed over cell sizes; of
-/// the series that needs the least time then, if time grows with the number of cells.
+/// The cell size at which a series should reach the tolerance, by the rate observed over cell
+/// sizes; of the series that needs the least time then, if time grows with the number of cells.
 fn next(study: &Study, found: &Assessment, tolerance: f64) -> Option<String> {
     let plan = &study.plan;
     let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;

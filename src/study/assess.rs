@@ -228,9 +228,9 @@ fn reference_key(plan: &Plan, setting: &Setting) -> Vec<usize> {
     plan.key(&setting, Kind::is_physics)
 }
 
-/// The limit of every physics with three meshes of one series: of the highest order, and of the first
-/// facet rule and solver that have them. As long as a higher order is still to be run, a lower one says
-/// nothing: coarse meshes of first order may settle far from the limit.
+/// The limit of every physics with three meshes of one series: of the highest order, and of the
+/// first facet rule and solver that have them. As long as a higher order is still to be run, a
+/// lower one says nothing: coarse meshes of first order may settle far from the limit.
 fn references(
     plan: &Plan,
     records: &[Option<Record>],
@@ -288,7 +288,8 @@ fn references(
     found.into_iter().map(|(_, reference)| reference).collect()
 }
 
-/// Two meshes of a series with as many cells and unknowns: the geometry does not heed what is swept.
+/// Two meshes of a series with as many cells and unknowns: the geometry does not heed what is
+/// swept.
 fn identical_meshes(plan: &Plan, done: &[Option<&Numbers>]) -> Option<String> {
     let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;
     let size = |i: usize| done[i].map(|numbers| (numbers.cells, numbers.unknowns));

@@ -176,7 +176,8 @@ fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<Nam
     })
 }
 
-/// Something of each setting over its value in a dimension, one line for each combination of the others.
+/// Something of each setting over its value in a dimension, one line for each combination of the
+/// others.
 fn lines_over(study: &Study, dimension: usize, of: impl Fn(usize) -> Option<f64>) -> Vec<Line> {
     let plan = &study.plan;
     let mut lines: Vec<(Vec<usize>, Line)> = Vec::new();

@@ -1,7 +1,7 @@
 //! Accuracy against cost: what a scene's settings yield, and what each takes.
 //!
-//! Each setting is a process of its own, so that its time, memory and failure are those of a run, and
-//! whatever happens to it does not end the study.
+//! Each setting is a process of its own, so that its time, memory and failure are those of a run,
+//! and whatever happens to it does not end the study.
 
 mod answer;
 mod assess;
@@ -61,13 +61,13 @@ struct Study {
     out: PathBuf,
 }
 
-/// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings that a
-/// former study of the folder has run are not run again. With a tolerance the study ends when a setting
-/// reaches it, and prints that setting as a fragment of a scene.
+/// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings
+/// that a former study of the folder has run are not run again. With a tolerance the study ends
+/// when a setting reaches it, and prints that setting as a fragment of a scene.
 ///
 /// # Errors
-/// [`Failure::BadInput`] with every defect of the scene; [`Failure::NotReached`] if no setting was solved,
-/// or none is as accurate as wanted. Settings that fail are results.
+/// [`Failure::BadInput`] with every defect of the scene; [`Failure::NotReached`] if no setting was
+/// solved, or none is as accurate as wanted. Settings that fail are results.
 pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
     let mut report = Report::new(options.verbosity);
     let mut study = Study::begin(scene_file, options)?;

@@ -96,8 +96,8 @@ pub(super) struct Runner {
 }
 
 impl Runner {
-    /// Sum over what a run of a scene depends on: its text, the geometry or mesh it names, this build, and
-    /// the threads, which its time depends on.
+    /// Sum over what a run of a scene depends on: its text, the geometry or mesh it names, this
+    /// build, and the threads, which its time depends on.
     pub(super) fn fingerprint(&self, scene: &Table) -> String {
         let mesh = scene.get("mesh");
         let mut file = ["geometry", "file"].into_iter();
@@ -122,7 +122,8 @@ impl Runner {
         records
     }
 
-    /// Runs a scene in a folder of its own, whatever stood there before, and records what came of it.
+    /// Runs a scene in a folder of its own, whatever stood there before, and records what came of
+    /// it.
     ///
     /// # Errors
     /// If files cannot be written or the program cannot be started; a run that fails is a result.
@@ -151,8 +152,8 @@ impl Runner {
             fingerprint: self.fingerprint(scene),
             outcome: outcome(&output, &folder.join("out/summary.json"), seconds),
         };
-        // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory); who was
-        // killed, by hand or for want of memory, may be luckier the next time.
+        // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory);
+        // who was killed, by hand or for want of memory, may be luckier the next time.
         if matches!(output.status.code(), Some(0 | 1)) {
             write_atomically(&folder.join(RECORD), |out| {
                 serde_json::to_writer_pretty(&mut *out, &record)?;

@@ -11,16 +11,18 @@ const SAME: f64 = 1e-9;
 pub(super) struct Limit {
     /// The extrapolated value; that of the finest mesh if there is no rate.
     pub(super) value: f64,
-    /// The extrapolation's distance from the value on the finest mesh. If there is no rate, the distance
-    /// between the largest and the smallest of the values if they swing, and infinity if they drift.
+    /// The extrapolation's distance from the value on the finest mesh. If there is no rate, the
+    /// distance between the largest and the smallest of the values if they swing, and infinity if
+    /// they drift.
     pub(super) uncertainty: f64,
-    /// Observed rate `p` of `value + C size^p`; none if the differences do not shrink as they would.
+    /// Observed rate `p` of `value + C size^p`; none if the differences do not shrink as they
+    /// would.
     pub(super) rate: Option<f64>,
 }
 
-/// The limit of values on the three finest of some meshes, each given by the size of its cells and the
-/// value; none of fewer than three sizes. A rate above `most` is observed, but not believed: the
-/// extrapolation goes further with `most`, and so does its uncertainty.
+/// The limit of values on the three finest of some meshes, each given by the size of its cells and
+/// the value; none of fewer than three sizes. A rate above `most` is observed, but not believed:
+/// the extrapolation goes further with `most`, and so does its uncertainty.
 ///
 /// With `f_i = f + C s_i^p` on the sizes `s_1 > s_2 > s_3`, the rate solves
 /// `(f_1 - f_2) / (f_2 - f_3) = (s_1^p - s_2^p) / (s_2^p - s_3^p)`, and
@@ -54,8 +56,8 @@ pub(super) fn limit(values: &[(f64, f64)], most: f64) -> Option<Limit> {
     })
 }
 
-/// Ratio of the differences between three values at a rate; it grows with the rate. Sizes are those of the
-/// coarse and the middle mesh in units of the finest.
+/// Ratio of the differences between three values at a rate; it grows with the rate. Sizes are those
+/// of the coarse and the middle mesh in units of the finest.
 fn ratio_at((coarse, middle): (f64, f64), rate: f64) -> f64 {
     (coarse.powf(rate) - middle.powf(rate)) / (middle.powf(rate) - 1.0)
 }
@@ -76,8 +78,8 @@ fn rate(sizes: (f64, f64), ratio: f64) -> Option<f64> {
     Some(f64::midpoint(low, high))
 }
 
-/// Slope of `log y` over `log x` by least squares through the three last points; none of fewer than two,
-/// or of values that are not positive.
+/// Slope of `log y` over `log x` by least squares through the three last points; none of fewer than
+/// two, or of values that are not positive.
 pub(super) fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let last = &points[points.len().saturating_sub(3)..];
     let logs: Vec<(f64, f64)> = last.iter().map(|(x, y)| (x.ln(), y.ln())).collect();

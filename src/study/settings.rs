@@ -127,7 +127,8 @@ impl Plan {
         labels.join(", ")
     }
 
-    /// The choices of a setting in dimensions of some kinds: equal for settings that differ in others only.
+    /// The choices of a setting in dimensions of some kinds: equal for settings that differ in
+    /// others only.
     pub(super) fn key(&self, setting: &Setting, kinds: impl Fn(Kind) -> bool) -> Vec<usize> {
         let chosen = self.dimensions.iter().zip(&setting.choices);
         let chosen = chosen.filter(|(dimension, _)| kinds(dimension.kind));

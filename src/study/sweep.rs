@@ -123,8 +123,8 @@ fn meshes(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
     choices.collect()
 }
 
-/// A mesh among others; only what differs is in its label. Cells grow in number with the third power of
-/// what their size shrinks by.
+/// A mesh among others; only what differs is in its label. Cells grow in number with the third
+/// power of what their size shrinks by.
 fn mesh_choice(mesh: &[(String, f64)], all: &[Vec<(String, f64)>], scene: &Table) -> Choice {
     let own = own_sizes(scene);
     let finer = |(name, size): &(String, f64)| {

@@ -55,7 +55,8 @@ pub(super) fn or_the_scene(name: String) -> String {
     }
 }
 
-/// The unit of a measure or of a key of fractures, in brackets after a space; nothing if it has none.
+/// The unit of a measure or of a key of fractures, in brackets after a space; nothing if it has
+/// none.
 pub(super) fn unit(name: &str) -> &'static str {
     let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
     match name {

@@ -260,8 +260,9 @@ fn iterations_do_not_depend_on_the_number_of_threads() {
 const FACTORS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.35, 0.2, 0.9];
 const STARTS: [usize; 4] = [0, 1, 4, 7];
 
-/// Runs that go on in a new solver from the bytes of a restart state, against the one that does not stop;
-/// returns the iterations of the linear solver, and whether a restart state is shorter than one before.
+/// Runs that go on in a new solver from the bytes of a restart state, against the one that does not
+/// stop; returns the iterations of the linear solver, and whether a restart state is shorter than
+/// one before.
 fn interrupt(
     problem: &Problem,
     method: LinearMethod,

@@ -187,7 +187,8 @@ fn a_penny_has_a_tip_all_around() {
         )],
     ));
     let penny = named(&report["fractures"], "penny");
-    // Chords of a circle cut into 12 or more edges are at most 2 % shorter, the polygon 5 % smaller.
+    // Chords of a circle cut into 12 or more edges are at most 2 % shorter, the polygon 5 %
+    // smaller.
     assert_near(&penny["tip_length"], 2.0 * PI, 0.02 * 2.0 * PI);
     assert_near(&penny["area"], PI, 0.05 * PI);
     assert_eq!(

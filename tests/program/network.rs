@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use crate::harness::{Run, kluft, root, scratch, summary};
 
-/// A wall that ends 0.1 m above a floor and pokes out of the domain, an ellipse that crosses both, and a
-/// fracture outside.
+/// A wall that ends 0.1 m above a floor and pokes out of the domain, an ellipse that crosses both,
+/// and a fracture outside.
 const LIST: &str = "\
 name, set, shape, x, y, z, dip, dip_direction, radius, semi_major, semi_minor, length, width, rotation, points
 floor, flat, disc, 5, 5, 4, 10, 90, 3.5,,,,,,

@@ -71,7 +71,8 @@ fn errors_against_a_closed_form_are_in_the_summary() {
     assert_eq!(of("volume")["fracture"], "joint");
 }
 
-/// Segedin (1951), Eshelby (1957): a closed disc that slides against friction, on 78 thousand unknowns.
+/// Segedin (1951), Eshelby (1957): a closed disc that slides against friction, on 78 thousand
+/// unknowns.
 #[test]
 fn an_inclined_penny_slips_as_its_closed_form() {
     let (scene, out) = (

@@ -61,8 +61,8 @@ fn resume_without_gmsh(workshop: &Workshop, out: &str) -> Run {
     kluft_with(&arguments(workshop, out, &["--resume", "-v"]), &environment)
 }
 
-/// Everything that must not depend on interruptions: the files without their unfinished neighbours, and
-/// the summary without times and memory.
+/// Everything that must not depend on interruptions: the files without their unfinished neighbours,
+/// and the summary without times and memory.
 fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
     let mut left = files(out);
     // A gmsh that lost its master goes on, and leaves its mesh under a name of its own.
@@ -195,7 +195,8 @@ fn a_resumed_run_does_not_mesh_again() {
     assert_eq!(outcome(&workshop.path("out")), expected);
 }
 
-/// The third step of this scene cannot converge, so that two finished steps and a checkpoint are left.
+/// The third step of this scene cannot converge, so that two finished steps and a checkpoint are
+/// left.
 fn stuck() -> Workshop {
     let edits = [
         ("[mesh]", "[load]\nsteps = [1e-9, 1e-8, 1.0]\n\n[mesh]"),

@@ -1,5 +1,5 @@
-//! `kluft study`: what it leaves behind, what it survives, and what it answers. The penny on three coarse
-//! meshes, a cube of 4 m instead of 20 m: half a second a setting.
+//! `kluft study`: what it leaves behind, what it survives, and what it answers. The penny on three
+//! coarse meshes, a cube of 4 m instead of 20 m: half a second a setting.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

@@ -1,6 +1,6 @@
-//! Linear algebra on sparse symmetric matrices of 3x3 blocks, as elasticity makes them, with nothing
-//! of meshes or fractures in it. What depends on these is handed in: the graph of nodes, the rows of
-//! each node, motions that cost next to nothing, the blocks of an interface.
+//! Linear algebra on sparse symmetric matrices of 3x3 blocks, as elasticity makes them, with
+//! nothing of meshes or fractures in it. What depends on these is handed in: the graph of nodes,
+//! the rows of each node, motions that cost next to nothing, the blocks of an interface.
 //!
 //! No result depends on the number of threads: every sum has a fixed order. All vectors have one
 //! 3-vector a block row.

@@ -119,8 +119,8 @@ impl Chart {
     }
 }
 
-/// Indices of the points that no other one beats in both directions, less being better, from left to
-/// right. Points with a coordinate that is not finite are left out.
+/// Indices of the points that no other one beats in both directions, less being better, from left
+/// to right. Points with a coordinate that is not finite are left out.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let finite = |&i: &usize| points[i].0.is_finite() && points[i].1.is_finite();
     let mut order: Vec<usize> = (0..points.len()).filter(finite).collect();

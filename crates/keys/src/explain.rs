@@ -88,7 +88,8 @@ fn ends_with(path: &str, wanted: &str) -> bool {
             .is_some_and(|front| front.ends_with('.'))
 }
 
-/// Whether the path is that of a key in a section with a name of the user's: `rock.granite.density`.
+/// Whether the path is that of a key in a section with a name of the user's:
+/// `rock.granite.density`.
 fn is_of_a_name(section: &str, key: &str, wanted: &str) -> bool {
     let parts: Vec<&str> = wanted.split('.').collect();
     parts.len() == 3 && parts[0] == section && parts[2] == key

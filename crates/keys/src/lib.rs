@@ -1,4 +1,5 @@
-//! The one table of keys: every key of a scene, a network description, a list of fractures and a study.
+//! The one table of keys: every key of a scene, a network description, a list of fractures and a
+//! study.
 //!
 //! A [`Document`] is a tree of [`Section`]s of [`Key`]s. From it come what the reader checks and
 //! suggests, the units in which quantities may be written ([`Dimension`], [`read_quantity`]), the

@@ -152,7 +152,8 @@ fn any_quantity() -> Value {
     json!({ "anyOf": [{ "type": "number" }, with_unit(&[])] })
 }
 
-/// What a number with a unit looks like: digits, an exponent, and a unit, none of which begins with `e`.
+/// What a number with a unit looks like: digits, an exponent, and a unit, none of which begins with
+/// `e`.
 const WITH_UNIT: &str = concat!(
     r"^ *[-+]?([0-9][0-9_]*\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?",
     r" *(1/)?[A-DF-Za-df-z%°µμ].*$"

@@ -1,8 +1,8 @@
 //! Quantities written with a unit: `60 GPa`, `0.1 mm`, `20 GPa/m`, `12 degrees`.
 //!
-//! A unit is a product of symbols with SI prefixes and whole powers, so that it stands for a power of
-//! ten times the SI unit. The number is taken as decimal text and its exponent is shifted by that
-//! power before it is converted: `0.1 mm` is the same bits as `1e-4`.
+//! A unit is a product of symbols with SI prefixes and whole powers, so that it stands for a power
+//! of ten times the SI unit. The number is taken as decimal text and its exponent is shifted by
+//! that power before it is converted: `0.1 mm` is the same bits as `1e-4`.
 
 use crate::dimension::{Dimension, Exponents};
 use crate::names::nearest;

@@ -55,7 +55,8 @@ fn refusal(value: &Value, schema: &Value) -> Option<String> {
     keys(value, schema)
 }
 
-/// Whether a text is a number with something behind it that may be a unit: what the pattern asks for.
+/// Whether a text is a number with something behind it that may be a unit: what the pattern asks
+/// for.
 fn has_unit(text: &str) -> bool {
     let text = text.trim_start().trim_start_matches(['+', '-']);
     let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "._".contains(c));

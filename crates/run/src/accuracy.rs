@@ -31,8 +31,9 @@ pub struct JumpAccuracy {
     pub nearest_fracture: Vec<u32>,
 }
 
-/// Factor on the estimated error of a mean jump. On closed forms the estimate is 0.48 to 0.87 times the error where
-/// plain elements follow a crack front, and 0.5 (curved fractures of flat facets) to 1.2 times elsewhere.
+/// Factor on the estimated error of a mean jump. On closed forms the estimate is 0.48 to 0.87 times
+/// the error where plain elements follow a crack front, and 0.5 (curved fractures of flat facets)
+/// to 1.2 times elsewhere.
 const SAFETY: f64 = 2.0;
 const SAFETY_AT_PLAIN_FRONTS: f64 = 3.0;
 /// Share of the largest jump that the iterations may leave.
@@ -130,8 +131,8 @@ fn of_all_jumps(
 }
 
 impl Accuracy {
-    /// What a tolerance speaks of: the largest, over the fractures, of the errors of mean opening and slip
-    /// as shares of the mean jump; without fractures the error of the stress.
+    /// What a tolerance speaks of: the largest, over the fractures, of the errors of mean opening
+    /// and slip as shares of the mean jump; without fractures the error of the stress.
     pub fn to_meet(&self) -> f64 {
         let Some(jumps) = &self.jumps else {
             return self.relative;

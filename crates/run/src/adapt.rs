@@ -12,7 +12,8 @@ use crate::summary::MeshTrial;
 /// File of the sizes that the last mesh was made with.
 const SIZES: &str = "sizes.pos";
 
-/// Leaves a mesh on which the estimated error meets the tolerance of the scene, or the budget is spent.
+/// Leaves a mesh on which the estimated error meets the tolerance of the scene, or the budget is
+/// spent.
 ///
 /// # Errors
 /// As a run on any of the meshes.
@@ -69,8 +70,8 @@ const NEAR: f64 = 4.0;
 /// Part of the largest number of unknowns that counts as having used it: gmsh does not hit numbers.
 const FULL: f64 = 0.7;
 
-/// Least growth of the number of cells that a mesh is asked for after one that is not good enough (gmsh makes fewer where they are
-/// large): on ever coarser meshes estimates mean nothing.
+/// Least growth of the number of cells that a mesh is asked for after one that is not good enough
+/// (gmsh makes fewer where they are large): on ever coarser meshes estimates mean nothing.
 const LEAST_GROWTH: f64 = 1.6;
 
 fn stopped(adapt: &Adapt, is_met: bool, error: f64) -> String {

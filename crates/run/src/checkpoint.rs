@@ -1,8 +1,8 @@
 //! `resume.bin`: what a run needs to go on where it was interrupted.
 //!
-//! A head that names the format, an [`Identity`], [`Progress`] (both as postcard), and the XXH3 sum of
-//! all that. Whether the file is whole and belongs to the run is known before anything else of it is
-//! believed.
+//! A head that names the format, an [`Identity`], [`Progress`] (both as postcard), and the XXH3 sum
+//! of all that. Whether the file is whole and belongs to the run is known before anything else of
+//! it is believed.
 
 use std::fs::File;
 use std::io::{self, Read, Write};

@@ -11,14 +11,14 @@ pub(super) struct Behind {
     pub(super) area: f64,
 }
 
-/// Distances used, as shares of the radius: nearer the elements cannot follow the square root, farther
-/// the expansion has more than two terms.
+/// Distances used, as shares of the radius: nearer the elements cannot follow the square root,
+/// farther the expansion has more than two terms.
 const NEAREST: f64 = 0.05;
 const FARTHEST: f64 = 0.4;
 
-/// `K_I` (Pa sqrt(m)) from `w = 8 K_I / E' sqrt(d / (2 pi))`, `E' = E / (1 - nu^2)` (G. R. Irwin, J. Appl.
-/// Mech. 24, 1957): a straight line is fitted to `w^2 / d`, which is linear in `d` for an ellipse, and
-/// taken at `d = 0`. `None` if there are too few places.
+/// `K_I` (Pa sqrt(m)) from `w = 8 K_I / E' sqrt(d / (2 pi))`, `E' = E / (1 - nu^2)` (G. R. Irwin,
+/// J. Appl. Mech. 24, 1957): a straight line is fitted to `w^2 / d`, which is linear in `d` for an
+/// ellipse, and taken at `d = 0`. `None` if there are too few places.
 pub(super) fn stress_intensity(
     places: impl Iterator<Item = Behind>,
     radius: f64,

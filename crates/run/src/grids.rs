@@ -37,8 +37,8 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
     }
 }
 
-/// The fractures; every facet has its own points, so that fields may jump between facets. `results` are
-/// those of the nodes of the facets.
+/// The fractures; every facet has its own points, so that fields may jump between facets. `results`
+/// are those of the nodes of the facets.
 pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Accuracy) -> Grid {
     let mesh = &system.problem().mesh;
     let elements = &mesh.facets.elements;

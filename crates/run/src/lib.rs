@@ -1,8 +1,8 @@
 //! A run as a library: a scene and a mesh go in, the results of all load steps come out as values.
 //!
-//! [`run`] takes a [`Request`] (scene, mesh, thread pool, where results go) and an [`Observer`], and
-//! returns an [`Outcome`]. It prints nothing, sets nothing global and ends no process; two runs with
-//! different numbers of threads may work side by side.
+//! [`run`] takes a [`Request`] (scene, mesh, thread pool, where results go) and an [`Observer`],
+//! and returns an [`Outcome`]. It prints nothing, sets nothing global and ends no process; two runs
+//! with different numbers of threads may work side by side.
 //!
 //! | file | part of a run |
 //! |---|---|

@@ -19,9 +19,9 @@ struct Sample {
     area: f64,
 }
 
-/// The measures of a solution: of each fracture, what its summary says, and errors where it has a closed form
-/// (`oracles`, one entry for each fracture). Fields are compared at the quadrature points of the facets, between
-/// nodes too.
+/// The measures of a solution: of each fracture, what its summary says, and errors where it has a
+/// closed form (`oracles`, one entry for each fracture). Fields are compared at the quadrature
+/// points of the facets, between nodes too.
 pub fn measures(
     system: &System<'_>,
     solution: &Solution,
@@ -149,8 +149,9 @@ impl<'a> Fracture<'a> {
     }
 }
 
-/// Errors of a field given by place, difference, closed form and area: root mean square and largest, as
-/// shares of those of the closed form, everywhere and (with a ring) without the ring along the front.
+/// Errors of a field given by place, difference, closed form and area: root mean square and
+/// largest, as shares of those of the closed form, everywhere and (with a ring) without the ring
+/// along the front.
 fn norms<I: Iterator<Item = (DVec3, f64, f64, f64)>>(
     name: &str,
     oracle: &Oracle,

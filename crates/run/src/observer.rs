@@ -80,7 +80,8 @@ pub trait Observer: Send {
     /// A load step begins.
     fn step_begins(&mut self, _step: StepStart<'_>) {}
 
-    /// An iteration of Newton's method has ended. `Break` stops the run; the converged steps are kept.
+    /// An iteration of Newton's method has ended. `Break` stops the run; the converged steps are
+    /// kept.
     fn iteration(&mut self, _number: usize, _iteration: &Iteration) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

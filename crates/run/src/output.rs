@@ -11,7 +11,8 @@ use crate::checkpoint;
 /// Writes the results of a run into one folder, step by step; the collections always list exactly
 /// the steps that are complete.
 ///
-/// An output nowhere has a temporary folder for what gmsh needs, which goes with it, and keeps nothing.
+/// An output nowhere has a temporary folder for what gmsh needs, which goes with it, and keeps
+/// nothing.
 pub struct Output {
     folder: PathBuf,
     temporary: Option<TempDir>,
@@ -101,8 +102,8 @@ impl Output {
         Err(missing)
     }
 
-    /// Removes what another run has written: its load steps, so that the folder never holds steps of
-    /// two runs, its checkpoint, and what it left unfinished.
+    /// Removes what another run has written: its load steps, so that the folder never holds steps
+    /// of two runs, its checkpoint, and what it left unfinished.
     ///
     /// # Errors
     /// If a file cannot be removed.

@@ -14,8 +14,8 @@ use crate::stages::{Interruption, Run};
 /// Runs a scene: mesh, enrich, assemble, solve, write.
 ///
 /// # Errors
-/// Every defect of geometry, mesh and scene, and files that cannot be written. A load step that does not
-/// converge is no error: see [`Ending::NotConverged`].
+/// Every defect of geometry, mesh and scene, and files that cannot be written. A load step that
+/// does not converge is no error: see [`Ending::NotConverged`].
 pub fn run(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome, Vec<Defect>> {
     let pool = request.pool;
     pool.install(|| run_here(request, observer))

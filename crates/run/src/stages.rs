@@ -259,8 +259,8 @@ impl<'a> Run<'a> {
         Ok(system)
     }
 
-    /// Chooses the linear solver, the former run's if there was one, and refuses what would not fit in
-    /// memory.
+    /// Chooses the linear solver, the former run's if there was one, and refuses what would not fit
+    /// in memory.
     pub fn plan(
         &mut self,
         system: &System<'_>,

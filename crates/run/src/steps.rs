@@ -29,8 +29,8 @@ struct Prepared<'s, 'p> {
 }
 
 impl Run<'_> {
-    /// Solves all load steps without writing anything: the number of unknowns and the estimated error at
-    /// the end.
+    /// Solves all load steps without writing anything: the number of unknowns and the estimated
+    /// error at the end.
     ///
     /// # Errors
     /// As [`Self::solve`].

@@ -243,8 +243,8 @@ pub fn fractures(
         .collect()
 }
 
-/// Means and areas are taken from the facet `points` (their control values have the right integral),
-/// extremes from the `nodes` of the facets and the points between them.
+/// Means and areas are taken from the facet `points` (their control values have the right
+/// integral), extremes from the `nodes` of the facets and the points between them.
 fn fracture_summary(
     problem: &Problem,
     interface: &Interface,

@@ -74,8 +74,8 @@ fn apertures(step: &StepResult) -> &[f64] {
     }
 }
 
-/// Root of `(1 + ln^2 x) (1 - x) = q`, by bisection: the aperture of the logarithmic law (Nagel 2017)
-/// under the compression `q K_n0 b0`.
+/// Root of `(1 + ln^2 x) (1 - x) = q`, by bisection: the aperture of the logarithmic law (Nagel
+/// 2017) under the compression `q K_n0 b0`.
 fn closed_form(q: f64) -> f64 {
     let (mut low, mut high) = (1e-9_f64, 1.0);
     for _ in 0..100 {

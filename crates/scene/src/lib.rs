@@ -1,8 +1,8 @@
 //! What a user may say: the scene file, its reader, and where it meets a mesh.
 //!
-//! [`Scene::read`] turns a TOML file into a [`Scene`], or into every defect of the file, each with its
-//! line and a remedy. [`Scene::problem`] is the only way from a scene and a mesh as read to a problem
-//! that a solver takes. Values are in SI units.
+//! [`Scene::read`] turns a TOML file into a [`Scene`], or into every defect of the file, each with
+//! its line and a remedy. [`Scene::problem`] is the only way from a scene and a mesh as read to a
+//! problem that a solver takes. Values are in SI units.
 
 mod bind;
 mod cases;

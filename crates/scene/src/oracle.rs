@@ -1,12 +1,14 @@
 //! Closed forms that a scene may name for a fracture.
 //!
-//! All of them have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance from
-//! the centre as a share of the radius: cracks in unbounded rock, opened by a pressure `p` or sheared by
-//! a stress drop `tau`. With `nu`, `E`, `mu = E / (2 (1 + nu))` of the rock:
+//! All of them have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance
+//! from the centre as a share of the radius: cracks in unbounded rock, opened by a pressure `p` or
+//! sheared by a stress drop `tau`. With `nu`, `E`, `mu = E / (2 (1 + nu))` of the rock:
 //!
-//! - disc ("penny"), opening `8 (1 - nu^2) p a / (pi E)` (I. N. Sneddon, Proc. R. Soc. A 187, 1946),
-//!   slip `8 (1 - nu) tau a / (pi (2 - nu) mu)` (C. M. Segedin, Proc. Camb. Phil. Soc. 47, 1951);
-//! - strip ("line"), opening and slip `4 (1 - nu^2) p a / E` (A. A. Griffith, Phil. Trans. R. Soc. A 221, 1921);
+//! - disc ("penny"), opening `8 (1 - nu^2) p a / (pi E)` (I. N. Sneddon, Proc. R. Soc. A 187,
+//!   1946), slip `8 (1 - nu) tau a / (pi (2 - nu) mu)` (C. M. Segedin, Proc. Camb. Phil. Soc. 47,
+//!   1951);
+//! - strip ("line"), opening and slip `4 (1 - nu^2) p a / E` (A. A. Griffith, Phil. Trans. R. Soc.
+//!   A 221, 1921);
 //! - "uniform": the same everywhere, as given.
 
 use std::f64::consts::PI;
@@ -108,8 +110,8 @@ impl Oracle {
         })
     }
 
-    /// `K_I` of the opening pressure (Pa sqrt(m)): `2 p sqrt(a / pi)` of a disc, `p sqrt(pi a)` of a
-    /// strip.
+    /// `K_I` of the opening pressure (Pa sqrt(m)): `2 p sqrt(a / pi)` of a disc, `p sqrt(pi a)` of
+    /// a strip.
     pub fn stress_intensity(&self) -> Option<f64> {
         let Some(Amount::Stress(p)) = self.opening else {
             return None;

@@ -80,7 +80,8 @@ impl<'a> Source<'a> {
         in_order(RefCell::new(self.warnings.take()))
     }
 
-    /// Keys of the table that nobody has asked for, `section key`: none, after a text with every section.
+    /// Keys of the table that nobody has asked for, `section key`: none, after a text with every
+    /// section.
     pub fn unasked(&self) -> Vec<String> {
         let asked = self.asked.borrow();
         let sections = self.document.sections().into_iter();

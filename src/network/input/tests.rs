@@ -96,8 +96,8 @@ fn read(text: &str) -> (Option<Input>, Vec<Defect>, Vec<String>) {
     (input, defects, unasked)
 }
 
-/// A key that is asked for and not in the table stops the reader; this is the other direction. Those
-/// that a scene has too are asked for by its reader.
+/// A key that is asked for and not in the table stops the reader; this is the other direction.
+/// Those that a scene has too are asked for by its reader.
 #[test]
 fn every_key_of_the_table_is_asked_for() {
     let (_, defects, mut unasked) = read(EVERY_KEY);

@@ -44,7 +44,8 @@ fn solved(cells: usize, measures: Vec<Measure>) -> Option<Record> {
     })
 }
 
-/// Runs whose mean aperture approaches `limit` as the third root of the cells, or faster for order 2.
+/// Runs whose mean aperture approaches `limit` as the third root of the cells, or faster for order
+/// 2.
 fn extrapolated(plan: &Plan, limit: impl Fn(&str) -> f64) -> Vec<Option<Record>> {
     let run = |setting: &Setting| {
         let size: f64 = plan.label(setting, 0)[2..].parse().expect("a size");

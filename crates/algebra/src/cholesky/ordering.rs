@@ -13,9 +13,9 @@ use crate::lists::Lists;
 pub struct NodeOrder(Vec<u32>);
 
 impl NodeOrder {
-    /// Orders the nodes of a symmetric `graph` by nested dissection. Node `n` has the unknown 3-vectors
-    /// `first_unknown[n]..first_unknown[n + 1]`, which may be none; the graph may hold a node among its
-    /// own neighbours.
+    /// Orders the nodes of a symmetric `graph` by nested dissection. Node `n` has the unknown
+    /// 3-vectors `first_unknown[n]..first_unknown[n + 1]`, which may be none; the graph may hold a
+    /// node among its own neighbours.
     ///
     /// # Errors
     /// If the graph is too large for the ordering.

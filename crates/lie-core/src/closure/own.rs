@@ -11,7 +11,8 @@ use crate::root::root;
 pub struct OwnLaw {
     /// Its name.
     pub name: &'static str,
-    /// Traction, slope and potential at `x`; `y = x - 1` to full precision near the initial aperture.
+    /// Traction, slope and potential at `x`; `y = x - 1` to full precision near the initial
+    /// aperture.
     pub at: fn(x: f64, y: f64) -> OwnResponse,
 }
 
@@ -42,8 +43,8 @@ impl OwnLaw {
         (response.traction, response.tangent, response.potential)
     }
 
-    /// Root `(x, y)` of `sigma(x) + kappa y = q <= 0`: in `y` near the initial aperture, in `x` near
-    /// closure, each to full relative precision.
+    /// Root `(x, y)` of `sigma(x) + kappa y = q <= 0`: in `y` near the initial aperture, in `x`
+    /// near closure, each to full relative precision.
     pub(super) fn balance(&self, kappa: f64, q: f64) -> (f64, f64) {
         let residual = |x: f64, y: f64| self.at(x, y).0 + kappa * y - q;
         if residual(0.5, -0.5) > 0.0 {

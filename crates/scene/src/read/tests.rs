@@ -26,8 +26,8 @@ fn read(text: &str) -> (Result<Scene, Vec<Defect>>, Vec<String>) {
     (Scene::parse(text, "scene.toml", Path::new("")), unasked)
 }
 
-/// A key that is asked for and not in the table stops the reader; this is the other direction. Those of
-/// `[study]` are asked for by who runs studies.
+/// A key that is asked for and not in the table stops the reader; this is the other direction.
+/// Those of `[study]` are asked for by who runs studies.
 #[test]
 fn every_key_of_the_table_is_asked_for() {
     let of_studies = Document::Study.sections();

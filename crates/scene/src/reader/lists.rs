@@ -172,8 +172,8 @@ impl<'a, 'i> Section<'a, 'i> {
             .collect()
     }
 
-    /// All keys below `key`, which must be lists of numbers, or `{ from, to, count }` for numbers whose
-    /// logarithms lie evenly. What a number is follows from the name that it stands under.
+    /// All keys below `key`, which must be lists of numbers, or `{ from, to, count }` for numbers
+    /// whose logarithms lie evenly. What a number is follows from the name that it stands under.
     pub fn number_lists(
         &self,
         key: &'static str,

@@ -243,8 +243,8 @@ impl<'a, 'i> Section<'a, 'i> {
         sections
     }
 
-    /// Reports the keys that nobody asked for: unknown ones with the nearest known one, and known ones
-    /// that other keys leave without effect.
+    /// Reports the keys that nobody asked for: unknown ones with the nearest known one, and known
+    /// ones that other keys leave without effect.
     pub fn finish(self) {
         let is_sound = !self.is_defective.get();
         let asked = self.asked.borrow().clone();

@@ -233,8 +233,8 @@ impl Interface {
         }
     }
 
-    /// Adds the forces (N) of a fluid with these pressures (Pa), one for each facet point, to those on
-    /// all unknowns. It pushes the walls apart: it resists closing like a traction of `-p n`.
+    /// Adds the forces (N) of a fluid with these pressures (Pa), one for each facet point, to those
+    /// on all unknowns. It pushes the walls apart: it resists closing like a traction of `-p n`.
     pub fn add_pressures(&self, pressures: &[f64], forces: &mut [DVec3]) {
         let push = self.points.iter().zip(pressures);
         let push: Vec<DVec3> = push.map(|(point, p)| *p * point.normal).collect();

@@ -24,7 +24,8 @@ use crate::space::sector_nodes::SectorNodes;
 
 /// Nodes that one task assembles; small enough to balance, large enough to amortise.
 const NODES_PER_TASK: usize = 512;
-/// Blocks of cells that are kept at a time, which take little memory, unless that makes more than [`MOST_WAVES`].
+/// Blocks of cells that are kept at a time, which take little memory, unless that makes more than
+/// [`MOST_WAVES`].
 const BLOCKS_PER_WAVE: usize = 1 << 18;
 /// Nodes of a linear tetrahedron; no other cell has as many.
 const TETRAHEDRON: usize = 4;
