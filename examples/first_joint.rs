@@ -33,9 +33,11 @@ steps = [0.25, 0.5, 0.75, 1.0]
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new("."));
     let scene = scene.unwrap_or_else(|defects| panic!("{defects:?}"));
-    let surfaces = PLANES
-        .each_ref()
-        .map(|(name, contains)| Patch { name, contains });
+    let surfaces = [
+        Patch::new("joint", &|x| x[2] == 0.5),
+        Patch::new("top", &|x| x[2] == 1.0),
+        Patch::new("bottom", &|x| x[2] == 0.0),
+    ];
     let mesh = MeshInput::Draft(Box::new(tetrahedra([8; 3], [1.0; 3], &surfaces)));
     let pool = rayon::ThreadPoolBuilder::new().build().expect("threads");
 

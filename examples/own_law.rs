@@ -51,8 +51,8 @@ fn main() {
     let mut state = system.initial_state();
     println!("pressure (MPa)  aperture (um)  closed form (um)");
     for factor in [0.1, 1.0, 5.0, 20.0] {
-        let record =
-            newton.solve_step(&system, &mut state, &Load::proportional(factor), unobserved);
+        let load = Load::proportional(factor);
+        newton.solve_step(&system, &mut state, &load, unobserved);
         let aperture = 1e6 * solution(&system, &state).facet_points[0].aperture;
         let exact = 100.0 * f64::exp(-factor);
         println!("{:14.1}  {aperture:13.7}  {exact:16.7}", 10.0 * factor);

@@ -28,9 +28,11 @@ displacement = [0, 0, 0]
 
 fn main() {
     let scene = Scene::parse(SCENE, "the scene above", Path::new(".")).expect("a sound scene");
-    let surfaces = PLANES
-        .each_ref()
-        .map(|(name, contains)| Patch { name, contains });
+    let surfaces = [
+        Patch::new("joint", &|x| x[2] == 0.5),
+        Patch::new("top", &|x| x[2] == 1.0),
+        Patch::new("bottom", &|x| x[2] == 0.0),
+    ];
     let draft = tetrahedra([8; 3], [1.0; 3], &surfaces);
     let problem = scene.problem(draft).expect("a mesh that fits").problem;
 

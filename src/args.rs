@@ -145,7 +145,7 @@ pub struct NetworkArgs {
     name: String,
     /// What gets a physical surface of its own
     #[arg(long, value_enum, default_value = "fracture")]
-    group: Group,
+    group: GroupBy,
     /// The box of rock: two opposite corners [default: of the description, or around the list]
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = domain, allow_hyphen_values = true)]
     domain: Option<Domain>,
@@ -164,7 +164,7 @@ pub struct NetworkArgs {
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum Group {
+enum GroupBy {
     /// Each fracture
     Fracture,
     /// Each set
@@ -242,8 +242,8 @@ impl From<NetworkArgs> for NetworkOptions {
             out: args.out,
             name: args.name,
             grouping: match args.group {
-                Group::Fracture => Grouping::Fracture,
-                Group::Set => Grouping::Set,
+                GroupBy::Fracture => Grouping::Fracture,
+                GroupBy::Set => Grouping::Set,
             },
             domain: args.domain,
             h: args.h,

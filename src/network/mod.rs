@@ -17,7 +17,7 @@ use kluft_network::{Domain, Grouping, Network, write_geo};
 use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
 use input::{Input, Overrides};
-use record::Record;
+use record::NetworkRecord;
 
 /// First line of a scene that may be written again.
 const MADE: &str = "# Made by `kluft network`; remove this line to protect the file.";
@@ -57,7 +57,7 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
     let name = file.file_name().unwrap_or_default().display();
     report.entry("network", &format!("{name}  {}", input.title));
     let network = Network::build(input.domain, input.sizes, input.given.clone())?;
-    let record = Record::of(&network, &input);
+    let record = NetworkRecord::of(&network, &input);
     record.tell(&report);
     if network.fractures.is_empty() {
         return Err(Failure::BadInput(vec![Defect::new(
@@ -77,7 +77,7 @@ fn write(
     options: &NetworkOptions,
     input: &Input,
     network: &Network,
-    record: &Record,
+    record: &NetworkRecord,
 ) -> Result<(), Defect> {
     let folder = &options.out;
     let path = |name: &str| folder.join(name);

@@ -12,7 +12,7 @@ use crate::report::Report;
 
 /// Everything `network.json` holds.
 #[derive(Debug, Serialize)]
-pub(super) struct Record {
+pub(super) struct NetworkRecord {
     kluft: &'static str,
     title: String,
     domain: DomainRecord,
@@ -34,19 +34,19 @@ struct DomainRecord {
     volume: f64,
 }
 
-/// Numbers of a set: asked for, over all drawn, and over those in the domain.
+/// Statistics of a set: asked for, over all drawn, and over those in the domain.
 #[derive(Debug, Serialize)]
 struct SetRecord {
     name: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    asked: Option<Numbers>,
+    asked: Option<Statistics>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    drawn: Option<Numbers>,
-    inside: Numbers,
+    drawn: Option<Statistics>,
+    inside: Statistics,
 }
 
 #[derive(Debug, Default, Serialize)]
-struct Numbers {
+struct Statistics {
     #[serde(skip_serializing_if = "Option::is_none")]
     count: Option<usize>,
     /// Area per volume [m^2/m^3].
@@ -100,7 +100,7 @@ struct FeatureRecord {
     text: String,
 }
 
-impl Record {
+impl NetworkRecord {
     /// Sums up a network.
     pub(super) fn of(network: &Network, input: &Input) -> Self {
         let lengths = network
@@ -296,8 +296,8 @@ fn numbers(
     count: Option<usize>,
     p32: Option<f64>,
     size: Option<Moments>,
-) -> Numbers {
-    Numbers {
+) -> Statistics {
+    Statistics {
         count,
         p32,
         dip: fisher.mean.dip,
@@ -320,7 +320,7 @@ impl SetRecord {
     }
 }
 
-impl Numbers {
+impl Statistics {
     fn text(&self) -> String {
         let mut parts = Vec::new();
         parts.extend(self.count.map(|count| format!("{count} fractures")));

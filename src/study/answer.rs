@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use super::Study;
-use super::assess::{Assessment, Series};
+use super::assess::{Assessment, MeasuredSeries};
 use super::charts::subject;
-use super::dimension::Kind;
+use super::dimension::SweepKind;
 use super::edits::difference;
-use super::point::Record;
+use super::point::PointRecord;
 use super::reference::slope;
 use super::words::{duration, percent, short};
 
@@ -116,7 +116,11 @@ pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
     if let Some(reference) = found.references.first() {
         return reference.in_words();
     }
-    let meshes = study.plan.dimensions.iter().find(|d| d.kind == Kind::Mesh);
+    let meshes = study
+        .plan
+        .dimensions
+        .iter()
+        .find(|d| d.kind == SweepKind::Mesh);
     let count = meshes.map_or(0, |dimension| dimension.choices.len());
     format!(
         "the scene has no closed form for it, and without one errors need three meshes solved with the same \
@@ -135,9 +139,12 @@ pub(super) fn identical_meshes(labels: &str) -> String {
 /// sizes; of the series that needs the least time then, if time grows with the number of cells.
 fn next(study: &Study, found: &Assessment, tolerance: f64) -> Option<String> {
     let plan = &study.plan;
-    let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;
+    let mesh = plan
+        .dimensions
+        .iter()
+        .position(|d| d.kind == SweepKind::Mesh)?;
     let choice = |i: usize| &plan.dimensions[mesh].choices[plan.settings[i].choices[mesh]];
-    let guess = |series: &Series| -> Option<(f64, String)> {
+    let guess = |series: &MeasuredSeries| -> Option<(f64, String)> {
         let known = series.settings.iter().copied();
         let known = known.filter_map(|i| Some((i, found.verdicts[i].error?)));
         let known: Vec<(usize, f64)> = known.collect();
@@ -165,7 +172,7 @@ fn next(study: &Study, found: &Assessment, tolerance: f64) -> Option<String> {
 }
 
 /// Whether anything came out of a study.
-pub(super) fn has_no_result(records: &[Option<Record>]) -> bool {
+pub(super) fn has_no_result(records: &[Option<PointRecord>]) -> bool {
     !records
         .iter()
         .flatten()

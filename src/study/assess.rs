@@ -2,10 +2,10 @@
 
 use kluft_mesh::{Defect, nearest};
 
-use super::dimension::Kind;
-use super::point::{Numbers, Record};
+use super::dimension::SweepKind;
+use super::point::{Numbers, PointRecord};
 use super::reference::{Limit, limit};
-use super::settings::{Plan, Setting};
+use super::settings::{Setting, StudyPlan};
 use super::words::{or_the_scene, percent, short};
 use kluft_run::Measure;
 
@@ -77,7 +77,7 @@ impl Verdict {
 
 /// All settings with the same choices but for the mesh, in the order of their unknowns.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Series {
+pub(super) struct MeasuredSeries {
     /// What its settings share.
     pub(super) name: String,
     /// Indices of its settings.
@@ -94,7 +94,7 @@ pub(super) struct Assessment {
     /// One entry for each setting.
     pub(super) verdicts: Vec<Verdict>,
     /// All settings, by series.
-    pub(super) series: Vec<Series>,
+    pub(super) series: Vec<MeasuredSeries>,
     /// Meshes that are one and the same, by their labels.
     pub(super) identical_meshes: Option<String>,
 }
@@ -103,10 +103,13 @@ pub(super) struct Assessment {
 ///
 /// # Errors
 /// A measure that no run knows.
-pub(super) fn assess(plan: &Plan, records: &[Option<Record>]) -> Result<Assessment, Defect> {
+pub(super) fn assess(
+    plan: &StudyPlan,
+    records: &[Option<PointRecord>],
+) -> Result<Assessment, Defect> {
     let done: Vec<Option<&Numbers>> = records
         .iter()
-        .map(|record| record.as_ref().and_then(Record::numbers))
+        .map(|record| record.as_ref().and_then(PointRecord::numbers))
         .collect();
     let target = target(plan, &done)?;
     let extrapolates = target.as_ref().filter(|target| !target.is_compared);
@@ -156,7 +159,7 @@ fn find<'a>(numbers: &'a Numbers, target: &Target) -> Option<&'a Measure> {
     numbers.measures.iter().find(fits)
 }
 
-fn target(plan: &Plan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defect> {
+fn target(plan: &StudyPlan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defect> {
     let request = &plan.request;
     let Some(first) = done.iter().flatten().next() else {
         return Ok(None);
@@ -188,7 +191,7 @@ fn target(plan: &Plan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defe
     }))
 }
 
-fn unknown(plan: &Plan, numbers: &Numbers) -> Defect {
+fn unknown(plan: &StudyPlan, numbers: &Numbers) -> Defect {
     let request = &plan.request;
     let wanted = request.measure.as_deref().unwrap_or("any");
     let on = request
@@ -217,30 +220,33 @@ fn unknown(plan: &Plan, numbers: &Numbers) -> Defect {
 }
 
 /// The physics that a setting is compared with: its own, or that of the closure asked for.
-fn reference_key(plan: &Plan, setting: &Setting) -> Vec<usize> {
+fn reference_key(plan: &StudyPlan, setting: &Setting) -> Vec<usize> {
     let mut setting = setting.clone();
-    let closure = plan.dimensions.iter().position(|d| d.kind == Kind::Closure);
+    let closure = plan
+        .dimensions
+        .iter()
+        .position(|d| d.kind == SweepKind::Closure);
     if let (Some(label), Some(closure)) = (&plan.request.reference, closure) {
         let choices = &plan.dimensions[closure].choices;
         let named = choices.iter().position(|choice| choice.label == *label);
         setting.choices[closure] = named.unwrap_or(setting.choices[closure]);
     }
-    plan.key(&setting, Kind::is_physics)
+    plan.key(&setting, SweepKind::is_physics)
 }
 
 /// The limit of every physics with three meshes of one series: of the highest order, and of the
 /// first facet rule and solver that have them. As long as a higher order is still to be run, a
 /// lower one says nothing: coarse meshes of first order may settle far from the limit.
 fn references(
-    plan: &Plan,
-    records: &[Option<Record>],
+    plan: &StudyPlan,
+    records: &[Option<PointRecord>],
     done: &[Option<&Numbers>],
     target: &Target,
 ) -> Vec<Reference> {
-    let awaited = |series: &Series| {
+    let awaited = |series: &MeasuredSeries| {
         let own = &plan.settings[series.settings[0]];
         let same = |setting: &Setting| {
-            plan.key(setting, Kind::is_physics) == plan.key(own, Kind::is_physics)
+            plan.key(setting, SweepKind::is_physics) == plan.key(own, SweepKind::is_physics)
         };
         let mut all = plan.settings.iter().zip(records);
         all.any(|(setting, record)| {
@@ -264,7 +270,7 @@ fn references(
         let Some(limit) = limit(&sizes.collect::<Vec<_>>(), order) else {
             continue;
         };
-        let key = plan.key(setting, Kind::is_physics);
+        let key = plan.key(setting, SweepKind::is_physics);
         let cells = values
             .iter()
             .rev()
@@ -290,8 +296,11 @@ fn references(
 
 /// Two meshes of a series with as many cells and unknowns: the geometry does not heed what is
 /// swept.
-fn identical_meshes(plan: &Plan, done: &[Option<&Numbers>]) -> Option<String> {
-    let mesh = plan.dimensions.iter().position(|d| d.kind == Kind::Mesh)?;
+fn identical_meshes(plan: &StudyPlan, done: &[Option<&Numbers>]) -> Option<String> {
+    let mesh = plan
+        .dimensions
+        .iter()
+        .position(|d| d.kind == SweepKind::Mesh)?;
     let size = |i: usize| done[i].map(|numbers| (numbers.cells, numbers.unknowns));
     let label = |i: usize| plan.label(&plan.settings[i], mesh);
     series(plan, done).iter().find_map(|series| {
@@ -301,9 +310,9 @@ fn identical_meshes(plan: &Plan, done: &[Option<&Numbers>]) -> Option<String> {
     })
 }
 
-fn order(plan: &Plan, setting: &Setting) -> f64 {
+fn order(plan: &StudyPlan, setting: &Setting) -> f64 {
     let chosen = plan.dimensions.iter().zip(&setting.choices);
-    let mut orders = chosen.filter(|(dimension, _)| dimension.kind == Kind::Order);
+    let mut orders = chosen.filter(|(dimension, _)| dimension.kind == SweepKind::Order);
     let number = orders
         .next()
         .and_then(|(dimension, &choice)| dimension.choices[choice].number);
@@ -313,9 +322,9 @@ fn order(plan: &Plan, setting: &Setting) -> f64 {
 }
 
 /// All settings by series, in the order of the dimensions.
-fn series(plan: &Plan, done: &[Option<&Numbers>]) -> Vec<Series> {
-    let but_mesh = |kind: Kind| kind != Kind::Mesh;
-    let mut found: Vec<(Vec<usize>, Series)> = Vec::new();
+fn series(plan: &StudyPlan, done: &[Option<&Numbers>]) -> Vec<MeasuredSeries> {
+    let but_mesh = |kind: SweepKind| kind != SweepKind::Mesh;
+    let mut found: Vec<(Vec<usize>, MeasuredSeries)> = Vec::new();
     for (i, setting) in plan.settings.iter().enumerate() {
         let key = plan.key(setting, but_mesh);
         match found.iter_mut().find(|(other, _)| *other == key) {
@@ -323,12 +332,12 @@ fn series(plan: &Plan, done: &[Option<&Numbers>]) -> Vec<Series> {
             None => {
                 let name = or_the_scene(plan.name(setting, but_mesh));
                 let settings = vec![i];
-                found.push((key, Series { name, settings }));
+                found.push((key, MeasuredSeries { name, settings }));
             }
         }
     }
     found.sort_by(|a, b| a.0.cmp(&b.0));
-    let mut all: Vec<Series> = found.into_iter().map(|(_, series)| series).collect();
+    let mut all: Vec<MeasuredSeries> = found.into_iter().map(|(_, series)| series).collect();
     for series in &mut all {
         series
             .settings
@@ -341,8 +350,8 @@ impl Assessment {
     /// Points of a series that have an error, over some number of theirs.
     pub(super) fn points(
         &self,
-        series: &Series,
-        records: &[Option<Record>],
+        series: &MeasuredSeries,
+        records: &[Option<PointRecord>],
         x: impl Fn(&Numbers) -> f64,
     ) -> Vec<(f64, f64)> {
         let point = |&i: &usize| {

@@ -1,8 +1,8 @@
 //! The charts of a study.
 
 use super::Study;
-use super::assess::{Assessment, Series};
-use super::dimension::Kind;
+use super::assess::{Assessment, MeasuredSeries};
+use super::dimension::SweepKind;
 use super::point::Numbers;
 use super::reference::slope;
 use super::words::{or_the_scene, percent, unit};
@@ -14,7 +14,7 @@ const MOST_SERIES: usize = 10;
 const SMALLEST: f64 = 1e-16;
 
 /// A chart and the name of its file.
-pub(super) struct Named {
+pub(super) struct NamedChart {
     /// Without `.svg`.
     pub(super) file: String,
     /// The chart.
@@ -24,7 +24,7 @@ pub(super) struct Named {
 }
 
 /// All charts for which there is something to show.
-pub(super) fn charts(study: &Study, found: &Assessment) -> Vec<Named> {
+pub(super) fn charts(study: &Study, found: &Assessment) -> Vec<NamedChart> {
     let has_error = found.verdicts.iter().any(|verdict| verdict.error.is_some());
     let mut charts = Vec::new();
     if has_error {
@@ -44,7 +44,7 @@ pub(super) fn charts(study: &Study, found: &Assessment) -> Vec<Named> {
         ));
     }
     let dimensions = study.plan.dimensions.iter().enumerate();
-    let swept = dimensions.filter(|(_, d)| d.kind == Kind::Value && d.choices.len() > 1);
+    let swept = dimensions.filter(|(_, d)| d.kind == SweepKind::Value && d.choices.len() > 1);
     charts.extend(swept.filter_map(|(dimension, _)| over_value(study, found, dimension)));
     charts
 }
@@ -69,8 +69,8 @@ fn errors(
     found: &Assessment,
     (file, title): (&str, &str),
     x: &dyn Fn(&Numbers) -> f64,
-) -> Named {
-    let line = |series: &Series| {
+) -> NamedChart {
+    let line = |series: &MeasuredSeries| {
         let points = found.points(series, &study.records, x);
         // Times that fall from mesh to mesh are noise, and errors that do not shrink have no rate.
         let grows = points.is_sorted_by(|a, b| a.0 < b.0);
@@ -107,7 +107,7 @@ fn errors(
             Axis::logarithmic("relative error").from(floor),
         )
     };
-    Named {
+    NamedChart {
         file: file.into(),
         chart,
         left_out,
@@ -142,7 +142,7 @@ fn keep_best(lines: &mut Vec<Line>) -> Option<String> {
 }
 
 /// The measure over a value that is swept, or its error if the measure is no number.
-fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<Named> {
+fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<NamedChart> {
     let swept = &study.plan.dimensions[dimension];
     let is_number = found.verdicts.iter().any(|verdict| verdict.value.is_some());
     let of = |i: usize| match is_number {
@@ -169,7 +169,7 @@ fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<Nam
         axis(title, points().map(|point| point.1)),
     );
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    Some(Named {
+    Some(NamedChart {
         file: format!("over-{}", swept.name.chars().map(plain).collect::<String>()),
         chart: Chart { series, ..chart },
         left_out,

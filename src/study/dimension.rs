@@ -4,7 +4,7 @@ use super::edits::Edit;
 
 /// What a dimension changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum SweepKind {
     /// Parameters of the mesh.
     Mesh,
     /// Order of the elements.
@@ -19,7 +19,7 @@ pub(super) enum Kind {
     Solver,
 }
 
-impl Kind {
+impl SweepKind {
     /// Whether the solution that finer and finer meshes approach depends on it.
     pub(super) fn is_physics(self) -> bool {
         matches!(self, Self::Closure | Self::Value)
@@ -41,11 +41,11 @@ pub(super) struct Choice {
 
 /// A dimension of the sweep.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Dimension {
+pub(super) struct SweepDimension {
     /// Its name, also that of its column.
     pub(super) name: String,
     /// What it changes.
-    pub(super) kind: Kind,
+    pub(super) kind: SweepKind,
     /// Its choices, at least one.
     pub(super) choices: Vec<Choice>,
 }

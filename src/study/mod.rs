@@ -29,8 +29,8 @@ use assess::{Assessment, assess};
 use kluft_run::fingerprint_of;
 use kluft_scene::Scene;
 use machine::Machine;
-use point::{Outcome, Record, Runner};
-use settings::Plan;
+use point::{PointOutcome, PointRecord, Runner};
+use settings::StudyPlan;
 use words::{duration, or_the_scene, percent};
 
 /// How to study a scene.
@@ -51,12 +51,12 @@ struct Study {
     /// The scene as it is written.
     text: String,
     title: String,
-    plan: Plan,
+    plan: StudyPlan,
     runner: Runner,
     /// Folder of each setting.
     folders: Vec<String>,
     /// What came out of each setting; none before it is run.
-    records: Vec<Option<Record>>,
+    records: Vec<Option<PointRecord>>,
     machine: Machine,
     out: PathBuf,
 }
@@ -79,7 +79,11 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
     }
     report.entry("open", &study.out.join("study.html").display().to_string());
     if answer::has_no_result(&study.records) {
-        let why = study.records.iter().flatten().find_map(Record::failure);
+        let why = study
+            .records
+            .iter()
+            .flatten()
+            .find_map(PointRecord::failure);
         let why = why.unwrap_or_default();
         return Err(Failure::NotReached(format!(
             "no setting was solved; the first: {why}"
@@ -102,7 +106,7 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
 impl Study {
     fn begin(scene_file: &Path, options: &StudyOptions) -> Result<Self, Failure> {
         let text = Scene::text(scene_file)?;
-        let plan = Plan::read(scene_file, &text)?;
+        let plan = StudyPlan::read(scene_file, &text)?;
         let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
         let out = options.out.clone().unwrap_or_else(beside);
         let out = std::path::absolute(&out).unwrap_or(out);
@@ -173,8 +177,8 @@ impl Study {
             return;
         };
         let text = match &record.outcome {
-            Outcome::Failed(why) => format!("failed: {}", why.replace('\n', "\n           ")),
-            Outcome::Solved(numbers) => {
+            PointOutcome::Failed(why) => format!("failed: {}", why.replace('\n', "\n           ")),
+            PointOutcome::Solved(numbers) => {
                 let error = found.verdicts[index].error;
                 // A reference that is extrapolated moves with each mesh.
                 let so_far = if found.references.is_empty() {
@@ -209,7 +213,7 @@ impl Study {
     /// Wall-clock time of a setting (s); infinite if it was not solved.
     fn seconds(&self, index: usize) -> f64 {
         let record = self.records[index].as_ref();
-        let numbers = record.and_then(Record::numbers);
+        let numbers = record.and_then(PointRecord::numbers);
         numbers.map_or(f64::INFINITY, |numbers| numbers.seconds)
     }
 
@@ -232,7 +236,7 @@ impl Study {
     /// Writes table, charts and page.
     fn write(&self, found: &Assessment) -> Result<(), Failure> {
         let charts = charts::charts(self, found);
-        let drawn: Vec<(&charts::Named, String)> = charts
+        let drawn: Vec<(&charts::NamedChart, String)> = charts
             .iter()
             .map(|named| (named, named.chart.svg()))
             .collect();
@@ -249,7 +253,7 @@ impl Study {
 }
 
 /// The folder of each setting, and its record if a former study has run it.
-fn claim(plan: &Plan, runner: &Runner) -> (Vec<String>, Vec<Option<Record>>) {
+fn claim(plan: &StudyPlan, runner: &Runner) -> (Vec<String>, Vec<Option<PointRecord>>) {
     let mut former = runner.former();
     let find = |setting: &settings::Setting| {
         let wanted = runner.fingerprint(&plan.scene_of(setting));
@@ -258,7 +262,7 @@ fn claim(plan: &Plan, runner: &Runner) -> (Vec<String>, Vec<Option<Record>>) {
             .position(|(_, record)| record.fingerprint == wanted)?;
         Some(former.remove(at))
     };
-    let found: Vec<Option<(String, Record)>> = plan.settings.iter().map(find).collect();
+    let found: Vec<Option<(String, PointRecord)>> = plan.settings.iter().map(find).collect();
     let taken: Vec<String> = found
         .iter()
         .flatten()
@@ -295,7 +299,7 @@ fn summary(study: &Study, found: &Assessment) -> Vec<String> {
         .records
         .iter()
         .flatten()
-        .filter_map(Record::failure)
+        .filter_map(PointRecord::failure)
         .count();
     if failed > 0 {
         lines.push(format!(

@@ -3,15 +3,15 @@
 use std::fmt::Write;
 
 use super::assess::Assessment;
-use super::charts::{Named, subject};
-use super::point::{Numbers, Record};
+use super::charts::{NamedChart, subject};
+use super::point::{Numbers, PointRecord};
 use super::words::{duration, memory, percent};
 use super::{Study, answer};
 
 const STYLE: &str = include_str!("page.css");
 
 /// The page; each chart comes with its SVG.
-pub(super) fn page(study: &Study, found: &Assessment, charts: &[(&Named, String)]) -> String {
+pub(super) fn page(study: &Study, found: &Assessment, charts: &[(&NamedChart, String)]) -> String {
     let title = escaped(&study.title);
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -133,7 +133,7 @@ fn numbers(study: &Study, found: &Assessment) -> String {
         let is_best = front.contains(&i);
         let class = if is_best { " class=\"best\"" } else { "" };
         let record = study.records[i].as_ref();
-        let cells = match (record.and_then(Record::numbers), record) {
+        let cells = match (record.and_then(PointRecord::numbers), record) {
             (Some(numbers), _) => cells(numbers, found, i),
             (None, Some(_)) => no_cells("failed", fixed.len()),
             (None, None) => no_cells("not run", fixed.len()),

@@ -21,18 +21,18 @@ const LINES: usize = 6;
 
 /// A setting that has been run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Record {
+pub(super) struct PointRecord {
     /// Of everything that the run depends on.
     pub(super) fingerprint: String,
     /// What came out of it.
     #[serde(flatten)]
-    pub(super) outcome: Outcome,
+    pub(super) outcome: PointOutcome,
 }
 
 /// What came out of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Outcome {
+pub(super) enum PointOutcome {
     /// It solved the scene.
     Solved(Box<Numbers>),
     /// It did not, and why.
@@ -64,20 +64,20 @@ pub(super) struct Numbers {
     pub(super) measures: Vec<Measure>,
 }
 
-impl Record {
+impl PointRecord {
     /// The numbers, if the run solved the scene.
     pub(super) fn numbers(&self) -> Option<&Numbers> {
         match &self.outcome {
-            Outcome::Solved(numbers) => Some(numbers),
-            Outcome::Failed(_) => None,
+            PointOutcome::Solved(numbers) => Some(numbers),
+            PointOutcome::Failed(_) => None,
         }
     }
 
     /// Why the run failed, if it did.
     pub(super) fn failure(&self) -> Option<&str> {
         match &self.outcome {
-            Outcome::Solved(_) => None,
-            Outcome::Failed(why) => Some(why),
+            PointOutcome::Solved(_) => None,
+            PointOutcome::Failed(why) => Some(why),
         }
     }
 }
@@ -109,7 +109,7 @@ impl Runner {
     }
 
     /// The records of former studies in the folder, each with the name of its own.
-    pub(super) fn former(&self) -> Vec<(String, Record)> {
+    pub(super) fn former(&self) -> Vec<(String, PointRecord)> {
         let folders = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let read = |folder: fs::DirEntry| {
             let text = fs::read(folder.path().join(RECORD)).ok()?;
@@ -117,7 +117,7 @@ impl Runner {
             // A damaged record is none: the point is run again.
             Some((name, serde_json::from_slice(&text).ok()?))
         };
-        let mut records: Vec<(String, Record)> = folders.filter_map(read).collect();
+        let mut records: Vec<(String, PointRecord)> = folders.filter_map(read).collect();
         records.sort_by(|a, b| a.0.cmp(&b.0));
         records
     }
@@ -127,7 +127,7 @@ impl Runner {
     ///
     /// # Errors
     /// If files cannot be written or the program cannot be started; a run that fails is a result.
-    pub(super) fn run(&self, name: &str, scene: &Table) -> Result<Record, Defect> {
+    pub(super) fn run(&self, name: &str, scene: &Table) -> Result<PointRecord, Defect> {
         let folder = self.folder.join(name);
         let unwritable = |error: std::io::Error| {
             let problem = format!("cannot be written: {error}");
@@ -148,7 +148,7 @@ impl Runner {
         let begin = Instant::now();
         let output = self.start(&scene_file, &folder.join("out"))?;
         let seconds = begin.elapsed().as_secs_f64();
-        let record = Record {
+        let record = PointRecord {
             fingerprint: self.fingerprint(scene),
             outcome: outcome(&output, &folder.join("out/summary.json"), seconds),
         };
@@ -193,15 +193,15 @@ impl Runner {
     }
 }
 
-fn outcome(output: &Output, summary: &Path, seconds: f64) -> Outcome {
+fn outcome(output: &Output, summary: &Path, seconds: f64) -> PointOutcome {
     if !output.status.success() {
-        return Outcome::Failed(reason(output));
+        return PointOutcome::Failed(reason(output));
     }
     let read = fs::read(summary).map_err(|error| error.to_string());
     let read = read.and_then(|text| numbers(&text, seconds).map_err(|error| error.to_string()));
     match read {
-        Ok(numbers) => Outcome::Solved(Box::new(numbers)),
-        Err(error) => Outcome::Failed(format!("summary.json: {error}")),
+        Ok(numbers) => PointOutcome::Solved(Box::new(numbers)),
+        Err(error) => PointOutcome::Failed(format!("summary.json: {error}")),
     }
 }
 
@@ -220,42 +220,42 @@ fn reason(output: &Output) -> String {
 }
 
 #[derive(Deserialize)]
-struct Summary {
-    mesh: Mesh,
-    unknowns: Unknowns,
+struct SummaryNumbers {
+    mesh: MeshNumbers,
+    unknowns: UnknownNumbers,
     fractures: serde_json::Map<String, serde_json::Value>,
     #[serde(default)]
     measures: Vec<Measure>,
-    steps: Vec<Step>,
-    seconds: Seconds,
+    steps: Vec<StepNumbers>,
+    seconds: SecondsNumbers,
     peak_memory_bytes: u64,
 }
 
 #[derive(Deserialize)]
-struct Mesh {
+struct MeshNumbers {
     cells: usize,
 }
 
 #[derive(Deserialize)]
-struct Unknowns {
+struct UnknownNumbers {
     total: usize,
     jump: usize,
 }
 
 #[derive(Deserialize)]
-struct Step {
+struct StepNumbers {
     newton_iterations: usize,
     linear_iterations: usize,
 }
 
 #[derive(Deserialize)]
-struct Seconds {
+struct SecondsNumbers {
     mesh: f64,
 }
 
 /// The numbers in a `summary.json`.
 pub(super) fn numbers(text: &[u8], seconds: f64) -> serde_json::Result<Numbers> {
-    let summary: Summary = serde_json::from_slice(text)?;
+    let summary: SummaryNumbers = serde_json::from_slice(text)?;
     let area = |fracture: &serde_json::Value| fracture["area"].as_f64().unwrap_or(0.0);
     let fractures = summary.fractures.iter();
     let largest = fractures.max_by(|a, b| area(a.1).total_cmp(&area(b.1)));
@@ -326,10 +326,10 @@ mod tests {
     fn records_come_back_as_they_were() {
         let solved = numbers(SUMMARY.as_bytes(), 2.5).expect("a summary");
         for outcome in [
-            Outcome::Solved(Box::new(solved)),
-            Outcome::Failed("why".into()),
+            PointOutcome::Solved(Box::new(solved)),
+            PointOutcome::Failed("why".into()),
         ] {
-            let record = Record {
+            let record = PointRecord {
                 fingerprint: "f".into(),
                 outcome,
             };

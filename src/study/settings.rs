@@ -6,7 +6,7 @@ use kluft_keys::Document;
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
-use super::dimension::{Dimension, Kind};
+use super::dimension::{SweepDimension, SweepKind};
 use super::edits::Edit;
 use super::sweep;
 use kluft_scene::Scene;
@@ -41,18 +41,18 @@ pub(super) struct StudyRequest {
 
 /// A study as the scene describes it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Plan {
+pub(super) struct StudyPlan {
     /// The scene without `[study]`, its paths absolute.
     pub(super) scene: Table,
     /// What is swept.
-    pub(super) dimensions: Vec<Dimension>,
+    pub(super) dimensions: Vec<SweepDimension>,
     /// The product, cheapest first.
     pub(super) settings: Vec<Setting>,
     /// What is charted.
     pub(super) request: StudyRequest,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Reads the study of a scene.
     ///
     /// # Errors
@@ -119,7 +119,7 @@ impl Plan {
     }
 
     /// The labels of a setting in dimensions of some kinds; dimensions with one choice say nothing.
-    pub(super) fn name(&self, setting: &Setting, kinds: impl Fn(Kind) -> bool) -> String {
+    pub(super) fn name(&self, setting: &Setting, kinds: impl Fn(SweepKind) -> bool) -> String {
         let told = self.dimensions.iter().enumerate();
         let told =
             told.filter(|(_, dimension)| dimension.choices.len() > 1 && kinds(dimension.kind));
@@ -129,7 +129,7 @@ impl Plan {
 
     /// The choices of a setting in dimensions of some kinds: equal for settings that differ in
     /// others only.
-    pub(super) fn key(&self, setting: &Setting, kinds: impl Fn(Kind) -> bool) -> Vec<usize> {
+    pub(super) fn key(&self, setting: &Setting, kinds: impl Fn(SweepKind) -> bool) -> Vec<usize> {
         let chosen = self.dimensions.iter().zip(&setting.choices);
         let chosen = chosen.filter(|(dimension, _)| kinds(dimension.kind));
         chosen.map(|(_, &choice)| choice).collect()
@@ -140,7 +140,7 @@ fn read_study(
     section: Section<'_, '_>,
     asked: &Table,
     scene: &Table,
-) -> (Vec<Dimension>, StudyRequest) {
+) -> (Vec<SweepDimension>, StudyRequest) {
     let dimensions = sweep::read(&section, asked, scene);
     let text = |key| section.text(key).map(str::to_owned);
     let request = StudyRequest {
@@ -149,7 +149,7 @@ fn read_study(
         reference: text("reference"),
         place: section.place(),
     };
-    let closures = dimensions.iter().filter(|d| d.kind == Kind::Closure);
+    let closures = dimensions.iter().filter(|d| d.kind == SweepKind::Closure);
     let labels: Vec<&str> = closures
         .flat_map(|dimension| &dimension.choices)
         .map(|choice| choice.label.as_str())
@@ -181,7 +181,7 @@ fn make_paths_absolute(scene: &mut Table, folder: &Path) {
 }
 
 /// Defects of the choices under which no setting is a scene, so that a slip costs no run.
-fn defects_of(plan: &Plan, name: &str) -> Vec<Defect> {
+fn defects_of(plan: &StudyPlan, name: &str) -> Vec<Defect> {
     let parse = |setting: &Setting| {
         let place = format!("{name}, [study] {}", plan.name(setting, |_| true));
         let text = plan.scene_of(setting).to_string();
@@ -212,7 +212,7 @@ fn defects_of(plan: &Plan, name: &str) -> Vec<Defect> {
 }
 
 /// All combinations, cheapest first; numbered in the order of the dimensions.
-fn product(dimensions: &[Dimension]) -> Vec<Setting> {
+fn product(dimensions: &[SweepDimension]) -> Vec<Setting> {
     let mut all: Vec<Vec<usize>> = vec![Vec::new()];
     for dimension in dimensions {
         let count = dimension.choices.len();

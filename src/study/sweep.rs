@@ -5,7 +5,7 @@ use kluft_keys::scene::{CLOSURES, FRACTURE};
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
-use super::dimension::{Choice, Dimension, Kind};
+use super::dimension::{Choice, SweepDimension, SweepKind};
 use super::edits::Edit;
 use super::words::digits;
 use kluft_scene::reader::{Entry, Section};
@@ -15,15 +15,19 @@ use kluft_scene::refused_keys;
 const SIZES: [f64; 3] = [2.0, 1.4, 1.0];
 
 /// Reads what `[study]` sweeps; `asked` is the same table as values.
-pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Dimension> {
+pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<SweepDimension> {
     let mut dimensions = vec![
-        ("mesh", Kind::Mesh, meshes(section, scene)),
-        ("order", Kind::Order, orders(section, scene)),
-        ("closure", Kind::Closure, closures(section, asked, scene)),
+        ("mesh", SweepKind::Mesh, meshes(section, scene)),
+        ("order", SweepKind::Order, orders(section, scene)),
+        (
+            "closure",
+            SweepKind::Closure,
+            closures(section, asked, scene),
+        ),
     ];
     let swept = values_of(section, scene);
     for (name, choices) in &swept {
-        dimensions.push((name, Kind::Value, choices.clone()));
+        dimensions.push((name, SweepKind::Value, choices.clone()));
     }
     let named = |key, path: &[&str]| {
         let names = section.choices(key).unwrap_or_default();
@@ -32,8 +36,8 @@ pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> V
     };
     let facets = named("facets", &["solver", "facets"]);
     let solvers = named("solvers", &["solver", "linear"]);
-    dimensions.push(("facets", Kind::Facets, facets));
-    dimensions.push(("solver", Kind::Solver, solvers));
+    dimensions.push(("facets", SweepKind::Facets, facets));
+    dimensions.push(("solver", SweepKind::Solver, solvers));
     for key in ["meshes", "orders", "closures", "facets", "solvers"] {
         let is_empty = asked
             .get(key)
@@ -44,7 +48,7 @@ pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> V
             section.refuse(key, format!("`{key}` in [study] is empty"), remedy);
         }
     }
-    let dimension = |(name, kind, choices): (&str, Kind, Vec<Choice>)| Dimension {
+    let dimension = |(name, kind, choices): (&str, SweepKind, Vec<Choice>)| SweepDimension {
         name: name.to_owned(),
         kind,
         choices: match choices.is_empty() {
@@ -59,7 +63,7 @@ pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> V
 ///
 /// # Errors
 /// If the scene has no cell size that could be swept.
-pub(super) fn by_default(scene: &Table, name: &str) -> Result<Vec<Dimension>, Vec<Defect>> {
+pub(super) fn by_default(scene: &Table, name: &str) -> Result<Vec<SweepDimension>, Vec<Defect>> {
     let sizes = own_sizes(scene);
     if sizes.is_empty() {
         let problem = "there is no [study], and [mesh] parameters have no cell size `h` to sweep";
@@ -73,14 +77,14 @@ pub(super) fn by_default(scene: &Table, name: &str) -> Result<Vec<Dimension>, Ve
     let meshes = SIZES.map(scaled);
     let choices = meshes.iter().map(|mesh| mesh_choice(mesh, &meshes, scene));
     Ok(vec![
-        Dimension {
+        SweepDimension {
             name: "mesh".into(),
-            kind: Kind::Mesh,
+            kind: SweepKind::Mesh,
             choices: choices.collect(),
         },
-        Dimension {
+        SweepDimension {
             name: "order".into(),
-            kind: Kind::Order,
+            kind: SweepKind::Order,
             choices: [1, 2].into_iter().map(order_choice).collect(),
         },
     ])
@@ -301,12 +305,16 @@ fn quantity_of(name: &str) -> Quantity {
 }
 
 /// What the scene itself has in a dimension.
-fn own(kind: Kind, scene: &Table) -> &'static str {
+fn own(kind: SweepKind, scene: &Table) -> &'static str {
     let order = scene.get("mesh").and_then(|mesh| mesh.get("order"));
     match kind {
-        Kind::Order if order.and_then(Value::as_integer) == Some(2) => "order 2",
-        Kind::Order => "order 1",
-        Kind::Mesh | Kind::Closure | Kind::Value | Kind::Facets | Kind::Solver => "as in the scene",
+        SweepKind::Order if order.and_then(Value::as_integer) == Some(2) => "order 2",
+        SweepKind::Order => "order 1",
+        SweepKind::Mesh
+        | SweepKind::Closure
+        | SweepKind::Value
+        | SweepKind::Facets
+        | SweepKind::Solver => "as in the scene",
     }
 }
 

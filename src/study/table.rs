@@ -7,7 +7,7 @@ use kluft_mesh::Defect;
 
 use super::Study;
 use super::assess::Assessment;
-use super::point::{Numbers, Outcome, Record};
+use super::point::{Numbers, PointOutcome, PointRecord};
 
 /// Writes the table.
 ///
@@ -54,7 +54,7 @@ fn row(
     let labels = (0..setting.choices.len()).map(|i| study.plan.label(setting, i).to_owned());
     row.extend(labels);
     let record = study.records[index].as_ref();
-    let numbers = record.and_then(Record::numbers);
+    let numbers = record.and_then(PointRecord::numbers);
     row.extend(numbers.map_or_else(|| vec![String::new(); 8], counts));
     let verdict = found.verdicts[index];
     let text =
@@ -72,8 +72,8 @@ fn row(
     row.extend(judged.map(text));
     row.push(if is_front { "yes" } else { "" }.into());
     row.push(match record.map(|record| &record.outcome) {
-        Some(Outcome::Failed(why)) => why.clone(),
-        Some(Outcome::Solved(_)) => String::new(),
+        Some(PointOutcome::Failed(why)) => why.clone(),
+        Some(PointOutcome::Solved(_)) => String::new(),
         None => "not run".into(),
     });
     for name in measures {
@@ -108,9 +108,9 @@ fn name_of(measure: &kluft_run::Measure) -> String {
 }
 
 /// The names of all measures of all runs, in their order.
-fn measures(records: &[Option<Record>]) -> Vec<String> {
+fn measures(records: &[Option<PointRecord>]) -> Vec<String> {
     let mut names = Vec::new();
-    let solved = records.iter().flatten().filter_map(Record::numbers);
+    let solved = records.iter().flatten().filter_map(PointRecord::numbers);
     for measure in solved.flat_map(|numbers| &numbers.measures) {
         let name = name_of(measure);
         if !names.contains(&name) {

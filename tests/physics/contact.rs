@@ -3,7 +3,7 @@
 use glam::DVec3;
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
-    Discretisation, Fracture, NewtonSettings, Outcome, Problem, Solution, StepRecord, Support,
+    Discretisation, Fracture, NewtonSettings, Problem, Solution, StepOutcome, StepRecord, Support,
 };
 use lie_core::{Closure, FractureLaw, Tension};
 
@@ -191,7 +191,7 @@ fn a_block_that_is_pulled_off_is_named() {
         let mut problem = stack(closure);
         scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, 1e6));
         let (record, _) = walk(&problem, &[1.0]).remove(0);
-        assert_eq!(record.outcome, Outcome::RigidBodyMotion);
+        assert_eq!(record.outcome, StepOutcome::RigidBodyMotion);
         let block = &record.rigid_motions[0];
         assert!(block.problem.contains("translation along z"), "{block}");
         assert!(block.remedy.contains("`joints`"), "{block}");

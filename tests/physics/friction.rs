@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use kluft_solver::{
-    Discretisation, FacetState, Fracture, NewtonSettings, Outcome, Problem, Support,
+    Discretisation, FacetState, Fracture, NewtonSettings, Problem, StepOutcome, Support,
 };
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
 
@@ -71,7 +71,7 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
             }
             let above = column(fracture, 1.001 * jaeger);
             let (record, ..) = scenes::try_solve(&above, NewtonSettings::default());
-            assert_eq!(record.outcome, Outcome::RigidBodyMotion);
+            assert_eq!(record.outcome, StepOutcome::RigidBodyMotion);
             assert!(
                 (0.96..1.0).contains(&record.completed),
                 "{}",

@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use kluft_solver::{
-    Discretisation, Load, Newton, NewtonSettings, Outcome, Problem, StepRecord, Support, System,
-    unobserved,
+    Discretisation, Load, Newton, NewtonSettings, Problem, StepOutcome, StepRecord, Support,
+    System, unobserved,
 };
 use lie_core::ClosureKind;
 
@@ -139,7 +139,7 @@ fn a_stopped_step_leaves_the_last_state() {
     });
     assert_eq!(
         (record.outcome, record.iterations.len()),
-        (Outcome::Stopped, 2)
+        (StepOutcome::Stopped, 2)
     );
     assert!(state.unknowns.iter().all(|unknown| *unknown == DVec3::ZERO));
     let whole = newton.solve_step(&system, &mut state, &load, unobserved);

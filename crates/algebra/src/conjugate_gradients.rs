@@ -51,7 +51,7 @@ impl ConjugateGradientReport {
 }
 
 /// Vectors and partial sums.
-struct State {
+struct Iterates {
     residual: Vec<DVec3>,
     preconditioned: Vec<DVec3>,
     direction: Vec<DVec3>,
@@ -77,7 +77,7 @@ pub fn conjugate_gradients(
     settings: ConjugateGradientSettings,
 ) -> ConjugateGradientReport {
     assert_eq!(rhs.len(), solution.len(), "one entry a row");
-    let mut state = State::new(rhs.len());
+    let mut state = Iterates::new(rhs.len());
     let scale = state.length(rhs);
     if scale == 0.0 {
         solution.fill(DVec3::ZERO);
@@ -127,7 +127,7 @@ pub fn conjugate_gradients(
     ConjugateGradientReport::of(outcome, residuals)
 }
 
-impl State {
+impl Iterates {
     fn new(length: usize) -> Self {
         // Pages that all threads map where they use them.
         Self {

@@ -11,7 +11,7 @@ use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle};
 
 use super::axis::Spanned;
 use super::names::apart;
-use super::notes::{Box, along, beside};
+use super::notes::{Bounds, along, beside};
 use super::style::{COLOURS, INK, UNIT, marker};
 use super::{Chart, Rate, Scale, Series};
 
@@ -341,12 +341,12 @@ impl Sheet<'_, '_> {
             let places = places(series);
             let markers = places
                 .iter()
-                .map(|&at| Box::around(at, (14 * UNIT, 14 * UNIT)));
+                .map(|&at| Bounds::around(at, (14 * UNIT, 14 * UNIT)));
             taken.extend(markers);
             taken.extend(along(&places, 4 * UNIT));
         }
         let low = (ROOM.0 * UNIT, ROOM.1 * UNIT);
-        let area = Box([low.0, low.1, low.0 + SIZE.0 * UNIT, low.1 + SIZE.1 * UNIT]);
+        let area = Bounds([low.0, low.1, low.0 + SIZE.0 * UNIT, low.1 + SIZE.1 * UNIT]);
         for (number, series) in all.enumerate() {
             let Some(note) = &series.note else {
                 continue;
@@ -354,7 +354,7 @@ impl Sheet<'_, '_> {
             let width = (0.6 * TEXT * note.chars().count() as f64) as i32;
             let size = (width * UNIT, (1.1 * TEXT) as i32 * UNIT);
             if let Some(at) = beside(&places(series), size, area, &taken) {
-                taken.push(Box::around(at, size));
+                taken.push(Bounds::around(at, size));
                 let colour = COLOURS[number % COLOURS.len()];
                 let style = text_style(0.9 * TEXT).pos(Pos::new(HPos::Center, VPos::Center));
                 self.text(note, at, style.color(&colour))?;

@@ -5,9 +5,9 @@ type Place = (i32, i32);
 
 /// A rectangle: left, top, right, bottom (units).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Box(pub(super) [i32; 4]);
+pub(super) struct Bounds(pub(super) [i32; 4]);
 
-impl Box {
+impl Bounds {
     /// Of a width and a height around a place.
     pub(super) fn around((x, y): Place, (width, height): Place) -> Self {
         Self([x - width / 2, y - height / 2, x + width / 2, y + height / 2])
@@ -25,19 +25,19 @@ impl Box {
 }
 
 /// Boxes that cover a line, each as long as `step`.
-pub(super) fn along(line: &[Place], step: i32) -> Vec<Box> {
+pub(super) fn along(line: &[Place], step: i32) -> Vec<Bounds> {
     let piece = |pair: &[Place]| {
         let ((x, y), (u, v)) = (pair[0], pair[1]);
         let count = ((u - x).abs().max((v - y).abs()) / step).max(1);
         let at = move |i: i32| (x + (u - x) * i / count, y + (v - y) * i / count);
-        (0..=count).map(move |i| Box::around(at(i), (step, step)))
+        (0..=count).map(move |i| Bounds::around(at(i), (step, step)))
     };
     line.windows(2).flat_map(piece).collect()
 }
 
 /// The middle of a note of some size beside a line, inside `area` and on none of `taken`; the last
 /// pieces of the line come first.
-pub(super) fn beside(line: &[Place], size: Place, area: Box, taken: &[Box]) -> Option<Place> {
+pub(super) fn beside(line: &[Place], size: Place, area: Bounds, taken: &[Bounds]) -> Option<Place> {
     let middle = |pair: &[Place]| ((pair[0].0 + pair[1].0) / 2, (pair[0].1 + pair[1].1) / 2);
     let pieces = line.windows(2).rev().map(middle);
     let candidates = pieces.flat_map(|(x, y)| {
@@ -57,7 +57,7 @@ pub(super) fn beside(line: &[Place], size: Place, area: Box, taken: &[Box]) -> O
         })
     });
     let fits = |&place: &Place| {
-        let own = Box::around(place, size);
+        let own = Bounds::around(place, size);
         own.within(area) && !taken.iter().any(|&other| own.overlaps(other))
     };
     candidates.into_iter().find(fits)
@@ -69,17 +69,17 @@ mod tests {
 
     #[test]
     fn notes_keep_clear_of_lines_and_of_each_other() {
-        let area = Box([0, 0, 1000, 1000]);
+        let area = Bounds([0, 0, 1000, 1000]);
         let lines = [
             [(100, 100), (500, 500)],
             [(100, 140), (500, 540)],
             [(100, 500), (500, 100)],
         ];
-        let mut taken: Vec<Box> = lines.iter().flat_map(|line| along(line, 10)).collect();
+        let mut taken: Vec<Bounds> = lines.iter().flat_map(|line| along(line, 10)).collect();
         for line in &lines {
             let size = (80, 30);
             let place = beside(line, size, area, &taken).expect("a place");
-            let own = Box::around(place, size);
+            let own = Bounds::around(place, size);
             assert!(taken.iter().all(|&other| !own.overlaps(other)));
             taken.push(own);
         }
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_full_sheet_has_no_place() {
-        let area = Box([0, 0, 100, 100]);
+        let area = Bounds([0, 0, 100, 100]);
         assert_eq!(beside(&[(0, 0), (100, 100)], (20, 20), area, &[area]), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::network;
 use crate::scene;
-use crate::table::Section;
+use crate::table::KeySection;
 
 /// A document that a user writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl Document {
     }
 
     /// Its outermost table.
-    pub fn root(self) -> &'static Section {
+    pub fn root(self) -> &'static KeySection {
         match self {
             Self::Scene => &scene::ROOT,
             Self::Network => &network::ROOT,
@@ -52,14 +52,14 @@ impl Document {
     }
 
     /// All its sections, each once, outer ones before those in them.
-    pub fn sections(self) -> Vec<&'static Section> {
+    pub fn sections(self) -> Vec<&'static KeySection> {
         let mut found = Vec::new();
         gather(self.root(), &mut found);
         found
     }
 }
 
-fn gather(section: &'static Section, found: &mut Vec<&'static Section>) {
+fn gather(section: &'static KeySection, found: &mut Vec<&'static KeySection>) {
     if found.iter().any(|known| std::ptr::eq(*known, section)) {
         return;
     }

@@ -5,11 +5,11 @@ use std::fmt::Write;
 use crate::document::Document;
 use crate::names::some_near;
 use crate::page::{holds, need};
-use crate::table::{Key, Section};
+use crate::table::{Key, KeySection};
 
 /// A section, and the documents that have it.
-struct Place {
-    section: &'static Section,
+struct KeyPlace {
+    section: &'static KeySection,
     documents: Vec<&'static str>,
     /// Its path without brackets and names: `rock`, `load.phase`.
     path: String,
@@ -53,8 +53,8 @@ pub fn overview() -> String {
     out + "\n`kluft explain KEY` or SECTION.KEY says what a key means.\n"
 }
 
-fn places() -> Vec<Place> {
-    let mut places: Vec<Place> = Vec::new();
+fn places() -> Vec<KeyPlace> {
+    let mut places: Vec<KeyPlace> = Vec::new();
     for document in Document::ALL {
         for section in document.sections() {
             let known = places
@@ -62,7 +62,7 @@ fn places() -> Vec<Place> {
                 .find(|place| std::ptr::eq(place.section, section));
             match known {
                 Some(place) => place.documents.push(document.name()),
-                None => places.push(Place {
+                None => places.push(KeyPlace {
                     section,
                     documents: vec![document.name()],
                     path: path_of(section.pattern),
@@ -96,7 +96,7 @@ fn is_of_a_name(section: &str, key: &str, wanted: &str) -> bool {
 }
 
 /// Name of a section, the documents that have it, and its sentence.
-fn head(place: &Place) -> String {
+fn head(place: &KeyPlace) -> String {
     let pattern = match place.section.pattern {
         "" => "top",
         pattern => pattern,
@@ -105,7 +105,7 @@ fn head(place: &Place) -> String {
     format!("{pattern}  ({documents})  {}", place.section.says)
 }
 
-fn of_section(place: &Place) -> String {
+fn of_section(place: &KeyPlace) -> String {
     let mut out = head(place) + "\n";
     let keys: Vec<&Key> = place.section.all_keys().collect();
     let width = keys.iter().map(|key| key.name.len()).max().unwrap_or(0);
@@ -115,7 +115,7 @@ fn of_section(place: &Place) -> String {
     out
 }
 
-fn of_key(place: &Place, key: &Key) -> String {
+fn of_key(place: &KeyPlace, key: &Key) -> String {
     let mut out = String::new();
     let mut line = |name: &str, text: &str| {
         if !text.is_empty() {

@@ -1,7 +1,7 @@
 //! The one table of keys: every key of a scene, a network description, a list of fractures and a
 //! study.
 //!
-//! A [`Document`] is a tree of [`Section`]s of [`Key`]s. From it come what the reader checks and
+//! A [`Document`] is a tree of [`KeySection`]s of [`Key`]s. From it come what the reader checks and
 //! suggests, the units in which quantities may be written ([`Dimension`], [`read_quantity`]), the
 //! JSON Schema for editors ([`schema`]), what `kluft explain` says ([`explain`], [`overview`]) and
 //! the reference pages ([`page`]).
@@ -27,5 +27,5 @@ pub use page::page;
 pub use plausible::Plausible;
 pub use range::Range;
 pub use schema::schema;
-pub use table::{Key, Kind, Need, Quantity, Section};
+pub use table::{Key, KeySection, Kind, Need, Quantity};
 pub use units::{Unreadable, read_quantity};

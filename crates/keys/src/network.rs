@@ -11,10 +11,10 @@ pub use set::{FRACTURE_SET, ORIENTATION, SIZE};
 use crate::dimension::Dimension;
 use crate::range::Range;
 use crate::scene;
-use crate::table::{Key, Kind, Need, Section, number, quantity};
+use crate::table::{Key, KeySection, Kind, Need, number, quantity};
 
 /// The top of a description.
-pub static ROOT: Section = Section {
+pub static ROOT: KeySection = KeySection {
     pattern: "",
     says: "The top of a description; sections of a scene go into the scene that is made",
     keys: &[
@@ -77,7 +77,7 @@ pub(crate) const SEED: Key = Key {
 };
 
 /// The box of rock.
-pub static DOMAIN: Section = Section {
+pub static DOMAIN: KeySection = KeySection {
     pattern: "[domain]",
     says: "The box of rock; x is east, y is north, z is up",
     keys: &[
@@ -100,7 +100,7 @@ pub static DOMAIN: Section = Section {
 };
 
 /// Cell sizes, and what is too small for them.
-pub static MESH: Section = Section {
+pub static MESH: KeySection = KeySection {
     pattern: "[mesh]",
     says: "Cell sizes, and what is too small for them",
     keys: &[

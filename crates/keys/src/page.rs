@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::document::Document;
-use crate::table::{Key, Kind, Need, Section};
+use crate::table::{Key, KeySection, Kind, Need};
 
 /// The reference page of a document, in Markdown.
 pub fn page(document: Document) -> String {
@@ -85,7 +85,7 @@ This page is made from the table of keys in `crates/keys`."
     }
 }
 
-fn write_section(out: &mut String, section: &'static Section, document: Document) {
+fn write_section(out: &mut String, section: &'static KeySection, document: Document) {
     let head = match section.pattern {
         "" => "Top of the file".to_owned(),
         pattern if pattern.starts_with('[') => format!("`{pattern}`"),
@@ -150,7 +150,7 @@ pub(crate) fn holds(kind: &Kind) -> String {
     }
 }
 
-fn names(section: &Section) -> String {
+fn names(section: &KeySection) -> String {
     let names: Vec<&str> = section.keys.iter().map(|key| key.name).collect();
     format!("`{{ {} }}`", names.join(", "))
 }

@@ -18,10 +18,10 @@ pub use rock::ROCK;
 pub use solver::{FACETS, SOLVER, SOLVERS};
 pub use study::{CLOSURE, SERIES, STUDY};
 
-use crate::table::{Key, Kind, Need, Section};
+use crate::table::{Key, KeySection, Kind, Need};
 
 /// The top of a scene.
-pub static ROOT: Section = Section {
+pub static ROOT: KeySection = KeySection {
     pattern: "",
     says: "The top of a scene, before its first section",
     keys: &[

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::dimension::Dimension;
 use crate::document::Document;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Quantity, Section};
+use crate::table::{Key, KeySection, Kind, Need, Quantity};
 
 /// The schema of a document; draft 7, which the TOML plug-ins of editors take.
 ///
@@ -28,7 +28,7 @@ pub fn schema(document: Document) -> Value {
 }
 
 /// An object with the keys of a section and no others.
-fn of_section(section: &'static Section) -> Map<String, Value> {
+fn of_section(section: &'static KeySection) -> Map<String, Value> {
     let keys = section.all_keys();
     let properties: Map<String, Value> =
         keys.map(|key| (key.name.to_owned(), of_key(key))).collect();

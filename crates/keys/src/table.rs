@@ -6,7 +6,7 @@ use crate::range::Range;
 
 /// A table of a document.
 #[derive(Debug)]
-pub struct Section {
+pub struct KeySection {
     /// How documents call it, `[rock.NAME]`; empty for the top of the file.
     pub pattern: &'static str,
     /// What it is, in one sentence without a full stop.
@@ -14,7 +14,7 @@ pub struct Section {
     /// Its keys, in the order of the reference.
     pub keys: &'static [Key],
     /// A section all of whose keys may stand here too.
-    pub also: Option<&'static Section>,
+    pub also: Option<&'static KeySection>,
 }
 
 /// A key of a section.
@@ -69,21 +69,21 @@ pub enum Kind {
     /// Times with factors, `[time, factor]` in brackets.
     History,
     /// A number, or the keys of a section.
-    NumberOr(Quantity, &'static Section),
+    NumberOr(Quantity, &'static KeySection),
     /// Numbers under names that are free.
     FreeNumbers,
     /// A list of tables.
-    Tables(&'static Section),
+    Tables(&'static KeySection),
     /// A list of tables or words.
-    TablesOrWords(&'static Section, &'static [&'static str]),
+    TablesOrWords(&'static KeySection, &'static [&'static str]),
     /// Lists of numbers under the names of keys; such a section in the place of a list.
-    Sweeps(&'static Section),
+    Sweeps(&'static KeySection),
     /// A section of its own, or keys in braces.
-    Table(&'static Section),
+    Table(&'static KeySection),
     /// Sections with a name: `[rock.NAME]`.
-    Named(&'static Section),
+    Named(&'static KeySection),
     /// Sections in double brackets: `[[fixed_point]]`.
-    Listed(&'static Section),
+    Listed(&'static KeySection),
 }
 
 /// Whether a key must be there.
@@ -102,7 +102,7 @@ pub enum Need {
 }
 
 /// A section whose keys are free.
-pub(crate) static FREE: Section = Section {
+pub(crate) static FREE: KeySection = KeySection {
     pattern: "names of your own",
     says: "Numbers under names that are free",
     keys: &[],
@@ -141,9 +141,9 @@ impl Quantity {
     pub const PLAIN: Self = quantity(Dimension::One, Range::Finite);
 }
 
-impl Section {
+impl KeySection {
     /// The key with a name, and the section that has it as its own.
-    pub fn find(&'static self, name: &str) -> Option<(&'static Section, &'static Key)> {
+    pub fn find(&'static self, name: &str) -> Option<(&'static KeySection, &'static Key)> {
         let own = self.keys.iter().find(|key| key.name == name);
         own.map(|key| (self, key))
             .or_else(|| self.also.and_then(|also| also.find(name)))
@@ -186,7 +186,7 @@ impl Kind {
     }
 
     /// The section that it holds.
-    pub fn section(&self) -> Option<&'static Section> {
+    pub fn section(&self) -> Option<&'static KeySection> {
         match *self {
             Self::NumberOr(_, section)
             | Self::Tables(section)

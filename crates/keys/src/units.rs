@@ -22,7 +22,7 @@ pub enum Unreadable {
 
 /// What a unit measures.
 #[derive(Clone, Copy, PartialEq)]
-enum Measure {
+enum UnitMeasure {
     Si(Exponents),
     Angle,
     Memory,
@@ -31,7 +31,7 @@ enum Measure {
 
 /// How much the SI unit is contained in a unit.
 #[derive(Clone, Copy)]
-enum Scale {
+enum UnitScale {
     PowerOfTen(i32),
     Factor(f64),
 }
@@ -56,18 +56,18 @@ pub fn read_quantity(text: &str, dimension: Dimension) -> Result<f64, Unreadable
         return Err(Unreadable::Other(unit.to_owned(), is));
     }
     match scale {
-        Scale::PowerOfTen(power) => shifted(&number, power),
-        Scale::Factor(factor) => shifted(&number, 0).map(|number| number * factor),
+        UnitScale::PowerOfTen(power) => shifted(&number, power),
+        UnitScale::Factor(factor) => shifted(&number, 0).map(|number| number * factor),
     }
     .ok_or(Unreadable::NoNumber)
 }
 
-fn measure_of(dimension: Dimension) -> Option<Measure> {
+fn measure_of(dimension: Dimension) -> Option<UnitMeasure> {
     match dimension {
-        Dimension::One => Some(Measure::Share),
-        Dimension::Angle => Some(Measure::Angle),
-        Dimension::Memory => Some(Measure::Memory),
-        other => other.exponents().map(Measure::Si),
+        Dimension::One => Some(UnitMeasure::Share),
+        Dimension::Angle => Some(UnitMeasure::Angle),
+        Dimension::Memory => Some(UnitMeasure::Memory),
+        other => other.exponents().map(UnitMeasure::Si),
     }
 }
 
@@ -113,7 +113,7 @@ fn split(text: &str) -> Option<(Decimal, &str)> {
     Some((Decimal { mantissa, exponent }, &text[end..]))
 }
 
-fn read_unit(unit: &str) -> Option<(Measure, Scale)> {
+fn read_unit(unit: &str) -> Option<(UnitMeasure, UnitScale)> {
     const BYTES: [(&str, i32); 6] = [
         ("B", 0),
         ("bytes", 0),
@@ -124,17 +124,17 @@ fn read_unit(unit: &str) -> Option<(Measure, Scale)> {
     ];
     const BINARY: [(&str, i32); 4] = [("KiB", 10), ("MiB", 20), ("GiB", 30), ("TiB", 40)];
     if let Some((_, power)) = BYTES.iter().find(|(name, _)| *name == unit) {
-        return Some((Measure::Memory, Scale::PowerOfTen(*power)));
+        return Some((UnitMeasure::Memory, UnitScale::PowerOfTen(*power)));
     }
     if let Some((_, power)) = BINARY.iter().find(|(name, _)| *name == unit) {
-        return Some((Measure::Memory, Scale::Factor(2.0_f64.powi(*power))));
+        return Some((UnitMeasure::Memory, UnitScale::Factor(2.0_f64.powi(*power))));
     }
     match unit {
-        "%" => Some((Measure::Share, Scale::PowerOfTen(-2))),
-        "degrees" | "degree" | "deg" | "°" => Some((Measure::Angle, Scale::PowerOfTen(0))),
-        "rad" => Some((Measure::Angle, Scale::Factor(1_f64.to_degrees()))),
+        "%" => Some((UnitMeasure::Share, UnitScale::PowerOfTen(-2))),
+        "degrees" | "degree" | "deg" | "°" => Some((UnitMeasure::Angle, UnitScale::PowerOfTen(0))),
+        "rad" => Some((UnitMeasure::Angle, UnitScale::Factor(1_f64.to_degrees()))),
         _ => product(unit)
-            .map(|(exponents, power)| (Measure::Si(exponents), Scale::PowerOfTen(power))),
+            .map(|(exponents, power)| (UnitMeasure::Si(exponents), UnitScale::PowerOfTen(power))),
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use crate::draft::{Draft, Elements};
-use crate::pairing::{Entry, bounds, visit_runs};
+use crate::pairing::{KeyedFace, bounds, visit_runs};
 use crate::shape::{Face, Shape, TETRAHEDRON};
 
 /// Marks the absence of a neighbour.
@@ -138,7 +138,7 @@ struct Pairing<'a> {
 
 /// What one task has found.
 #[derive(Default)]
-struct Found {
+struct FoundFaces {
     /// Surplus faces with their corners, by which their order is that of the nodes.
     crowded: Vec<([u32; 4], u32)>,
     /// The lower of two faces that run the same way round.
@@ -196,7 +196,7 @@ impl Pairing<'_> {
     }
 
     /// Appends the faces of a cell, or a facet where the cells are at their end.
-    fn emit(&self, element: usize, entries: &mut Vec<Entry>) {
+    fn emit(&self, element: usize, entries: &mut Vec<KeyedFace>) {
         let Some(facet) = element.checked_sub(self.cells.len()) else {
             let nodes = self.cells.nodes_of(element);
             let first = (element << self.local_bits) as u32;
@@ -212,7 +212,7 @@ impl Pairing<'_> {
                     [a, b, c] => turned([a, b, c].map(|local| nodes[local as usize])),
                     _ => lowest(corners.iter().map(|&local| nodes[local as usize])),
                 };
-                Entry { key, item }
+                KeyedFace { key, item }
             }));
             return;
         };
@@ -221,7 +221,7 @@ impl Pairing<'_> {
             [a, b, c] => turned([a, b, c]),
             _ => lowest(corners.iter().copied()),
         };
-        entries.push(Entry {
+        entries.push(KeyedFace {
             key,
             item: self.face_end + facet as u32,
         });
@@ -241,14 +241,14 @@ impl Pairing<'_> {
     }
 
     /// Tells triangles from quadrangles, and these by their fourth corner.
-    fn split(&self, found: &mut Found, run: &[Entry]) {
-        let mut run: Vec<(u32, Entry)> = run
+    fn split(&self, found: &mut FoundFaces, run: &[KeyedFace]) {
+        let mut run: Vec<(u32, KeyedFace)> = run
             .iter()
             .map(|entry| (self.fourth(entry.item), *entry))
             .collect();
         run.sort_by_key(|(fourth, _)| *fourth);
         for alike in run.chunk_by(|a, b| a.0 == b.0) {
-            let alike: Vec<Entry> = alike.iter().map(|(_, entry)| *entry).collect();
+            let alike: Vec<KeyedFace> = alike.iter().map(|(_, entry)| *entry).collect();
             self.settle(found, &alike);
         }
     }
@@ -277,7 +277,7 @@ impl Pairing<'_> {
     }
 
     /// Notes what entries with the same corners have to do with each other.
-    fn settle(&self, found: &mut Found, run: &[Entry]) {
+    fn settle(&self, found: &mut FoundFaces, run: &[KeyedFace]) {
         let (faces, facets) = run.split_at(run.partition_point(|e| e.item < self.face_end));
         if let [first, second, surplus @ ..] = faces {
             self.neighbour[first.item as usize].store(second.item, Ordering::Relaxed);
@@ -285,7 +285,7 @@ impl Pairing<'_> {
             if self.runs_alike(first, second) {
                 found.overlapping.push(first.item);
             }
-            let keyed = |entry: &Entry| {
+            let keyed = |entry: &KeyedFace| {
                 let [a, b, c] = entry.sorted_key();
                 ([a, b, c, self.fourth(entry.item)], entry.item)
             };
@@ -297,14 +297,14 @@ impl Pairing<'_> {
                 faces: [face(0), face(1)],
                 first: first.item - self.face_end,
             };
-            let placed = |facet: &Entry| (facet.item - self.face_end, place);
+            let placed = |facet: &KeyedFace| (facet.item - self.face_end, place);
             found.facets.extend(facets.iter().map(placed));
         }
     }
 
     /// Whether two faces with the same corners run the same way round, so that both cells lie on
     /// one side.
-    fn runs_alike(&self, face: &Entry, other: &Entry) -> bool {
+    fn runs_alike(&self, face: &KeyedFace, other: &KeyedFace) -> bool {
         let [a, b, c] = face.key;
         let is_triangle = || {
             shape_of(self.cells, face.item, self.local_bits)
@@ -334,11 +334,11 @@ fn lowest_two([a, b, c, d]: [u32; 4]) -> (u32, u32) {
 }
 
 /// The faces of a tetrahedron, numbered from `first` on.
-fn tetrahedron(nodes: [u32; 4], first: u32) -> [Entry; 4] {
-    let mut faces = [Entry::default(); 4];
+fn tetrahedron(nodes: [u32; 4], first: u32) -> [KeyedFace; 4] {
+    let mut faces = [KeyedFace::default(); 4];
     for ((face, item), [a, b, c]) in faces.iter_mut().zip(first..).zip(TETRAHEDRON) {
         let key = turned([nodes[a], nodes[b], nodes[c]]);
-        *face = Entry { key, item };
+        *face = KeyedFace { key, item };
     }
     faces
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::adjacency::{Adjacency, NONE};
 use crate::draft::Draft;
 use crate::geometry::{facet_area_vector, facet_centre};
-use crate::pairing::{Entry, bounds, visit_runs};
+use crate::pairing::{KeyedFace, bounds, visit_runs};
 use crate::surfaces::{DraftFacet, Surfaces};
 use kluft_defect::Defect;
 
@@ -103,7 +103,7 @@ impl Ring {
 
 /// For every facet its neighbours across edges where exactly two facets of the fracture meet.
 fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
-    let emit = |facet: usize, entries: &mut Vec<Entry>| {
+    let emit = |facet: usize, entries: &mut Vec<KeyedFace>| {
         let fracture = surfaces.facets[facet].fracture;
         let edges = rings[facet].edges();
         for (place, &(low, high, forward)) in edges[..rings[facet].count].iter().enumerate() {
@@ -113,7 +113,7 @@ fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
                 place,
                 forward,
             };
-            entries.push(Entry {
+            entries.push(KeyedFace {
                 // No node has a number as high as that.
                 key: [low, high, NONE - fracture],
                 item: edge.pack(),
@@ -124,7 +124,7 @@ fn links(surfaces: &Surfaces, rings: &[Ring], node_count: usize) -> Vec<Links> {
         let corners = &rings[facet].corners[..rings[facet].count];
         bounds(corners)
     };
-    let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[Entry]| {
+    let visit = |pairs: &mut Vec<[Edge; 2]>, run: &[KeyedFace]| {
         if let [a, b] = run {
             pairs.push([a, b].map(|entry| Edge::unpack(entry.item)));
         }

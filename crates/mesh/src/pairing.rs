@@ -18,12 +18,12 @@ const MOST_PARTS: usize = 1024;
 
 /// An item and the three numbers it is matched by, the last two in any order.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Entry {
+pub(crate) struct KeyedFace {
     pub(crate) key: [u32; 3],
     pub(crate) item: u32,
 }
 
-impl Entry {
+impl KeyedFace {
     /// The key, the same for all entries that match.
     pub(crate) fn sorted_key(&self) -> [u32; 3] {
         let [first, a, b] = self.key;
@@ -40,11 +40,11 @@ pub(crate) fn visit_runs<A: Default + Send>(
     count: usize,
     end: usize,
     key_range: impl Fn(usize) -> (u32, u32) + Sync,
-    emit: impl Fn(usize, &mut Vec<Entry>) + Sync,
-    visit: impl Fn(&mut A, &[Entry]) + Sync,
+    emit: impl Fn(usize, &mut Vec<KeyedFace>) + Sync,
+    visit: impl Fn(&mut A, &[KeyedFace]) + Sync,
 ) -> Vec<A> {
     let parts = Parts::of(end);
-    let deal = |entries: &mut Vec<Entry>, task: usize| {
+    let deal = |entries: &mut Vec<KeyedFace>, task: usize| {
         let first = task * ELEMENTS_PER_TASK;
         let elements = first..count.min(first + ELEMENTS_PER_TASK);
         Dealt::in_order(parts, elements.clone(), &key_range, &emit, entries)
@@ -95,19 +95,24 @@ impl Parts {
         (number >> self.shift) as usize
     }
 
-    fn of_entry(self, entry: &Entry) -> usize {
+    fn of_entry(self, entry: &KeyedFace) -> usize {
         self.of_number(entry.key[0])
     }
 
     /// Appends those entries of an element that belong to a part.
-    fn emit_into(self, part: usize, entries: &mut Vec<Entry>, emit: impl Fn(&mut Vec<Entry>)) {
+    fn emit_into(
+        self,
+        part: usize,
+        entries: &mut Vec<KeyedFace>,
+        emit: impl Fn(&mut Vec<KeyedFace>),
+    ) {
         let first = entries.len();
         emit(entries);
         self.keep(entries, first, |entry_part| entry_part == part);
     }
 
     /// Drops entries of some parts, from `first` on.
-    fn keep(self, entries: &mut Vec<Entry>, first: usize, wanted: impl Fn(usize) -> bool) {
+    fn keep(self, entries: &mut Vec<KeyedFace>, first: usize, wanted: impl Fn(usize) -> bool) {
         if entries[first..]
             .iter()
             .all(|entry| wanted(self.of_entry(entry)))
@@ -131,7 +136,7 @@ struct Dealt {
     own: Vec<usize>,
     /// The entries of all other elements, and those that do not belong to the part of their
     /// element; those of one part side by side.
-    entries: Vec<Entry>,
+    entries: Vec<KeyedFace>,
     start: Vec<u32>,
 }
 
@@ -141,8 +146,8 @@ impl Dealt {
         parts: Parts,
         elements: Range<usize>,
         key_range: impl Fn(usize) -> (u32, u32),
-        emit: impl Fn(usize, &mut Vec<Entry>),
-        entries: &mut Vec<Entry>,
+        emit: impl Fn(usize, &mut Vec<KeyedFace>),
+        entries: &mut Vec<KeyedFace>,
     ) -> Option<Self> {
         let mut own = Vec::with_capacity(parts.count + 1);
         entries.clear();
@@ -167,15 +172,15 @@ impl Dealt {
     fn all(
         parts: Parts,
         elements: Range<usize>,
-        emit: impl Fn(usize, &mut Vec<Entry>),
-        entries: &mut Vec<Entry>,
+        emit: impl Fn(usize, &mut Vec<KeyedFace>),
+        entries: &mut Vec<KeyedFace>,
     ) -> Self {
         entries.clear();
         elements.for_each(|element| emit(element, entries));
         Self::of(parts, vec![0; parts.count + 1], entries)
     }
 
-    fn of(parts: Parts, own: Vec<usize>, entries: &[Entry]) -> Self {
+    fn of(parts: Parts, own: Vec<usize>, entries: &[KeyedFace]) -> Self {
         let mut start = vec![0; parts.count + 1];
         for entry in entries {
             start[parts.of_entry(entry) + 1] += 1;
@@ -184,7 +189,7 @@ impl Dealt {
             start[part + 1] += start[part];
         }
         let mut next = start.clone();
-        let mut dealt = vec![Entry::default(); entries.len()];
+        let mut dealt = vec![KeyedFace::default(); entries.len()];
         for entry in entries {
             let place = &mut next[parts.of_entry(entry)];
             dealt[*place as usize] = *entry;
@@ -201,7 +206,7 @@ impl Dealt {
         self.own[part]..self.own[part + 1]
     }
 
-    fn of_part(&self, part: usize) -> &[Entry] {
+    fn of_part(&self, part: usize) -> &[KeyedFace] {
         let Range { start, end } = self.start[part]..self.start[part + 1];
         &self.entries[start as usize..end as usize]
     }
@@ -211,14 +216,14 @@ impl Dealt {
 #[derive(Default)]
 struct Buckets {
     /// As they come.
-    entries: Vec<Entry>,
+    entries: Vec<KeyedFace>,
     /// Those whose keys begin with the same number side by side.
-    sorted: Vec<Entry>,
+    sorted: Vec<KeyedFace>,
     end: Vec<u32>,
 }
 
 impl Buckets {
-    fn visit_runs(&mut self, parts: Parts, mut visit: impl FnMut(&[Entry])) {
+    fn visit_runs(&mut self, parts: Parts, mut visit: impl FnMut(&[KeyedFace])) {
         self.sort(parts);
         let mut start = 0;
         for &end in &self.end {
@@ -228,7 +233,7 @@ impl Buckets {
     }
 
     fn sort(&mut self, parts: Parts) {
-        let bucket = |entry: &Entry| entry.key[0] as usize & ((1 << parts.shift) - 1);
+        let bucket = |entry: &KeyedFace| entry.key[0] as usize & ((1 << parts.shift) - 1);
         self.end.clear();
         self.end.resize(1 << parts.shift, 0);
         for entry in &self.entries {
@@ -238,7 +243,7 @@ impl Buckets {
         for end in &mut self.end {
             (*end, sum) = (sum, sum + *end);
         }
-        self.sorted.resize(self.entries.len(), Entry::default());
+        self.sorted.resize(self.entries.len(), KeyedFace::default());
         for entry in &self.entries {
             // A begin that moves on to the end.
             let end = &mut self.end[bucket(entry)];
@@ -249,7 +254,7 @@ impl Buckets {
 }
 
 /// Visits the runs among entries whose keys begin alike: around a node there are a few dozen.
-fn visit_bucket(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
+fn visit_bucket(bucket: &mut [KeyedFace], visit: &mut impl FnMut(&[KeyedFace])) {
     const MANY: usize = 64;
     if bucket.len() > MANY {
         return visit_sorted(bucket, visit);
@@ -282,7 +287,7 @@ fn visit_bucket(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
     }
 }
 
-fn visit_sorted(bucket: &mut [Entry], visit: &mut impl FnMut(&[Entry])) {
+fn visit_sorted(bucket: &mut [KeyedFace], visit: &mut impl FnMut(&[KeyedFace])) {
     bucket.sort_unstable_by_key(|entry| (entry.sorted_key(), entry.item));
     let runs = bucket.chunk_by(|a, b| a.sorted_key() == b.sorted_key());
     runs.filter(|run| run.len() > 1).for_each(visit);
@@ -297,20 +302,20 @@ mod tests {
         // Element i has the keys of i and i + 1 modulo 50 000, so every key occurs twice, one in
         // turned order; key 0 occurs a thousand times more.
         const COUNT: usize = 50_000;
-        let emit = |element: usize, entries: &mut Vec<Entry>| {
+        let emit = |element: usize, entries: &mut Vec<KeyedFace>| {
             let item = element as u32;
             let key = |i: usize| [i as u32 / 3, i as u32, 7];
-            entries.push(Entry {
+            entries.push(KeyedFace {
                 key: key(element),
                 item,
             });
             let [first, a, b] = key((element + 1) % COUNT);
-            entries.push(Entry {
+            entries.push(KeyedFace {
                 key: [first, b, a],
                 item,
             });
             if element % 50 == 2 {
-                entries.push(Entry { key: key(0), item });
+                entries.push(KeyedFace { key: key(0), item });
             }
         };
         // Element 2 and others lie in two parts; the elements do not all ascend.
@@ -323,7 +328,7 @@ mod tests {
             };
             (low, firsts[0].max(firsts[1]))
         };
-        let visit = |found: &mut Vec<Vec<u32>>, run: &[Entry]| {
+        let visit = |found: &mut Vec<Vec<u32>>, run: &[KeyedFace]| {
             found.push(run.iter().map(|entry| entry.item).collect());
         };
         let mut runs = visit_runs(COUNT, COUNT, key_range, emit, visit).concat();

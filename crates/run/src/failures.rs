@@ -2,7 +2,7 @@
 
 use kluft_mesh::Defect;
 use kluft_scene::SolverEntry;
-use kluft_solver::{LinearFailure, Outcome, Plan, Problem, StepRecord, System};
+use kluft_solver::{LinearFailure, Plan, Problem, StepOutcome, StepRecord, System};
 
 use crate::decisions::{gigabytes, of_step};
 
@@ -51,19 +51,21 @@ pub fn not_converged(
         })
     };
     let why = match &record.outcome {
-        Outcome::Converged => "nothing went wrong".to_owned(),
-        Outcome::OutOfIterations => format!(
+        StepOutcome::Converged => "nothing went wrong".to_owned(),
+        StepOutcome::OutOfIterations => format!(
             "the tests do not hold after {count} iterations; the closure error is largest{}",
             at(record.worst_facet_point)
         ),
-        Outcome::RigidBodyMotion => "the loads push rock that nothing holds any more".to_owned(),
-        Outcome::NotFinite(point) => format!(
+        StepOutcome::RigidBodyMotion => {
+            "the loads push rock that nothing holds any more".to_owned()
+        }
+        StepOutcome::NotFinite(point) => format!(
             "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
             count + 1,
             at(*point)
         ),
-        Outcome::Linear(failure) => linear_failure(problem, system, failure),
-        Outcome::Stopped => format!("it was stopped after {count} iterations"),
+        StepOutcome::Linear(failure) => linear_failure(problem, system, failure),
+        StepOutcome::Stopped => format!("it was stopped after {count} iterations"),
     };
     let completed = (record.completed > 0.0).then(|| {
         let percent = 100.0 * record.completed;

@@ -30,7 +30,8 @@ pub fn measures(
 ) -> Vec<Measure> {
     let of = |(index, (name, summary)): (usize, &(String, FractureSummary))| {
         let oracle = oracles.get(index).copied().flatten();
-        let errors = oracle.map(|oracle| Fracture::of(system, solution, index).errors(&oracle));
+        let errors =
+            oracle.map(|oracle| MeasuredFracture::of(system, solution, index).errors(&oracle));
         let all = errors.into_iter().flatten().chain(values(summary));
         all.map(|measure| Measure {
             fracture: Some(name.clone()),
@@ -58,14 +59,14 @@ pub fn energy(joules: f64) -> Measure {
 }
 
 /// A fracture of a solution.
-struct Fracture<'a> {
+struct MeasuredFracture<'a> {
     rock: Rock,
     samples: Vec<Sample>,
     /// Results at the facet points, with their places and areas.
     points: Vec<(&'a FacetResult, DVec3, f64)>,
 }
 
-impl<'a> Fracture<'a> {
+impl<'a> MeasuredFracture<'a> {
     fn of(system: &System<'_>, solution: &'a Solution, index: usize) -> Self {
         let facets = &system.problem().mesh.facets;
         let own = |&facet: &usize| facets.fracture[facet] as usize == index;

@@ -10,7 +10,7 @@ use crate::output::Output;
 use crate::request::Origin;
 
 /// An interrupted run, or a finished one.
-pub struct Former {
+pub struct FormerRun {
     /// What is finished.
     pub progress: Progress<'static>,
     /// Sum of the mesh that it used.
@@ -19,7 +19,7 @@ pub struct Former {
     pub mesh_is_kept: bool,
 }
 
-impl Former {
+impl FormerRun {
     /// Whether all its load steps are finished.
     pub fn is_finished(&self) -> bool {
         self.progress.restart.is_none()
@@ -54,7 +54,7 @@ pub fn find(
     scene: &Scene,
     identity: &Identity,
     output: &Output,
-) -> Result<Option<Former>, Vec<Defect>> {
+) -> Result<Option<FormerRun>, Vec<Defect>> {
     let path = output.path(checkpoint::NAME);
     let Some(stored) = checkpoint::read(&path).map_err(|defect| vec![defect])? else {
         return Ok(None);
@@ -70,7 +70,7 @@ pub fn find(
     }
     let progress = stored.progress(&path).map_err(|defect| vec![defect])?;
     output.check_steps(progress.steps.len())?;
-    Ok(Some(Former {
+    Ok(Some(FormerRun {
         progress,
         mesh: stored.identity.mesh,
         mesh_is_kept,

@@ -8,7 +8,7 @@ use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
 use crate::output::Output;
 use crate::request::Request;
-use crate::resume::{self, Former};
+use crate::resume::{self, FormerRun};
 use crate::stages::{Interruption, Run};
 
 /// Runs a scene: mesh, enrich, assemble, solve, write.
@@ -36,7 +36,7 @@ fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome
         former = resume::find(origin.file, request.scene, &identity, &output)?;
         observer.note("resume", &what_is_left(former.as_ref(), &output));
     }
-    let is_finished = former.as_ref().is_some_and(Former::is_finished);
+    let is_finished = former.as_ref().is_some_and(FormerRun::is_finished);
     let mesh_is_kept = former.as_ref().is_some_and(|former| former.mesh_is_kept);
     let mut run = Run::new(request, output, observer, identity, former.as_ref());
     if is_finished {
@@ -52,7 +52,7 @@ fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome
 
 fn solve(
     run: &mut Run<'_>,
-    former: Option<Former>,
+    former: Option<FormerRun>,
     mesh_is_kept: bool,
 ) -> Result<(), Interruption> {
     if !mesh_is_kept {
@@ -62,7 +62,7 @@ fn solve(
     run.solve(&problem, former)
 }
 
-fn what_is_left(former: Option<&Former>, output: &Output) -> String {
+fn what_is_left(former: Option<&FormerRun>, output: &Output) -> String {
     match former {
         None => format!(
             "there is no {} in {}: from the beginning",

@@ -19,7 +19,7 @@ use crate::outcome::{Ending, Outcome, StepResult};
 use crate::output::Output;
 use crate::prepare::{self, MeshFile};
 use crate::request::{MeshInput, Request};
-use crate::resume::Former;
+use crate::resume::FormerRun;
 use crate::summary::{MeshSummary, Seconds, StepMeasures, Summary, UnknownSummary};
 
 /// What ends a run early.
@@ -91,7 +91,7 @@ impl<'a> Run<'a> {
         output: Output,
         observer: &'a mut dyn Observer,
         identity: Identity,
-        former: Option<&Former>,
+        former: Option<&FormerRun>,
     ) -> Self {
         let mut summary = Summary {
             kluft: env!("CARGO_PKG_VERSION"),
@@ -147,7 +147,7 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// Defects of geometry, mesh and scene, and a mesh that is not the one of the former run.
-    pub fn prepare(&mut self, former: Option<&Former>) -> Result<Problem, Interruption> {
+    pub fn prepare(&mut self, former: Option<&FormerRun>) -> Result<Problem, Interruption> {
         let file = match &self.request.mesh {
             MeshInput::OfScene => Some(self.mesh_file(former)?),
             MeshInput::Draft(_) => None,
@@ -170,7 +170,7 @@ impl<'a> Run<'a> {
     fn draft(
         &mut self,
         file: Option<&MeshFile>,
-        former: Option<&Former>,
+        former: Option<&FormerRun>,
     ) -> Result<Draft, Vec<Defect>> {
         let Some(file) = file else {
             return match std::mem::replace(&mut self.request.mesh, MeshInput::OfScene) {
@@ -204,7 +204,7 @@ impl<'a> Run<'a> {
     }
 
     /// The mesh file; gmsh makes it if it has to.
-    fn mesh_file(&mut self, former: Option<&Former>) -> Result<MeshFile, Vec<Defect>> {
+    fn mesh_file(&mut self, former: Option<&FormerRun>) -> Result<MeshFile, Vec<Defect>> {
         let is_kept = matches!(self.meshing, Remeshing::Kept);
         if is_kept || former.is_some_and(|former| former.mesh_is_kept) {
             return Ok(MeshFile {
@@ -264,7 +264,7 @@ impl<'a> Run<'a> {
     pub fn plan(
         &mut self,
         system: &System<'_>,
-        former: Option<&Former>,
+        former: Option<&FormerRun>,
     ) -> Result<Plan, Interruption> {
         let asked = self.request.scene.solver;
         let available = memory::available_bytes().unwrap_or(usize::MAX);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use kluft_io::Grid;
 use kluft_solver::{
-    Estimator, Newton, Outcome, Plan, Problem, State, StepRecord, System, solution,
+    Estimator, Newton, Plan, Problem, State, StepOutcome, StepRecord, System, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -15,7 +15,7 @@ use crate::grids::{fracture_grid, rock_grid};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
-use crate::resume::Former;
+use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
 use crate::summary::{self, StepSummary};
 
@@ -59,7 +59,11 @@ impl Run<'_> {
     /// # Errors
     /// A load step that does not converge, a system that does not fit in memory, and files that
     /// cannot be written.
-    pub fn solve(&mut self, problem: &Problem, former: Option<Former>) -> Result<(), Interruption> {
+    pub fn solve(
+        &mut self,
+        problem: &Problem,
+        former: Option<FormerRun>,
+    ) -> Result<(), Interruption> {
         let system = self.assemble(problem)?;
         let plan = self.plan(&system, former.as_ref())?;
         self.decide(problem);
@@ -164,7 +168,7 @@ impl Run<'_> {
         self.summary.seconds.solve += record.solve_seconds;
         let summary = StepSummary::of(step, (&record).into());
         self.summary.steps.push(summary);
-        if record.outcome == Outcome::Stopped {
+        if record.outcome == StepOutcome::Stopped {
             return Err(Interruption::Stopped);
         }
         if !record.converged() {

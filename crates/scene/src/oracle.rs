@@ -26,8 +26,8 @@ const RING: f64 = 0.1;
 pub struct Oracle {
     /// Where the fracture lies.
     pub extent: Extent,
-    opening: Option<Amount>,
-    slip: Option<Amount>,
+    opening: Option<Prescribed>,
+    slip: Option<Prescribed>,
     /// Normal traction (Pa), tension positive.
     pub normal_traction: Option<f64>,
     /// Share of the radius next to the crack front that measures "inside" leave out.
@@ -59,7 +59,7 @@ pub enum Extent {
 
 /// What a closed form follows from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Amount {
+enum Prescribed {
     /// A pressure or a stress drop (Pa).
     Stress(f64),
     /// The value itself (m).
@@ -99,10 +99,10 @@ impl Oracle {
         self.profile(self.slip, per_stress)
     }
 
-    fn profile(&self, amount: Option<Amount>, per_stress: f64) -> Option<JumpProfile> {
+    fn profile(&self, amount: Option<Prescribed>, per_stress: f64) -> Option<JumpProfile> {
         let amplitude = match amount? {
-            Amount::Stress(stress) => stress * per_stress,
-            Amount::Length(length) => length,
+            Prescribed::Stress(stress) => stress * per_stress,
+            Prescribed::Length(length) => length,
         };
         Some(JumpProfile {
             extent: self.extent,
@@ -113,7 +113,7 @@ impl Oracle {
     /// `K_I` of the opening pressure (Pa sqrt(m)): `2 p sqrt(a / pi)` of a disc, `p sqrt(pi a)` of
     /// a strip.
     pub fn stress_intensity(&self) -> Option<f64> {
-        let Some(Amount::Stress(p)) = self.opening else {
+        let Some(Prescribed::Stress(p)) = self.opening else {
             return None;
         };
         match self.extent {
@@ -184,8 +184,8 @@ pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
         _ => None,
     };
     let crack = name? != "uniform";
-    let stress = |key| section.number(key).map(Amount::Stress);
-    let length = |key| section.number(key).map(Amount::Length);
+    let stress = |key| section.number(key).map(Prescribed::Stress);
+    let length = |key| section.number(key).map(Prescribed::Length);
     let (opening, slip) = match crack {
         true => (stress("pressure"), stress("stress_drop")),
         false => (length("opening"), length("slip")),
@@ -249,8 +249,8 @@ mod tests {
                 centre: DVec3::ZERO,
                 radius: 1.0,
             },
-            opening: Some(Amount::Stress(2e6)),
-            slip: Some(Amount::Stress(2e6)),
+            opening: Some(Prescribed::Stress(2e6)),
+            slip: Some(Prescribed::Stress(2e6)),
             normal_traction: None,
             ring: RING,
         }

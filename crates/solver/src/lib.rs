@@ -46,7 +46,7 @@ pub use linear::{
     Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns, Workload,
 };
 pub use newton::{
-    Iteration, Newton, NewtonSettings, Outcome, RestartState, StepRecord, unobserved,
+    Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord, unobserved,
 };
 pub use problem::{
     Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,

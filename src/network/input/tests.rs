@@ -1,4 +1,4 @@
-use kluft_keys::Section as Keys;
+use kluft_keys::KeySection as Keys;
 
 use super::*;
 

@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use super::*;
-use crate::study::point::Outcome;
+use crate::study::point::PointOutcome;
 
 const SCENE: &str = r#"
 [mesh]
@@ -17,8 +17,8 @@ shear_stiffness = 1e10
 [study]
 "#;
 
-fn plan(study: &str) -> Plan {
-    Plan::read(Path::new("scene.toml"), &format!("{SCENE}{study}")).expect("a plan")
+fn plan(study: &str) -> StudyPlan {
+    StudyPlan::read(Path::new("scene.toml"), &format!("{SCENE}{study}")).expect("a plan")
 }
 
 fn measure(name: &str, fracture: &str, value: f64, error: Option<f64>) -> Measure {
@@ -31,10 +31,10 @@ fn measure(name: &str, fracture: &str, value: f64, error: Option<f64>) -> Measur
     }
 }
 
-fn solved(cells: usize, measures: Vec<Measure>) -> Option<Record> {
-    Some(Record {
+fn solved(cells: usize, measures: Vec<Measure>) -> Option<PointRecord> {
+    Some(PointRecord {
         fingerprint: String::new(),
-        outcome: Outcome::Solved(Box::new(Numbers {
+        outcome: PointOutcome::Solved(Box::new(Numbers {
             cells,
             unknowns: 3 * cells,
             largest_fracture: Some("b".into()),
@@ -46,7 +46,7 @@ fn solved(cells: usize, measures: Vec<Measure>) -> Option<Record> {
 
 /// Runs whose mean aperture approaches `limit` as the third root of the cells, or faster for order
 /// 2.
-fn extrapolated(plan: &Plan, limit: impl Fn(&str) -> f64) -> Vec<Option<Record>> {
+fn extrapolated(plan: &StudyPlan, limit: impl Fn(&str) -> f64) -> Vec<Option<PointRecord>> {
     let run = |setting: &Setting| {
         let size: f64 = plan.label(setting, 0)[2..].parse().expect("a size");
         let rate = if plan.label(setting, 1) == "order 2" {
@@ -68,7 +68,7 @@ fn close(a: f64, b: f64) {
 
 #[test]
 fn the_first_measure_with_an_error_is_charted_or_what_is_asked_for() {
-    let records = |plan: &Plan| {
+    let records = |plan: &StudyPlan| {
         let measures = vec![
             measure("energy", "a", 2.0, None),
             measure("opening_l2", "a", 3.0, Some(0.2)),
@@ -158,9 +158,9 @@ fn each_law_has_its_own_reference_unless_one_serves_all() {
 fn two_meshes_or_failures_leave_no_errors() {
     let sweep = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]");
     let mut records = extrapolated(&sweep, |_| 3.0);
-    records[1] = Some(Record {
+    records[1] = Some(PointRecord {
         fingerprint: String::new(),
-        outcome: Outcome::Failed("for want of memory".into()),
+        outcome: PointOutcome::Failed("for want of memory".into()),
     });
     let found = assess(&sweep, &records).expect("an assessment");
     assert!(found.references.is_empty());
@@ -178,9 +178,9 @@ fn lower_orders_wait_for_higher_ones_unless_these_fail() {
     records[finest] = None;
     let found = assess(&plan, &records).expect("an assessment");
     assert!(found.references.is_empty(), "{:?}", found.references);
-    records[finest] = Some(Record {
+    records[finest] = Some(PointRecord {
         fingerprint: String::new(),
-        outcome: Outcome::Failed("for want of memory".into()),
+        outcome: PointOutcome::Failed("for want of memory".into()),
     });
     let found = assess(&plan, &records).expect("an assessment");
     assert!(

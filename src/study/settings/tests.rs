@@ -19,16 +19,16 @@ normal_stiffness = 1e11
 friction_angle = 30
 "#;
 
-fn read(study: &str) -> Result<Plan, Vec<Defect>> {
-    Plan::read(Path::new("folder/scene.toml"), &format!("{SCENE}{study}"))
+fn read(study: &str) -> Result<StudyPlan, Vec<Defect>> {
+    StudyPlan::read(Path::new("folder/scene.toml"), &format!("{SCENE}{study}"))
 }
 
-fn plan(study: &str) -> Plan {
+fn plan(study: &str) -> StudyPlan {
     read(study).expect("a plan")
 }
 
 /// The scene of the setting with these labels.
-fn scene(plan: &Plan, labels: &str) -> Table {
+fn scene(plan: &StudyPlan, labels: &str) -> Table {
     let name = |setting: &&Setting| plan.name(setting, |_| true) == labels;
     let setting = plan.settings.iter().find(name);
     plan.scene_of(setting.unwrap_or_else(|| panic!("no setting {labels}")))
@@ -180,7 +180,7 @@ fn a_choice_that_needs_another_one_is_no_slip() {
 fn a_scene_of_a_mesh_file_has_no_meshes_to_sweep() {
     let text = SCENE.replace("geometry = \"a.geo\"", "file = \"a.msh\"");
     let text = text.replace("parameters = { h = 0.1, h_far = 1, dip = 50 }", "");
-    let read = |study: &str| Plan::read(Path::new("scene.toml"), &format!("{text}{study}"));
+    let read = |study: &str| StudyPlan::read(Path::new("scene.toml"), &format!("{text}{study}"));
     assert!(read("").expect_err("nothing")[0].remedy.contains("[study]"));
     let defects = read("[study]\norders = [1, 2]\n").expect_err("no orders");
     assert!(defects[0].problem.contains("mesh file"), "{defects:?}");

@@ -42,14 +42,14 @@ impl Clusters {
     pub(super) fn of(means: &Sparse<3, 3>, nodes: &[u32], node_offset: &[u32]) -> Self {
         let mut ties = ties(means, nodes);
         ties.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        let mut groups = Groups::single(node_offset.len() - 1);
+        let mut groups = ClusterGroups::single(node_offset.len() - 1);
         for (_, a, b) in ties {
             groups.join(a, b);
         }
         Self::collect(&groups, node_offset)
     }
 
-    fn collect(groups: &Groups, node_offset: &[u32]) -> Self {
+    fn collect(groups: &ClusterGroups, node_offset: &[u32]) -> Self {
         let nodes = node_offset.len() - 1;
         let owns = |node: usize| node_offset[node + 1] > node_offset[node];
         let mut number = vec![u32::MAX; nodes];
@@ -85,16 +85,16 @@ impl Clusters {
     }
 }
 
-/// Groups of few nodes.
-struct Groups {
+/// ClusterGroups of few nodes.
+struct ClusterGroups {
     /// Lowest node of the group of each node.
     lowest: Vec<u32>,
     /// The next node of its group, in a ring.
     next: Vec<u32>,
 }
 
-impl Groups {
-    /// Groups of one node each.
+impl ClusterGroups {
+    /// ClusterGroups of one node each.
     fn single(nodes: usize) -> Self {
         let own: Vec<u32> = (0..nodes as u32).collect();
         Self {

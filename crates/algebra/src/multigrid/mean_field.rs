@@ -88,8 +88,8 @@ impl MeanField {
     }
 
     /// The motions as they are, where every node has one row.
-    pub(super) fn into_basis(self) -> Basis {
-        Basis {
+    pub(super) fn into_basis(self) -> CoarseBasis {
+        CoarseBasis {
             prolongator: self.prolongator,
             modes: self.modes,
         }
@@ -98,14 +98,14 @@ impl MeanField {
 
 /// Motions of the nodes of the next level, as if the interface had no stiffness.
 #[derive(Debug, Clone, Default)]
-pub struct Basis {
+pub struct CoarseBasis {
     /// One row an unknown, in unknowns that are not scaled.
     pub(super) prolongator: Sparse<3, 6>,
     /// Modes of the next level's nodes.
     pub(super) modes: Vec<Modes<6>>,
 }
 
-impl Basis {
+impl CoarseBasis {
     /// A basis of `rows` unknowns and one node for each of `modes`. `motions` tells the nodes that
     /// move an unknown, ascending, and how: blocks as rows. It is called twice a row.
     pub fn new(

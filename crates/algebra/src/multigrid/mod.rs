@@ -40,7 +40,7 @@ use crate::block_rows::BlockRows;
 use crate::failure::MultigridFailure;
 use crate::interface::InterfaceBlocks;
 
-pub use mean_field::{Basis, MeanField};
+pub use mean_field::{CoarseBasis, MeanField};
 
 /// A hierarchy of levels, and the V-cycle over them.
 #[derive(Debug, Clone)]
@@ -108,7 +108,7 @@ impl Multigrid {
         matrix: BlockRows<'_>,
         first_row: &[u32],
         modes: &[[DVec3; 6]],
-        basis: impl FnOnce(&MeanField) -> Basis,
+        basis: impl FnOnce(&MeanField) -> CoarseBasis,
     ) -> Result<Self, MultigridFailure> {
         let nodes = NodeMatrix {
             matrix,

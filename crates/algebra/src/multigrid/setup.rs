@@ -8,7 +8,7 @@ use super::clusters::Clusters;
 use super::coarsest::Dense;
 use super::cycle::{Below, Level, Transfer};
 use super::galerkin::{self, Coarse};
-use super::mean_field::{Basis, MeanField, STRENGTH};
+use super::mean_field::{CoarseBasis, MeanField, STRENGTH};
 use super::smoother::Smoother;
 use super::sparse::{Sparse, Transpose};
 use super::sum_rows::{RowSubset, SumRows};
@@ -30,7 +30,7 @@ const MOST_NEAR: f64 = 0.5;
 #[derive(Debug, Clone, Default)]
 pub(super) struct FixedHierarchy {
     pub(super) clusters: Clusters,
-    pub(super) basis: Basis,
+    pub(super) basis: CoarseBasis,
     /// What the rows far from the interface give to the matrix of the next level, once that is
     /// known.
     far: Option<PartialProduct>,
@@ -74,7 +74,7 @@ impl FixedHierarchy {
     /// motions.
     pub(super) fn of(
         nodes: NodeMatrix<'_>,
-        split: impl FnOnce(MeanField) -> Basis,
+        split: impl FnOnce(MeanField) -> CoarseBasis,
     ) -> Result<(Self, LevelBuffers), MultigridFailure> {
         let NodeMatrix {
             matrix,
@@ -133,7 +133,7 @@ impl FixedHierarchy {
             return Err(MultigridFailure::NotFinite);
         }
         let (below, next) = if self.has_next(matrix.rows()) {
-            let Basis {
+            let CoarseBasis {
                 prolongator: basis,
                 modes,
             } = &self.basis;
@@ -204,7 +204,7 @@ impl FixedHierarchy {
     pub(super) fn without_basis(self) -> Self {
         let modes = self.basis.modes;
         Self {
-            basis: Basis {
+            basis: CoarseBasis {
                 prolongator: Sparse::default(),
                 modes,
             },

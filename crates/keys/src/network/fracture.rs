@@ -3,12 +3,12 @@
 use super::set::{DIP, DIP_DIRECTION, SIDES};
 use crate::dimension::Dimension;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number, quantity};
+use crate::table::{Key, KeySection, Kind, Need, number, quantity};
 
 const NOT_OF_A_POLYGON: Need = Need::Unless("the shape is `\"polygon\"`");
 
 /// A fracture given by itself.
-pub static FRACTURE: Section = Section {
+pub static FRACTURE: KeySection = KeySection {
     pattern: "[[fracture]]",
     says: "A fracture given by itself: its shape, and where it lies",
     keys: &[

@@ -4,12 +4,12 @@ use super::fracture::{LENGTH, NAME, RADIUS, ROTATION, SEMI_MAJOR, SEMI_MINOR, SH
 use super::set::{DIP, DIP_DIRECTION, SIDES};
 use crate::dimension::Dimension;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number};
+use crate::table::{Key, KeySection, Kind, Need, number};
 
 const NOT_OF_A_POLYGON: Need = Need::Unless("the shape is `polygon`");
 
 /// The columns of a list.
-pub static LIST: Section = Section {
+pub static LIST: KeySection = KeySection {
     pattern: "",
     says: "One line for each fracture, a column for each key; values are plain numbers and words",
     keys: &[

@@ -4,10 +4,10 @@ use super::SEED;
 use crate::dimension::Dimension;
 use crate::range::Range;
 use crate::scene;
-use crate::table::{Key, Kind, Need, Section, number};
+use crate::table::{Key, KeySection, Kind, Need, number};
 
 /// A set of fractures.
-pub static FRACTURE_SET: Section = Section {
+pub static FRACTURE_SET: KeySection = KeySection {
     pattern: "[fracture_set.NAME]",
     says: "A set of fractures: keys of `[fracture.NAME]` in a scene, and a list or a random set",
     keys: &[
@@ -98,7 +98,7 @@ pub(crate) const DIP_DIRECTION: Key = Key {
 };
 
 /// Orientations that scatter about a mean.
-pub static ORIENTATION: Section = Section {
+pub static ORIENTATION: KeySection = KeySection {
     pattern: "[fracture_set.NAME.orientation]",
     says: "Orientations that scatter about a mean (Fisher)",
     keys: &[
@@ -126,7 +126,7 @@ const fn size(name: &'static str, need: &'static str, says: &'static str) -> Key
 }
 
 /// How sizes are distributed.
-pub static SIZE: Section = Section {
+pub static SIZE: KeySection = KeySection {
     pattern: "[fracture_set.NAME.size]",
     says: "How sizes are distributed",
     keys: &[

@@ -3,7 +3,7 @@
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Quantity, Section, number, quantity};
+use crate::table::{Key, KeySection, Kind, Need, Quantity, number, quantity};
 
 static GRAVITY: Plausible = Plausible {
     low: 9.7,
@@ -15,7 +15,7 @@ static GRAVITY: Plausible = Plausible {
 const GROWS_ONCE: Need = Need::Without("grows once");
 
 /// A part of the outer surface.
-pub static BOUNDARY: Section = Section {
+pub static BOUNDARY: KeySection = KeySection {
     pattern: "[boundary.NAME]",
     says: "The physical surface NAME; a load and a support may act together",
     keys: &[
@@ -59,7 +59,7 @@ pub static BOUNDARY: Section = Section {
 };
 
 /// Prescribed components of a displacement.
-pub static DISPLACEMENT: Section = Section {
+pub static DISPLACEMENT: KeySection = KeySection {
     pattern: "displacement",
     says: "Prescribed components of a displacement, at least one",
     keys: &[
@@ -81,7 +81,7 @@ const fn component(name: &'static str, says: &'static str) -> Key {
 }
 
 /// A node held by itself.
-pub static FIXED_POINT: Section = Section {
+pub static FIXED_POINT: KeySection = KeySection {
     pattern: "[[fixed_point]]",
     says: "One node held by itself, to remove rigid motions",
     keys: &[
@@ -111,7 +111,7 @@ pub static FIXED_POINT: Section = Section {
 };
 
 /// What acts in all of the rock.
-pub static BODY: Section = Section {
+pub static BODY: KeySection = KeySection {
     pattern: "[body]",
     says: "What acts in all of the rock",
     keys: &[
@@ -137,7 +137,7 @@ pub static BODY: Section = Section {
 };
 
 /// Stress before any load.
-pub static INITIAL_STRESS: Section = Section {
+pub static INITIAL_STRESS: KeySection = KeySection {
     pattern: "[initial_stress]",
     says: "Stress that rock and fractures are in equilibrium with before any load",
     keys: &[
@@ -162,7 +162,7 @@ const fn stress(name: &'static str) -> Key {
 }
 
 /// A component that is linear in the elevation.
-pub static PROFILE: Section = Section {
+pub static PROFILE: KeySection = KeySection {
     pattern: "[initial_stress.XX]",
     says: "A component `value + per_metre (z - at)` at the elevation z",
     keys: &[

@@ -3,7 +3,7 @@
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number, watched};
+use crate::table::{Key, KeySection, Kind, Need, number, watched};
 
 /// Names of the closure laws.
 pub const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
@@ -30,7 +30,7 @@ static FRICTION: Plausible = Plausible {
 };
 
 /// A fracture.
-pub static FRACTURE: Section = Section {
+pub static FRACTURE: KeySection = KeySection {
     pattern: "[fracture.NAME]",
     says: "The physical surface NAME; `[fracture.default]` serves all inner surfaces not named",
     keys: &[

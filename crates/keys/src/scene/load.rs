@@ -2,10 +2,10 @@
 
 use crate::dimension::Dimension;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number, quantity};
+use crate::table::{Key, KeySection, Kind, Need, number, quantity};
 
 /// Load steps.
-pub static LOAD: Section = Section {
+pub static LOAD: KeySection = KeySection {
     pattern: "[load]",
     says: "Load steps: one of `steps`, `times` and `phase`",
     keys: &[
@@ -35,7 +35,7 @@ pub static LOAD: Section = Section {
 };
 
 /// Load steps with a name.
-pub static PHASE: Section = Section {
+pub static PHASE: KeySection = KeySection {
     pattern: "[[load.phase]]",
     says: "Load steps with a name",
     keys: &[

@@ -2,10 +2,10 @@
 
 use crate::dimension::Dimension;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number};
+use crate::table::{Key, KeySection, Kind, Need, number};
 
 /// Where the mesh comes from.
-pub static MESH: Section = Section {
+pub static MESH: KeySection = KeySection {
     pattern: "[mesh]",
     says: "Where the mesh comes from: a gmsh geometry or a mesh file, relative to the scene",
     keys: &[
@@ -56,7 +56,7 @@ pub static MESH: Section = Section {
 };
 
 /// A mesh that follows the estimated error.
-pub static ADAPT: Section = Section {
+pub static ADAPT: KeySection = KeySection {
     pattern: "[mesh.adapt]",
     says: "How far a mesh follows the estimated error",
     keys: &[

@@ -2,13 +2,13 @@
 
 use crate::dimension::Dimension;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number, quantity};
+use crate::table::{Key, KeySection, Kind, Need, number, quantity};
 
 /// Names of the closed forms.
 pub const FORMS: [&str; 3] = ["penny", "line", "uniform"];
 
 /// The closed form of a fracture.
-pub static ORACLE: Section = Section {
+pub static ORACLE: KeySection = KeySection {
     pattern: "[oracle.NAME]",
     says: "A closed form to compare the fracture NAME with",
     keys: &[

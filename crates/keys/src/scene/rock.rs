@@ -3,7 +3,7 @@
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, Need, Section, watched};
+use crate::table::{Key, KeySection, Need, watched};
 
 static YOUNG: Plausible = Plausible {
     low: 1e6,
@@ -27,7 +27,7 @@ static DENSITY: Plausible = Plausible {
 };
 
 /// A rock.
-pub static ROCK: Section = Section {
+pub static ROCK: KeySection = KeySection {
     pattern: "[rock.NAME]",
     says: "The physical volume NAME; `[rock.default]` serves all volumes not named",
     keys: &[

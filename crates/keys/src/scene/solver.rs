@@ -2,7 +2,7 @@
 
 use crate::dimension::Dimension;
 use crate::range::Range;
-use crate::table::{Key, Kind, Need, Section, number};
+use crate::table::{Key, KeySection, Kind, Need, number};
 
 /// Names of the linear solvers.
 pub const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
@@ -10,7 +10,7 @@ pub const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
 pub const FACETS: [&str; 2] = ["nodal", "gauss"];
 
 /// What is asked of the solver.
-pub static SOLVER: Section = Section {
+pub static SOLVER: KeySection = KeySection {
     pattern: "[solver]",
     says: "What is asked of the solver, only to overrule the program",
     keys: &[

@@ -3,12 +3,12 @@
 use crate::dimension::Dimension;
 use crate::range::Range;
 use crate::scene::{CLOSURES, FACETS, FRACTURE, SOLVERS};
-use crate::table::{FREE, Key, Kind, Need, Section, number, quantity};
+use crate::table::{FREE, Key, KeySection, Kind, Need, number, quantity};
 
 const AS_THE_SCENE: Need = Need::Without("as in the scene");
 
 /// What `kluft study` sweeps.
-pub static STUDY: Section = Section {
+pub static STUDY: KeySection = KeySection {
     pattern: "[study]",
     says: "What `kluft study` sweeps: all combinations; what is left out stays as in the scene",
     keys: &[
@@ -80,7 +80,7 @@ pub static STUDY: Section = Section {
 };
 
 /// Keys of all fractures under a label.
-pub static CLOSURE: Section = Section {
+pub static CLOSURE: KeySection = KeySection {
     pattern: "an entry of closures",
     says: "Keys of `[fracture.NAME]` for all fractures; `false` removes one",
     keys: &[Key {
@@ -94,7 +94,7 @@ pub static CLOSURE: Section = Section {
 };
 
 /// Numbers whose logarithms lie evenly.
-pub static SERIES: Section = Section {
+pub static SERIES: KeySection = KeySection {
     pattern: "a series of values",
     says: "Numbers whose logarithms lie evenly, in the place of a list",
     keys: &[

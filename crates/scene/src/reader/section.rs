@@ -16,7 +16,7 @@ pub struct Section<'a, 'i> {
     pub(super) source: &'a Source<'i>,
     pub(super) table: &'a DeTable<'i>,
     /// Its keys.
-    pub(super) keys: &'static kluft_keys::Section,
+    pub(super) keys: &'static kluft_keys::KeySection,
     /// How messages call it, e.g. `[rock.granite]`.
     pub title: String,
     /// Where it stands.
@@ -36,7 +36,7 @@ impl<'a, 'i> Section<'a, 'i> {
     /// A table of a file, with its place; `title` is how messages call it.
     pub(super) fn new(
         source: &'a Source<'i>,
-        keys: &'static kluft_keys::Section,
+        keys: &'static kluft_keys::KeySection,
         title: String,
         (table, at): (&'a DeTable<'i>, Range<usize>),
     ) -> Self {

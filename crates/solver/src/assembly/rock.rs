@@ -256,7 +256,7 @@ impl<'a> CellMatrices<'a> {
         for (&slot, visit) in slots.iter().zip(visits) {
             let blocks = self.row(visit, &mut tetrahedron);
             let point = points.of_cell_node[slot as usize] as usize;
-            let target = Target {
+            let target = TargetRows {
                 points,
                 point,
                 own: points.of_node(node),
@@ -305,13 +305,13 @@ impl RowScratch {
 }
 
 /// A point whose block row is spread over the rows of its node's unknowns `own`.
-struct Target<'a> {
+struct TargetRows<'a> {
     points: &'a SectorNodes,
     point: usize,
     own: Range<usize>,
 }
 
-impl Target<'_> {
+impl TargetRows<'_> {
     /// Adds a block between two points to the unknowns of their nodes, `K_kl += c_ik c_jl K_ij`;
     /// those of `other` stand at `start` in every row.
     fn scatter(&self, other: usize, block: DMat3, start: usize, rows: &mut [DMat3]) {

@@ -1,7 +1,7 @@
 //! What the hierarchy promises for rock that fractures cut.
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::multigrid::{Basis, Multigrid, rigid_modes};
+use kluft_algebra::multigrid::{CoarseBasis, Multigrid, rigid_modes};
 use kluft_algebra::{norm, small};
 use kluft_mesh::structured::{Patch, tetrahedra};
 use kluft_mesh::{Mesh, SurfaceRole};
@@ -81,9 +81,9 @@ fn modes(problem: &Problem) -> Vec<[DVec3; 6]> {
 }
 
 /// The multigrid of the rock, and the motions of its next level.
-fn prepared(system: &System<'_>) -> (Multigrid, Basis) {
+fn prepared(system: &System<'_>) -> (Multigrid, CoarseBasis) {
     let space = system.discretisation.space(system.problem);
-    let mut basis = Basis::default();
+    let mut basis = CoarseBasis::default();
     let multigrid = Multigrid::with_basis(
         system.rock_rows(),
         &space.points.offset,

@@ -1,6 +1,6 @@
 //! Split aggregates: the motions of aggregates that fractures cut, one for each part.
 //!
-//! An aggregate of the intact rock moves nodes on both sides of a fracture. Cut along the facets,
+//! An aggregate of the intact rock moves nodes on both sides of a fracture. SplitAggregate along the facets,
 //! its motion falls into parts; each becomes a motion of its own, as a node falls into points. So
 //! the next level knows smooth jumps as the finest one knows jumps, which nothing else can take
 //! care of at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one
@@ -9,7 +9,7 @@
 //! the next one. What stiff walls make of these motions is left to the multigrid, see
 //! [`kluft_algebra::multigrid`].
 
-use kluft_algebra::multigrid::{Basis, MeanField};
+use kluft_algebra::multigrid::{CoarseBasis, MeanField};
 use kluft_algebra::small::{Modes, add, product, rows_of, widen};
 use kluft_mesh::DisjointSets;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ impl<'a> SplitAggregates<'a> {
     /// Cuts the aggregates of `means`.
     pub(super) fn of(space: Space<'a>, means: &'a MeanField) -> Self {
         let aggregates = means.aggregates();
-        let cuts: Vec<Cut> = (0..aggregates)
+        let cuts: Vec<SplitAggregate> = (0..aggregates)
             .into_par_iter()
             .with_min_len(PER_TASK)
             .map_init(
@@ -73,8 +73,8 @@ impl<'a> SplitAggregates<'a> {
     /// Numbers the parts of an aggregate that become motions of their own, and tells how many they
     /// are: those that are not small, or have a point that no other aggregate could move in their
     /// stead.
-    fn numbered(&self, cuts: &[Cut], aggregate: usize) -> (u32, Vec<(u32, u32)>) {
-        let Cut { parts, is_small } = &cuts[aggregate];
+    fn numbered(&self, cuts: &[SplitAggregate], aggregate: usize) -> (u32, Vec<(u32, u32)>) {
+        let SplitAggregate { parts, is_small } = &cuts[aggregate];
         let mut has_own_motion: Vec<bool> = is_small.iter().map(|small| !small).collect();
         for &(point, part) in parts {
             let has_host = self.entries(point as usize).any(|(other, _)| {
@@ -155,8 +155,8 @@ impl<'a> SplitAggregates<'a> {
 
     /// The motions of all unknowns: the mean displacement is the mean of the motions of the points
     /// of its node, jump `k` the motion of sector `k` less that of sector 0.
-    pub(super) fn basis(&self) -> Basis {
-        Basis::new(self.space.points.len(), self.modes(), |unknown| {
+    pub(super) fn basis(&self) -> CoarseBasis {
+        CoarseBasis::new(self.space.points.len(), self.modes(), |unknown| {
             self.motion(unknown)
         })
     }
@@ -201,14 +201,14 @@ fn cancelled(mut terms: Vec<(u32, f64, [[f64; 6]; 3])>) -> Vec<(u32, [[f64; 6]; 
 }
 
 /// The parts of an aggregate.
-struct Cut {
+struct SplitAggregate {
     /// Part of each point, points ascending; empty if it is whole.
     parts: Vec<(u32, u32)>,
     /// Whether a part has but a small share of the motion.
     is_small: Vec<bool>,
 }
 
-impl Cut {
+impl SplitAggregate {
     /// Whether others can follow its motion of a point.
     fn is_host(&self, point: u32) -> bool {
         let found = self.parts.binary_search_by_key(&point, |(point, _)| *point);
@@ -252,7 +252,7 @@ fn moved(space: Space<'_>, means: &MeanField, aggregate: usize) -> Vec<(u32, f64
 
 /// Numbers the parts into which the facets cut the points of an aggregate. `number` is room,
 /// [`NOWHERE`] for all points before and after.
-fn cut(space: Space<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut {
+fn cut(space: Space<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> SplitAggregate {
     let Space {
         points, pattern, ..
     } = space;
@@ -285,7 +285,7 @@ fn cut(space: Space<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut {
     parts.sort_unstable();
     parts.dedup();
     if parts.len() < 2 {
-        return Cut {
+        return SplitAggregate {
             parts: Vec::new(),
             is_small: Vec::new(),
         };
@@ -297,7 +297,7 @@ fn cut(space: Space<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> Cut {
     }
     let total: f64 = weights.iter().sum();
     let numbered = moved.iter().zip(&roots);
-    Cut {
+    SplitAggregate {
         parts: numbered
             .map(|((point, _), root)| (*point, part(root) as u32))
             .collect(),

@@ -6,7 +6,7 @@ use kluft_algebra::norm;
 
 use super::facet_points::interface;
 use super::iteration::Iterate;
-use super::{Iteration, NewtonSettings, Outcome, Step};
+use super::{Iteration, NewtonSettings, Step, StepOutcome};
 use crate::system::{State, StateScales, System};
 
 /// Share of the largest sizes of a path that still counts once the loads are gone: what is left
@@ -43,11 +43,11 @@ pub(super) fn measure(
     iterate: &mut Iterate,
     errors: &[f64],
     change: f64,
-) -> Result<Iteration, Outcome> {
+) -> Result<Iteration, StepOutcome> {
     let (system, state) = (step.system, &iterate.state);
     let tractions = system.law_tractions(state);
     if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
-        return Err(Outcome::NotFinite(Some(broken)));
+        return Err(StepOutcome::NotFinite(Some(broken)));
     }
     let residual = norm(&system.residual(&iterate.rock_forces, &tractions, &state.load));
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));

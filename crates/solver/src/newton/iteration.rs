@@ -12,7 +12,7 @@ use super::forcing_term;
 use super::line_search;
 use super::recycling::LastCorrection;
 use super::rigid_motion::RigidBodyMotion;
-use super::{Iteration, Newton, Outcome, Step};
+use super::{Iteration, Newton, Step, StepOutcome};
 use crate::linear::{LinearSolution, Tangents};
 use crate::problem::Load;
 use crate::system::{State, StateScales, System};
@@ -82,14 +82,14 @@ impl Iterate {
         &mut self,
         step: &mut Step<'_>,
         update: Update<'_>,
-    ) -> Result<Iteration, Outcome> {
+    ) -> Result<Iteration, StepOutcome> {
         let (system, correction) = (step.system, update.correction);
         let unknowns = &mut self.state.unknowns;
         for (unknown, change) in unknowns.iter_mut().zip(&correction.unknowns) {
             *unknown += *change;
         }
         if !unknowns.iter().all(|unknown| unknown.is_finite()) {
-            return Err(Outcome::NotFinite(None));
+            return Err(StepOutcome::NotFinite(None));
         }
         self.correct_rock_forces(system, correction);
         let errors = facet_points::follow(
@@ -124,7 +124,7 @@ impl Newton {
         &mut self,
         step: &mut Step<'_>,
         iterate: &mut Iterate,
-    ) -> Result<(), Outcome> {
+    ) -> Result<(), StepOutcome> {
         if let Some(iteration) = self.test_guess(step, iterate)? {
             step.report(iteration);
             return Ok(());
@@ -139,7 +139,7 @@ impl Newton {
             step.go_on()?;
             rigid_body_motion.test(step, &iterate.state, &iteration, count)?;
         }
-        Err(Outcome::OutOfIterations)
+        Err(StepOutcome::OutOfIterations)
     }
 
     /// Iteration `count` of an increment.
@@ -151,12 +151,12 @@ impl Newton {
         step: &mut Step<'_>,
         iterate: &mut Iterate,
         count: usize,
-    ) -> Result<Iteration, Outcome> {
+    ) -> Result<Iteration, StepOutcome> {
         let system = step.system;
         let tangents = facet_points::tangents(system, &iterate.state);
         self.update_tangent(step, &tangents)?;
         let solution = self.solve_linearised(system, iterate, &tangents);
-        let solution = solution.map_err(Outcome::Linear)?;
+        let solution = solution.map_err(StepOutcome::Linear)?;
         let is_recycled = self.recycled.is_some() && system.is_smooth();
         let correction = Correction::of(system, solution.unknowns, is_recycled);
         let update = Update {
@@ -173,7 +173,11 @@ impl Newton {
     }
 
     /// Gives the linear solver the tangents.
-    fn update_tangent(&mut self, step: &mut Step<'_>, tangents: &Tangents) -> Result<(), Outcome> {
+    fn update_tangent(
+        &mut self,
+        step: &mut Step<'_>,
+        tangents: &Tangents,
+    ) -> Result<(), StepOutcome> {
         let start = Instant::now();
         let system = step.system;
         let updated = if system.is_smooth() {
@@ -182,7 +186,7 @@ impl Newton {
             let stabilised = facet_points::stabilised(system, tangents);
             self.linear.update(system, &stabilised)
         };
-        updated.map_err(Outcome::Linear)?;
+        updated.map_err(StepOutcome::Linear)?;
         step.record.factorise_seconds += start.elapsed().as_secs_f64();
         Ok(())
     }

@@ -5,7 +5,7 @@
 //! residual.
 
 use super::iteration::{Iterate, Update};
-use super::{Iteration, Outcome, Step};
+use super::{Iteration, Step, StepOutcome};
 
 /// Iterations that take the whole correction.
 const WHOLE_CORRECTIONS: usize = 6;
@@ -26,7 +26,7 @@ pub(super) fn advance(
     iterate: &mut Iterate,
     update: Update<'_>,
     count: usize,
-) -> Result<Iteration, Outcome> {
+) -> Result<Iteration, StepOutcome> {
     let former = iterate.merit.filter(|_| count > WHOLE_CORRECTIONS);
     let best = former.and_then(|former| search(step, iterate, update, former));
     let Some((iteration, next)) = best else {

@@ -45,7 +45,7 @@ use iteration::Iterate;
 use recycling::RecycledSpace;
 use step::Step;
 
-pub use record::{Iteration, Outcome, StepRecord};
+pub use record::{Iteration, StepOutcome, StepRecord};
 pub(crate) use recycling::bytes as recycling_bytes;
 pub use restart::RestartState;
 pub use settings::NewtonSettings;
@@ -110,7 +110,7 @@ impl Newton {
         let outcome = match self.solve_in_substeps(&mut step, state, load) {
             Ok(end) => {
                 *state = end;
-                Outcome::Converged
+                StepOutcome::Converged
             }
             Err(outcome) => outcome,
         };
@@ -143,7 +143,7 @@ impl Newton {
         step: &mut Step<'_>,
         from: &State,
         load: &Load,
-    ) -> Result<State, Outcome> {
+    ) -> Result<State, StepOutcome> {
         step.go_on()?;
         step.record.rigid_motions.clear();
         let mut iterate = self.predict(step.system, from, load);

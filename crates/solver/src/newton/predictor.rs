@@ -6,7 +6,7 @@ use super::facet_points::{self, LastTrial};
 use super::forcing_term;
 use super::iteration::Iterate;
 use super::recycling::GalerkinGuess;
-use super::{Iteration, Newton, Outcome, Step};
+use super::{Iteration, Newton, Step, StepOutcome};
 use crate::problem::Load;
 use crate::system::{State, StateScales, System};
 
@@ -57,7 +57,7 @@ impl Newton {
         &self,
         step: &mut Step<'_>,
         iterate: &mut Iterate,
-    ) -> Result<Option<Iteration>, Outcome> {
+    ) -> Result<Option<Iteration>, StepOutcome> {
         let Some(guess) = &iterate.guess else {
             return Ok(None);
         };

@@ -23,7 +23,7 @@ pub struct Iteration {
 
 /// How a load step ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum StepOutcome {
     /// All three tests hold.
     Converged,
     /// The iterations ran out.
@@ -50,7 +50,7 @@ pub struct StepRecord {
     /// Share of the step, from the load before to that at its end, that was solved.
     pub completed: f64,
     /// How it ended.
-    pub outcome: Outcome,
+    pub outcome: StepOutcome,
     /// Blocks that nothing held when it failed, each with its free motions.
     pub rigid_motions: Vec<Defect>,
     /// The facet point with the largest closure error at the end.
@@ -69,7 +69,7 @@ impl StepRecord {
             substeps: Vec::new(),
             completed: 0.0,
             rigid_motions: Vec::new(),
-            outcome: Outcome::OutOfIterations,
+            outcome: StepOutcome::OutOfIterations,
             worst_facet_point: None,
             factorise_seconds: 0.0,
             solve_seconds: 0.0,
@@ -84,6 +84,6 @@ impl StepRecord {
 
     /// Whether the step converged.
     pub fn converged(&self) -> bool {
-        self.outcome == Outcome::Converged
+        self.outcome == StepOutcome::Converged
     }
 }

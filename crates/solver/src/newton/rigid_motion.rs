@@ -4,7 +4,7 @@ use kluft_mesh::Defect;
 use rayon::prelude::*;
 
 use super::facet_points::{interface, tangent};
-use super::{Iteration, Outcome, Step};
+use super::{Iteration, Step, StepOutcome};
 use crate::space::rigid_modes::{self, Tie};
 use crate::system::{State, System};
 
@@ -28,14 +28,14 @@ impl RigidBodyMotion {
     /// Looks at the state after iteration `count` of an increment.
     ///
     /// # Errors
-    /// [`Outcome::RigidBodyMotion`], with the blocks in the record.
+    /// [`StepOutcome::RigidBodyMotion`], with the blocks in the record.
     pub(super) fn test(
         &mut self,
         step: &mut Step<'_>,
         state: &State,
         iteration: &Iteration,
         count: usize,
-    ) -> Result<(), Outcome> {
+    ) -> Result<(), StepOutcome> {
         let is_late = count >= ITERATIONS_BEFORE_SEARCH && !step.system.is_smooth();
         if is_late && iteration.force_residual > UNBALANCED {
             step.record.rigid_motions = find(step.system, state);
@@ -46,7 +46,7 @@ impl RigidBodyMotion {
             };
         }
         if self.unconstrained == UNCONSTRAINED_ITERATIONS {
-            return Err(Outcome::RigidBodyMotion);
+            return Err(StepOutcome::RigidBodyMotion);
         }
         Ok(())
     }

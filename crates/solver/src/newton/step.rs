@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::rigid_motion;
-use super::{Iteration, Outcome, StepRecord};
+use super::{Iteration, StepOutcome, StepRecord};
 use crate::problem::Load;
 use crate::system::{State, System};
 
@@ -38,10 +38,10 @@ impl<'a> Step<'a> {
     /// Whether the observer wants more.
     ///
     /// # Errors
-    /// [`Outcome::Stopped`] if not.
-    pub(super) fn go_on(&self) -> Result<(), Outcome> {
+    /// [`StepOutcome::Stopped`] if not.
+    pub(super) fn go_on(&self) -> Result<(), StepOutcome> {
         if self.is_stopped {
-            Err(Outcome::Stopped)
+            Err(StepOutcome::Stopped)
         } else {
             Ok(())
         }
@@ -49,15 +49,15 @@ impl<'a> Step<'a> {
 
     /// Records the blocks that nothing holds in the state where an increment failed, unless they
     /// are known.
-    pub(super) fn explain(&mut self, outcome: &Outcome, state: &State) {
-        let is_known = !self.record.rigid_motions.is_empty() || *outcome == Outcome::Stopped;
+    pub(super) fn explain(&mut self, outcome: &StepOutcome, state: &State) {
+        let is_known = !self.record.rigid_motions.is_empty() || *outcome == StepOutcome::Stopped;
         if !is_known && !self.system.is_smooth() {
             self.record.rigid_motions = rigid_motion::find(self.system, state);
         }
     }
 
     /// The record after `seconds` altogether.
-    pub(super) fn finished(mut self, outcome: Outcome, seconds: f64) -> StepRecord {
+    pub(super) fn finished(mut self, outcome: StepOutcome, seconds: f64) -> StepRecord {
         self.record.outcome = outcome;
         self.record.solve_seconds = seconds - self.record.factorise_seconds;
         self.record

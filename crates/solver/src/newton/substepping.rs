@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::convergence::{largest, ratio};
 use super::facet_points::interface;
-use super::{Newton, Outcome, Step};
+use super::{Newton, Step, StepOutcome};
 use crate::FacetPointState;
 use crate::problem::Load;
 use crate::system::{State, System};
@@ -33,7 +33,7 @@ enum Solved {
     /// Its end, and whether the next may be longer.
     Accepted { end: State, may_grow: bool },
     /// It is to be divided; why, if it is not for accuracy.
-    TooLong(Option<Outcome>),
+    TooLong(Option<StepOutcome>),
 }
 
 impl Newton {
@@ -46,7 +46,7 @@ impl Newton {
         step: &mut Step<'_>,
         state: &State,
         load: &Load,
-    ) -> Result<State, Outcome> {
+    ) -> Result<State, StepOutcome> {
         let mut here = state.clone();
         let mut increment = 1.0_f64;
         while step.record.completed < 1.0 {
@@ -114,7 +114,7 @@ impl Newton {
         step: &mut Step<'_>,
         from: &State,
         load: &Load,
-    ) -> Result<State, Outcome> {
+    ) -> Result<State, StepOutcome> {
         let before = step.record.iterations.len();
         let end = self.solve_increment(step, from, load)?;
         let iterations = step.record.iterations.len() - before;
@@ -125,10 +125,10 @@ impl Newton {
 
 /// Whether a shorter substep would change nothing about a failure. Without friction a block that
 /// moves freely at the end does so whatever the path.
-fn is_final(system: &System<'_>, outcome: &Outcome, increment: f64) -> bool {
+fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool {
     increment <= SMALLEST_SUBSTEP
-        || *outcome == Outcome::Stopped
-        || (*outcome == Outcome::RigidBodyMotion && !system.is_path_dependent())
+        || *outcome == StepOutcome::Stopped
+        || (*outcome == StepOutcome::RigidBodyMotion && !system.is_path_dependent())
 }
 
 /// The load at a share of a step.

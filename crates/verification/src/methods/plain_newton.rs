@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3};
 use kluft_solver::{
     Discretisation, FacetPoint, Iteration, LinearFailure, Load, NewtonSettings, NonsymmetricSolver,
-    Outcome, Plan, Problem, Solution, State, StepRecord, System, Tangents, Unknowns, Workload,
+    Plan, Problem, Solution, State, StepOutcome, StepRecord, System, Tangents, Unknowns, Workload,
     norm, solution,
 };
 use lie_core::{FractureLaw, JointHistory, Separation, Tension, TrialState};
@@ -108,9 +108,13 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
             let outcome = newton.run();
             (outcome, newton.iterations, newton.state)
         }
-        Err(failure) => (Outcome::Linear(failure), Vec::new(), system.initial_state()),
+        Err(failure) => (
+            StepOutcome::Linear(failure),
+            Vec::new(),
+            system.initial_state(),
+        ),
     };
-    let converged = outcome == Outcome::Converged;
+    let converged = outcome == StepOutcome::Converged;
     let record = StepRecord {
         load,
         completed: f64::from(u8::from(converged)),
@@ -165,7 +169,7 @@ impl<'a> PlainNewton<'a> {
         })
     }
 
-    fn run(&mut self) -> Outcome {
+    fn run(&mut self) -> StepOutcome {
         for _ in 0..self.settings.max_iterations {
             let iteration = match self.iterate() {
                 Ok(iteration) => iteration,
@@ -173,21 +177,21 @@ impl<'a> PlainNewton<'a> {
             };
             self.iterations.push(iteration);
             if self.is_converged(&iteration) {
-                return Outcome::Converged;
+                return StepOutcome::Converged;
             }
         }
-        Outcome::OutOfIterations
+        StepOutcome::OutOfIterations
     }
 
-    fn iterate(&mut self) -> Result<Iteration, Outcome> {
+    fn iterate(&mut self) -> Result<Iteration, StepOutcome> {
         let system = self.system;
         let tangents = self.tangents();
-        let correction = self.correction(&tangents).map_err(Outcome::Linear)?;
+        let correction = self.correction(&tangents).map_err(StepOutcome::Linear)?;
         for (unknown, change) in self.state.unknowns.iter_mut().zip(&correction) {
             *unknown += *change;
         }
         if !self.state.unknowns.iter().all(|u| u.is_finite()) {
-            return Err(Outcome::NotFinite(None));
+            return Err(StepOutcome::NotFinite(None));
         }
         let interface = &system.discretisation().interface();
         let changes = interface.jumps(&correction, &Load::NONE);
@@ -268,11 +272,11 @@ impl<'a> PlainNewton<'a> {
 
     /// How far the state is from a solution; `change` is the largest displacement of the iteration
     /// (m).
-    fn measure(&self, change: f64, errors: &[f64]) -> Result<Iteration, Outcome> {
+    fn measure(&self, change: f64, errors: &[f64]) -> Result<Iteration, StepOutcome> {
         let (system, state) = (self.system, &self.state);
         let tractions = system.law_tractions(state);
         if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
-            return Err(Outcome::NotFinite(Some(broken)));
+            return Err(StepOutcome::NotFinite(Some(broken)));
         }
         let rock = system.rock_forces(&state.unknowns);
         let residual = norm(&system.residual(&rock, &tractions, &state.load));
