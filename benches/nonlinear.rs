@@ -75,22 +75,52 @@ fn uneven(cubes: usize) -> Problem {
     problem
 }
 
+/// What the command line asks for.
+struct Arguments {
+    cubes: usize,
+    method: Option<LinearMethod>,
+    is_uneven: bool,
+    /// Whether to stop after one step.
+    once: bool,
+}
+
+impl Arguments {
+    fn read() -> Self {
+        let words: Vec<String> = std::env::args()
+            .skip(1)
+            .filter(|a| a != "--bench")
+            .collect();
+        let cubes = words
+            .first()
+            .map_or(32, |size| size.parse().expect("a number of cubes"));
+        let method = match words.get(1).map(String::as_str) {
+            None | Some("chosen") => None,
+            Some(name) => Some(name.parse().expect("a method")),
+        };
+        let flag = |name: &str| words.iter().skip(2).any(|word| word == name);
+        Self {
+            cubes,
+            method,
+            is_uneven: flag("uneven"),
+            once: flag("once"),
+        }
+    }
+}
+
+/// Prints what a run took, beside the seconds of another.
+fn tell(what: &str, seconds: f64, (newton, linear): (usize, usize), base: f64) {
+    println!(
+        "{what}: {seconds:.2} s, {newton} Newton, {linear} linear iterations, ratio {:.2}",
+        seconds / base
+    );
+}
+
 fn main() {
-    let arguments: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|a| a != "--bench")
-        .collect();
-    let cubes = arguments
-        .first()
-        .map_or(32, |size| size.parse().expect("a number of cubes"));
-    let method = match arguments.get(1).map(String::as_str) {
-        None | Some("chosen") => None,
-        Some(name) => Some(name.parse().expect("a method")),
-    };
-    let flag = |name: &str| arguments.iter().skip(2).any(|word| word == name);
-    let problem = match flag("uneven") {
-        true => uneven(cubes),
-        false => block::problem(cubes, &block::TWO_PLANES),
+    let arguments = Arguments::read();
+    let problem = if arguments.is_uneven {
+        uneven(arguments.cubes)
+    } else {
+        block::problem(arguments.cubes, &block::TWO_PLANES)
     };
     let discretisation = Discretisation::of(&problem).expect("supported");
     let fractured = discretisation.points().jump_count() as f64;
@@ -100,40 +130,31 @@ fn main() {
         3 * discretisation.points().jump_count(),
         100.0 * fractured / discretisation.points().node_count() as f64,
     );
-    let mut system = System::assemble(&problem, discretisation);
-    let closing: Vec<FractureLaw> = problem.fractures.iter().map(|f| f.law).collect();
+    measure(&mut System::assemble(&problem, discretisation), &arguments);
+}
+
+/// One linear solve, one nonlinear step, many steps, and many stiffnesses.
+fn measure(system: &mut System<'_>, arguments: &Arguments) {
+    let method = arguments.method;
+    let closing: Vec<FractureLaw> = system.problem().fractures.iter().map(|f| f.law).collect();
     let mut linear = closing.clone();
     for law in &mut linear {
         law.closure.kind = lie_core::ClosureKind::Linear;
     }
     system.set_laws(linear);
-    let (once, counts) = timed(|| run(&system, method, 1));
+    let (once, counts) = timed(|| run(system, method, 1));
     println!(
         "one linear solve: {once:.2} s, {} linear iterations",
         counts.1
     );
     system.set_laws(closing);
-    let tell = |what: &str, (seconds, counts): (f64, (usize, usize)), base: f64| {
-        println!(
-            "{what}: {seconds:.2} s, {} Newton, {} linear iterations, ratio {:.2}",
-            counts.0,
-            counts.1,
-            seconds / base
-        );
-        seconds
-    };
-    let one = tell(
-        "one step, nonlinear",
-        timed(|| run(&system, method, 1)),
-        once,
-    );
-    if flag("once") {
+    let (one, counts) = timed(|| run(system, method, 1));
+    tell("one step, nonlinear", one, counts, once);
+    if arguments.once {
         return;
     }
-    tell("100 steps", timed(|| run(&system, method, 100)), one);
-    tell(
-        "50 stiffnesses",
-        timed(|| sweep(&mut system, method, 50)),
-        one,
-    );
+    let (seconds, counts) = timed(|| run(system, method, 100));
+    tell("100 steps", seconds, counts, one);
+    let (seconds, counts) = timed(|| sweep(system, method, 50));
+    tell("50 stiffnesses", seconds, counts, one);
 }

@@ -5,7 +5,7 @@
 //! | module | what belongs there |
 //! |---|---|
 //! | `augmented_lagrangian` | the method that contact is compared with, against statics |
-//! | `closed_forms` | laws by simulation: the table of the logarithmic one, the single joint of OpenGeoSys |
+//! | `closed_forms` | the table of the logarithmic law and a single joint, by simulation |
 //! | `conditions` | supports, loads, gravity, initial stress, load steps |
 //! | `contact` | walls that close, part and meet again, blocks that nothing holds |
 //! | `degenerate_geometry` | fractures in every awkward position, against split nodes |

@@ -2,7 +2,7 @@
 
 use kluft_chart::{Chart, Series};
 
-use super::error_chart;
+use super::charts::error_chart;
 use super::scene::{self, Outcome};
 use crate::report::{Effort, Finding, Study, Table, count, digits, percent, reaches, slope};
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use kluft_chart::{Axis, Chart, Series};
 
-use super::half_circle;
+use super::charts::half_circle;
 use super::scene::{self, Outcome};
 use crate::report::{Effort, Finding, Study, Table, percent};
 

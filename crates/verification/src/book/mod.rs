@@ -4,6 +4,7 @@
 
 mod adaptive;
 mod barton_bandis;
+mod charts;
 mod estimate;
 mod inclined_crack;
 mod inclined_penny;
@@ -11,6 +12,7 @@ mod joint_sets;
 mod line_crack;
 mod log_law;
 mod oscillation;
+mod parts;
 mod patch_test;
 mod paths;
 mod penny;
@@ -18,9 +20,7 @@ mod scene;
 mod single_joint;
 mod spherical_joint;
 
-use kluft_chart::{Axis, Chart, Series};
-
-use crate::report::{Finding, Layout, Report};
+use crate::report::{Layout, Report};
 
 const HEAD: &str = "# Verification book
 
@@ -58,38 +58,4 @@ pub fn report() -> Report {
         ],
         layout: Layout::PageEach,
     }
-}
-
-impl Finding {
-    /// Adds the closed form and its source; results follow.
-    fn closed_form(self, closed_form: &str, source: &str) -> Self {
-        self.heading("Closed form")
-            .text(closed_form)
-            .text(format!("Source: {source}."))
-            .heading("Result")
-    }
-
-    /// Adds what the results show.
-    fn shows(self, text: impl Into<String>) -> Self {
-        self.heading("What it shows").text(text)
-    }
-}
-
-/// Errors of something over the unknowns, a line for each family of meshes.
-pub fn error_chart(body: &str, what: &str, families: impl Iterator<Item = Series>) -> Chart {
-    Chart {
-        series: families.collect(),
-        ..Chart::new(
-            format!("{body}: error of the {what}"),
-            Axis::logarithmic("unknowns"),
-            Axis::logarithmic(format!("error of the {what} (relative)")),
-        )
-    }
-}
-
-/// `sqrt(1 - x^2)` times a height, dense where it is steep.
-pub fn half_circle(height: f64) -> Vec<(f64, f64)> {
-    let angles = (0..=40).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_2 / 40.0);
-    let points = angles.map(|angle| (angle.sin(), height * angle.cos().max(0.0)));
-    points.collect()
 }

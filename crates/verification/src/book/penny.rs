@@ -2,8 +2,8 @@
 
 use kluft_chart::{Axis, Chart, Series};
 
+use super::charts::{error_chart, half_circle};
 use super::scene::{self, Outcome};
-use super::{error_chart, half_circle};
 use crate::report::{Effort, Finding, Study, Table, count, digits, percent, reaches, slope};
 
 pub const PAGE: Study = Study {

@@ -16,18 +16,24 @@ pub fn wrapped(text: &str) -> String {
         if paragraph.starts_with(['#', '|', '!', ' ']) {
             paragraph.to_owned()
         } else {
-            lines(paragraph)
+            lines(paragraph, WIDTH).join("\n")
         }
     };
     paragraphs.map(wrap).collect::<Vec<String>>().join("\n\n")
 }
 
+/// An item of a list.
+pub fn item(text: &str) -> String {
+    let lines = lines(text, WIDTH - 2);
+    format!("- {}\n", lines.join("\n  "))
+}
+
 /// Code, and a number with its percent sign, stay on one line.
-fn lines(paragraph: &str) -> String {
+fn lines(paragraph: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in tied(paragraph).split_whitespace() {
         let line = lines.last_mut().expect("a line");
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
             lines.push(word.to_owned());
         } else {
             if !line.is_empty() {
@@ -36,7 +42,8 @@ fn lines(paragraph: &str) -> String {
             line.push_str(word);
         }
     }
-    lines.join("\n").replace(TIED, " ")
+    let untied = |line: String| line.replace(TIED, " ");
+    lines.into_iter().map(untied).collect()
 }
 
 fn tied(paragraph: &str) -> String {

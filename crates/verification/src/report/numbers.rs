@@ -53,9 +53,12 @@ pub fn reaches(points: &[(f64, f64)], y: f64) -> (f64, bool) {
 
 /// The largest of some numbers; not a number if one of them is not.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    let larger = |most: f64, value: f64| match most.is_nan() || most >= value {
-        true => most,
-        false => value,
+    let larger = |most: f64, value: f64| {
+        if most.is_nan() || most >= value {
+            most
+        } else {
+            value
+        }
     };
     values.into_iter().fold(0.0, larger)
 }

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use serde_json::{Map, Value, json};
 
-use super::markdown::{anchor, parts, wrapped};
+use super::markdown::{anchor, item, parts, wrapped};
 use super::{Effort, Finding, Part, Study};
 use crate::machine;
 
@@ -199,7 +199,7 @@ fn sections(known: &[(&Study, &Value)]) -> String {
 
 /// What was promised, and what did not hold.
 fn failures(promise: &str, known: &[(&Study, &Value)]) -> String {
-    let miss = |title: &str, miss: &str| format!("- *{title}*: {miss}\n");
+    let miss = |title: &str, miss: &str| item(&format!("*{title}*: {miss}"));
     let misses = known
         .iter()
         .flat_map(|(study, entry)| strings(&entry["misses"]).map(|text| miss(study.title, text)));

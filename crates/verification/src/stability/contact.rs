@@ -5,8 +5,9 @@ use kluft_solver::{NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
 
 use super::blocks::{fracture, tilting};
-use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most};
+use super::counts::{count, entry, height, hold_promise, most};
 use crate::methods::plain_newton;
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::{self, ROCK};
 
 /// The study.

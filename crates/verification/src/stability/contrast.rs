@@ -6,9 +6,10 @@ use kluft_chart::{Axis, Chart, Rate, Series};
 use kluft_solver::{Discretisation, LinearMethod, Load, NewtonSettings, Problem, System};
 use lie_core::ClosureKind;
 
-use super::{Effort, Finding, Study, Table, entry, height, hold_promise, most};
+use super::counts::{entry, height, hold_promise, most};
 use crate::methods::plain_newton;
 use crate::methods::split_nodes;
+use crate::report::{Effort, Finding, Study, Table};
 use crate::scenes::closing::three_planes_of;
 use crate::scenes::{self, ROCK};
 

@@ -6,8 +6,9 @@ use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{NewtonSettings, Problem, StepRecord};
 use lie_core::ClosureKind;
 
-use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, most};
+use super::counts::{count, entry, height, hold_promise, most};
 use crate::methods::plain_newton;
+use crate::report::{Effort, Finding, Study, Table};
 use crate::scenes;
 use crate::scenes::closing::{column, inclined_joint, three_planes};
 

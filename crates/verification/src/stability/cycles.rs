@@ -4,8 +4,9 @@ use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::Closure;
 
+use super::counts::{count, entry, hold_promise, most};
 use super::steps::linearised;
-use super::{Effort, Finding, Study, Table, entry, hold_promise, largest, most};
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::{self, EXACT, joint};
 
 /// The study.
@@ -138,7 +139,7 @@ fn table(cases: &[Case], misses: &mut Vec<String>) -> Table {
         }
         for (cycle, value) in case.hysteresis.iter().enumerate() {
             let records = &case.records[CYCLE.len() * cycle..][..CYCLE.len()];
-            let count = most(records.iter().map(super::count));
+            let count = most(records.iter().map(count));
             table.push([
                 case.name.clone(),
                 (cycle + 1).to_string(),
@@ -185,7 +186,7 @@ fn run(effort: Effort) -> Finding {
             .flat_map(|case| case.hysteresis.iter().copied()),
     );
     let records = cases.iter().flat_map(|case| &case.records);
-    let newton = entry(most(records.map(super::count)));
+    let newton = entry(most(records.map(count)));
     let (first, last) = (rests[0], rests[rests.len() - 1]);
     Finding::new([
         format!(

@@ -6,7 +6,7 @@ use kluft_chart::{Axis, Chart, Series};
 use kluft_mesh::Shape;
 use lie_core::FacetQuadrature;
 
-use super::{Effort, Finding, Study, Table};
+use crate::report::{Effort, Finding, Study, Table};
 use crate::scenes::crack_front::{CUBES, tractions};
 
 /// The study.

@@ -4,7 +4,7 @@ use std::fs;
 
 use kluft_run::Ending;
 
-use super::{Effort, Finding, Study, Table};
+use crate::report::{Effort, Finding, Study, Table};
 use crate::root;
 use crate::scenes::run_scene_file;
 
@@ -92,7 +92,7 @@ fn run_program(scene: &Scene) -> End {
             defects.iter().map(ToString::to_string).collect::<String>(),
         ),
         Ok(outcome) => match outcome.ending {
-            Ending::NotConverged(why) => (1, why),
+            Ending::NotConverged(why) => (1, format!("not converged: {why}")),
             _ => (0, String::new()),
         },
     };

@@ -4,7 +4,8 @@ use kluft_chart::{Axis, Chart, Rate, Series};
 use kluft_solver::{NewtonSettings, Problem, StepRecord, Support};
 use lie_core::Closure;
 
-use super::{Effort, Finding, Study, Table, hold_promise, largest};
+use super::counts::hold_promise;
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::closing::column;
 use crate::scenes::{self, EXACT, ROCK};
 

@@ -4,8 +4,9 @@ use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{LinearMethod, NewtonSettings, StepRecord};
 use lie_core::Rock;
 
-use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise};
+use super::counts::{count, entry, height, hold_promise};
 use crate::oracles::spherical_joint::{Exact, errors, sphere};
+use crate::report::{Effort, Finding, Study, Table};
 use crate::scenes::{self, EXACT, ROCK};
 
 /// The study.

@@ -6,11 +6,10 @@ use kluft_solver::{Discretisation, NewtonSettings, Problem, Solution, StepRecord
 use lie_core::{Closure, ClosureKind, FractureLaw, Tension};
 
 use super::blocks::{fracture, lifted, stack};
+use super::counts::{count, entry, height, hold_promise, most, worst_step};
 use super::cycles::hysteresis;
-use super::{
-    Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most, worst_step,
-};
 use crate::oracles::closed_aperture;
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::{self, EXACT, ROCK};
 
 /// The study.

@@ -8,12 +8,12 @@ use kluft_solver::{
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
 
 use super::blocks::{fracture, stack, wedge};
+use super::counts::{
+    count, entry, height, hold_promise, hold_promise_with_friction, most, worst_step,
+};
 use super::cycles::hysteresis;
 use super::steps::difference;
-use super::{
-    Effort, Finding, Study, Table, count, entry, height, hold_promise, hold_promise_with_friction,
-    largest, most, worst_step,
-};
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::{self, EXACT};
 
 /// The study.

@@ -6,9 +6,10 @@ use kluft_mesh::Survey;
 use kluft_solver::{LinearMethod, NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::ClosureKind;
 
-use super::{Effort, Finding, Study, Table, count, entry, height, hold_promise, largest, most};
+use super::counts::{count, entry, height, hold_promise, most};
 use crate::methods::split_nodes;
 use crate::oracles::closed_aperture;
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::networks::{self, Polygon};
 use crate::scenes::{self, EXACT, joint};
 

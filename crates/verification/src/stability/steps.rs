@@ -4,7 +4,8 @@ use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{NewtonSettings, Problem, Solution, StepRecord};
 use lie_core::ClosureKind;
 
-use super::{Effort, Finding, Study, Table, entry, height, hold_promise, largest, most};
+use super::counts::{count, entry, height, hold_promise, most};
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::closing::{column, three_planes};
 use crate::scenes::{self, EXACT};
 
@@ -51,7 +52,7 @@ struct Case {
 
 impl Case {
     fn most(&self) -> Option<usize> {
-        most(self.records.iter().map(super::count))
+        most(self.records.iter().map(count))
     }
 
     fn all(&self) -> usize {

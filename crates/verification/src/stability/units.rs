@@ -8,8 +8,9 @@ use kluft_solver::{
 };
 use lie_core::ClosureKind;
 
-use super::{Effort, Finding, Study, Table, count, entry, hold_promise, largest};
+use super::counts::{count, entry, hold_promise};
 use crate::methods::plain_newton;
+use crate::report::{Effort, Finding, Study, Table, largest};
 use crate::scenes::closing::{inclined_joint, three_planes};
 use crate::scenes::networks;
 use crate::scenes::{self, EXACT};
