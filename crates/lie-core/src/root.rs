@@ -46,7 +46,7 @@ mod tests {
             &|x| x - at,
         ];
         for function in functions {
-            assert!((root(function, 1.0) - at).abs() < 1e-15);
+            assert!((root(function, 1.0) - at).abs() < 1e-14);
         }
     }
 }
