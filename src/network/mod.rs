@@ -18,9 +18,7 @@ use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
 use input::{Input, Overrides};
 use record::NetworkRecord;
-
-/// First line of a scene that may be written again.
-const MADE: &str = "# Made by `kluft network`; remove this line to protect the file.";
+use scene::MADE;
 
 /// How to make a network.
 #[derive(Debug, Clone)]

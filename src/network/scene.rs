@@ -4,9 +4,11 @@ use std::fmt::Write;
 
 use kluft_network::{Grouping, Network};
 
-use super::MADE;
 use super::input::Input;
 use super::passages::{Passage, key_text, quoted};
+
+/// First line of a scene that may be written again.
+pub(super) const MADE: &str = "# Made by `kluft network`; remove this line to protect the file.";
 
 const ROCK: &str = "
 [rock.rock]                       # assumed: granite

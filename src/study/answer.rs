@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use super::Study;
 use super::assess::{Assessment, MeasuredSeries};
 use super::charts::subject;
 use super::dimension::SweepKind;
 use super::edits::difference;
 use super::point::PointRecord;
 use super::reference::slope;
+use super::under_way::Study;
 use super::words::{duration, percent, short};
 
 /// The cheapest setting, by measured time, whose error is surely not above a tolerance.

@@ -1,10 +1,10 @@
 //! The charts of a study.
 
-use super::Study;
 use super::assess::{Assessment, MeasuredSeries};
 use super::dimension::SweepKind;
 use super::point::Numbers;
 use super::reference::slope;
+use super::under_way::Study;
 use super::words::{or_the_scene, percent, unit};
 use kluft_chart::{Axis, Band, Chart, Series as Line};
 

@@ -15,6 +15,7 @@ mod reference;
 mod settings;
 mod sweep;
 mod table;
+mod under_way;
 mod words;
 
 use std::io::Write;
@@ -31,6 +32,7 @@ use kluft_scene::Scene;
 use machine::Machine;
 use point::{PointOutcome, PointRecord, Runner};
 use settings::StudyPlan;
+use under_way::Study;
 use words::{duration, or_the_scene, percent};
 
 /// How to study a scene.
@@ -44,21 +46,6 @@ pub struct StudyOptions {
     pub threads: Option<usize>,
     /// How much to tell.
     pub verbosity: Verbosity,
-}
-
-/// A study under way.
-struct Study {
-    /// The scene as it is written.
-    text: String,
-    title: String,
-    plan: StudyPlan,
-    runner: Runner,
-    /// Folder of each setting.
-    folders: Vec<String>,
-    /// What came out of each setting; none before it is run.
-    records: Vec<Option<PointRecord>>,
-    machine: Machine,
-    out: PathBuf,
 }
 
 /// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings

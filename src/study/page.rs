@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
+use super::answer;
 use super::assess::Assessment;
 use super::charts::{NamedChart, subject};
 use super::point::{Numbers, PointRecord};
+use super::under_way::Study;
 use super::words::{duration, memory, percent};
-use super::{Study, answer};
 
 const STYLE: &str = include_str!("page.css");
 

@@ -5,9 +5,9 @@ use std::path::Path;
 use kluft_io::write_atomically;
 use kluft_mesh::Defect;
 
-use super::Study;
 use super::assess::Assessment;
 use super::point::{Numbers, PointOutcome, PointRecord};
+use super::under_way::Study;
 
 /// Writes the table.
 ///

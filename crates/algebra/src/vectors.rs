@@ -20,6 +20,11 @@ pub fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }
 
+/// Length of the largest vector.
+pub fn largest(vectors: &[DVec3]) -> f64 {
+    vectors.iter().map(|v| v.length()).fold(0.0, f64::max)
+}
+
 /// Scalar product by all threads: the sums of the tasks are added in their order.
 pub(crate) fn dot_of_tasks(a: &[DVec3], b: &[DVec3]) -> f64 {
     if a.len() <= PER_TASK {

@@ -9,11 +9,12 @@ use plotters::prelude::SVGBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle};
 
+use super::axis::Scale;
 use super::axis::Spanned;
+use super::chart::{Chart, Rate, Series};
 use super::names::apart;
 use super::notes::{Bounds, along, beside};
 use super::style::{COLOURS, INK, UNIT, marker};
-use super::{Chart, Rate, Scale, Series};
 
 /// Of the area inside the axes (pixels).
 const SIZE: (i32, i32) = (600, 400);
@@ -33,8 +34,14 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Context<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<Spanned, Spanned>>;
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// The chart as a document.
-pub(super) fn svg(chart: &Chart) -> String {
+impl Chart {
+    /// The chart as an SVG document.
+    pub fn svg(&self) -> String {
+        svg(self)
+    }
+}
+
+fn svg(chart: &Chart) -> String {
     let (width, height) = size(chart);
     let mut text = String::new();
     let backend =

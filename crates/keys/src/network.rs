@@ -3,10 +3,13 @@
 mod fracture;
 mod list;
 mod set;
+mod shared;
 
 pub use fracture::FRACTURE;
 pub use list::LIST;
 pub use set::{FRACTURE_SET, ORIENTATION, SIZE};
+
+use shared::SEED;
 
 use crate::dimension::Dimension;
 use crate::range::Range;
@@ -65,15 +68,6 @@ pub static ROOT: KeySection = KeySection {
         scene::SOLVING,
     ],
     also: None,
-};
-
-/// The seed of random numbers.
-pub(crate) const SEED: Key = Key {
-    name: "seed",
-    kind: Kind::Whole(Range::Within(0.0, 9007199254740992.0)),
-    need: Need::Default("0"),
-    example: "1",
-    says: "Seed of all random sets",
 };
 
 /// The box of rock.

@@ -22,7 +22,8 @@
 //! # let is_meshed = kluft_io::gmsh::version().is_some();
 //! # if !is_meshed { return; }
 //! let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
-//! let outcome = run(Request::in_memory(&scene, MeshInput::OfScene, &pool), &mut ()).expect("no defects");
+//! let request = Request::in_memory(&scene, MeshInput::OfScene, &pool);
+//! let outcome = run(request, &mut ()).expect("no defects");
 //! assert_eq!(outcome.ending, Ending::Solved);
 //! let last = outcome.steps.last().expect("a load step");
 //! assert!(last.fractures.iter().all(|(_, numbers)| numbers.aperture.min > 0.0));

@@ -1,3 +1,5 @@
+//! Descriptions of networks, and the keys that they may have.
+
 use kluft_keys::KeySection as Keys;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Verdicts, references and orders.
+
 use std::path::Path;
 
 use super::*;

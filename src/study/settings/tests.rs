@@ -1,3 +1,5 @@
+//! The settings of a study.
+
 use super::*;
 
 const SCENE: &str = r#"

@@ -1,6 +1,6 @@
 //! A fracture given by itself.
 
-use super::set::{DIP, DIP_DIRECTION, SIDES};
+use super::shared::{DIP, DIP_DIRECTION, SIDES};
 use crate::dimension::Dimension;
 use crate::range::Range;
 use crate::table::{Key, KeySection, Kind, Need, number, quantity};

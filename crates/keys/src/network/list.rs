@@ -1,7 +1,7 @@
 //! The columns of a list of fractures.
 
 use super::fracture::{LENGTH, NAME, RADIUS, ROTATION, SEMI_MAJOR, SEMI_MINOR, SHAPE, WIDTH};
-use super::set::{DIP, DIP_DIRECTION, SIDES};
+use super::shared::{DIP, DIP_DIRECTION, SIDES};
 use crate::dimension::Dimension;
 use crate::range::Range;
 use crate::table::{Key, KeySection, Kind, Need, number};

@@ -1,3 +1,5 @@
+//! Units: exact numbers, dimensions and refusals.
+
 use super::*;
 use Dimension::*;
 

@@ -19,6 +19,7 @@
 mod hyperbolic;
 mod logarithmic;
 mod own;
+mod response;
 mod tension;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ mod tests;
 use serde::{Deserialize, Serialize};
 
 pub use own::{OwnLaw, OwnResponse};
+pub use response::NormalResponse;
 pub use tension::Tension;
 
 /// How the normal stiffness depends on the aperture, in compression.
@@ -92,25 +94,6 @@ pub struct Closure {
     pub kind: ClosureKind,
     /// What happens in tension; nothing but the gap opens in contact.
     pub tension: Tension,
-}
-
-/// Answer of the closure law at one aperture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NormalResponse {
-    /// Normal traction `sigma_n` (Pa), tension positive.
-    pub traction: f64,
-    /// Slope `d sigma_n / d b` (Pa/m).
-    pub tangent: f64,
-    /// Energy per area `Psi` (J/m^2), zero at `b0`.
-    pub potential: f64,
-}
-
-impl NormalResponse {
-    const NONE: Self = Self {
-        traction: 0.0,
-        tangent: 0.0,
-        potential: 0.0,
-    };
 }
 
 /// Where the law balances a spring.

@@ -1,3 +1,5 @@
+//! The reader of scenes and the table of keys agree.
+
 use super::*;
 
 const EVERY_KEY: &str = include_str!("../../../../tests/program/every_key.toml");

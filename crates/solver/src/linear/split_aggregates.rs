@@ -1,6 +1,6 @@
 //! Split aggregates: the motions of aggregates that fractures cut, one for each part.
 //!
-//! An aggregate of the intact rock moves nodes on both sides of a fracture. SplitAggregate along the facets,
+//! An aggregate of the intact rock moves nodes on both sides of a fracture. Cut along the facets,
 //! its motion falls into parts; each becomes a motion of its own, as a node falls into points. So
 //! the next level knows smooth jumps as the finest one knows jumps, which nothing else can take
 //! care of at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one

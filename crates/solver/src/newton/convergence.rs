@@ -2,10 +2,11 @@
 //! are.
 
 use glam::DVec3;
+use kluft_algebra::largest;
 use kluft_algebra::norm;
 
 use super::facet_points::interface;
-use super::iteration::Iterate;
+use super::iterate::Iterate;
 use super::{Iteration, NewtonSettings, Step, StepOutcome};
 use crate::system::{State, StateScales, System};
 
@@ -91,11 +92,6 @@ fn reclosing_traction(system: &System<'_>, state: &State) -> f64 {
     points
         .map(|(point, state)| point.spring * state.joint.separation.opening.abs())
         .fold(0.0, f64::max)
-}
-
-/// Length of the largest vector.
-pub(super) fn largest(vectors: &[DVec3]) -> f64 {
-    vectors.iter().map(|v| v.length()).fold(0.0, f64::max)
 }
 
 /// `value / scale`, and 0 where there is nothing to compare with nothing.

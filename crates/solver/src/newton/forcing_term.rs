@@ -6,7 +6,7 @@ use kluft_algebra::norm;
 
 use super::NewtonSettings;
 use super::facet_points::interface;
-use super::iteration::Iterate;
+use super::iterate::Iterate;
 use crate::system::{State, System};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.

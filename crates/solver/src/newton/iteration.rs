@@ -1,77 +1,20 @@
 //! One iteration: linearise, solve, correct, measure; and iterations until the tests hold.
 
-use kluft_algebra::{LinearFailure, norm};
 use std::time::Instant;
 
-use glam::DVec3;
+use kluft_algebra::{LinearFailure, norm};
 use rayon::prelude::*;
 
-use super::convergence::{self, largest};
-use super::facet_points::{self, LastTrial, interface};
+use super::convergence;
+use super::facet_points::{self, interface};
 use super::forcing_term;
+use super::iterate::{Correction, Iterate, Update};
 use super::line_search;
-use super::recycling::LastCorrection;
 use super::rigid_motion::RigidBodyMotion;
 use super::{Iteration, Newton, Step, StepOutcome};
 use crate::linear::{LinearSolution, Tangents};
 use crate::problem::Load;
-use crate::system::{State, StateScales, System};
-
-/// What the iterations of an increment work on.
-#[derive(Clone)]
-pub(super) struct Iterate {
-    pub(super) state: State,
-    pub(super) last_trials: Vec<LastTrial>,
-    /// Forces by which the rock resists the unknowns (N).
-    pub(super) rock_forces: Vec<DVec3>,
-    /// StateScales that its errors are measured against.
-    pub(super) sizes: StateScales,
-    /// Largest error allowed in the next linear solve, against its right-hand side.
-    pub(super) forcing_term: f64,
-    /// Errors after the last iteration, see `line_search`.
-    pub(super) merit: Option<f64>,
-    /// The guess that it began with, if it was made in the recycled space.
-    pub(super) guess: Option<LastCorrection>,
-    /// Its corrections, if they are to be recycled.
-    pub(super) corrections: Vec<Correction>,
-}
-
-/// What a linear solve does to the unknowns.
-#[derive(Debug, Clone)]
-pub(super) struct Correction {
-    /// Change of the unknowns (m).
-    pub(super) unknowns: Vec<DVec3>,
-    /// Forces by which the rock resists it (N), if it is to be recycled.
-    pub(super) rock_forces: Option<Vec<DVec3>>,
-    /// Its largest displacement (m).
-    pub(super) size: f64,
-}
-
-/// A correction, and the tangents of the facet points (Pa/m) on whose planes it was found.
-#[derive(Clone, Copy)]
-pub(super) struct Update<'a> {
-    pub(super) correction: &'a Correction,
-    pub(super) tangents: &'a Tangents,
-}
-
-impl Correction {
-    pub(super) fn of(system: &System<'_>, unknowns: Vec<DVec3>, is_recycled: bool) -> Self {
-        Self {
-            rock_forces: is_recycled.then(|| system.rock_forces(&unknowns)),
-            size: largest(&system.displacements(&unknowns, &Load::NONE)),
-            unknowns,
-        }
-    }
-
-    pub(super) fn scaled(&self, share: f64) -> Self {
-        let scaled = |vector: &Vec<DVec3>| vector.iter().map(|entry| share * *entry).collect();
-        Self {
-            unknowns: scaled(&self.unknowns),
-            rock_forces: self.rock_forces.as_ref().map(scaled),
-            size: share * self.size,
-        }
-    }
-}
+use crate::system::System;
 
 impl Iterate {
     /// Adds a correction to the unknowns, lets the facet points follow, and measures the errors.

@@ -4,7 +4,7 @@
 //! should and its errors grow, the correction is halved until they do not: a search for a smaller
 //! residual.
 
-use super::iteration::{Iterate, Update};
+use super::iterate::{Iterate, Update};
 use super::{Iteration, Step, StepOutcome};
 
 /// Iterations that take the whole correction.
@@ -76,7 +76,7 @@ mod tests {
 
     use super::*;
     use crate::newton::facet_points;
-    use crate::newton::iteration::Correction;
+    use crate::newton::iterate::Correction;
     use crate::newton::{Newton, NewtonSettings, unobserved};
     use crate::problem::Load;
     use crate::{Condition, Discretisation, Problem, Support, SurfaceLoad, System};

@@ -4,7 +4,7 @@
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::facet_points::{self, LastTrial};
 use super::forcing_term;
-use super::iteration::Iterate;
+use super::iterate::Iterate;
 use super::recycling::GalerkinGuess;
 use super::{Iteration, Newton, Step, StepOutcome};
 use crate::problem::Load;

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::rigid_motion;
+use super::free_blocks;
 use super::{Iteration, StepOutcome, StepRecord};
 use crate::problem::Load;
 use crate::system::{State, System};
@@ -52,7 +52,7 @@ impl<'a> Step<'a> {
     pub(super) fn explain(&mut self, outcome: &StepOutcome, state: &State) {
         let is_known = !self.record.rigid_motions.is_empty() || *outcome == StepOutcome::Stopped;
         if !is_known && !self.system.is_smooth() {
-            self.record.rigid_motions = rigid_motion::find(self.system, state);
+            self.record.rigid_motions = free_blocks::find(self.system, state);
         }
     }
 

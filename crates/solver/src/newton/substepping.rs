@@ -6,8 +6,9 @@
 //! divided.
 
 use glam::DVec3;
+use kluft_algebra::largest;
 
-use super::convergence::{largest, ratio};
+use super::convergence::ratio;
 use super::facet_points::interface;
 use super::{Newton, Step, StepOutcome};
 use crate::FacetPointState;

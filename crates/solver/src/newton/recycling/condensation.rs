@@ -1,16 +1,15 @@
 //! The principal directions of the recycled space (proper orthogonal decomposition).
 
 use glam::DVec3;
+use kluft_algebra::largest;
 use rayon::prelude::*;
 
-use super::{RecycledSpace, dense};
-use crate::newton::convergence::largest;
+use super::dense;
+use super::space::{PRINCIPAL_DIRECTIONS, RecycledSpace};
 use crate::newton::facet_points;
 use crate::problem::Load;
 use crate::system::{State, System};
 
-/// Directions that are left.
-pub(super) const PRINCIPAL_DIRECTIONS: usize = 12;
 /// Factor by which each correction counts less than the next.
 const FADING: f64 = 0.95;
 

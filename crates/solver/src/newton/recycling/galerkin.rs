@@ -1,9 +1,12 @@
 //! Newton's method in the recycled space.
 
+use kluft_algebra::dot;
 use rayon::prelude::*;
 
-use super::{MOST_DIRECTIONS, RecycledSpace, dense, dot};
+use super::dense;
+use super::space::{MOST_DIRECTIONS, RecycledSpace};
 use crate::newton::facet_points::{self, LastTrial, interface};
+use crate::newton::iterate::LastCorrection;
 use crate::problem::Load;
 use crate::system::{State, System};
 
@@ -19,17 +22,6 @@ pub(in crate::newton) struct GalerkinGuess {
     pub(in crate::newton) state: State,
     pub(in crate::newton) last_trials: Vec<LastTrial>,
     pub(in crate::newton) last: LastCorrection,
-}
-
-/// The last iteration of a guess.
-#[derive(Debug, Clone)]
-pub(in crate::newton) struct LastCorrection {
-    /// The guess as coefficients of the directions.
-    pub(super) coefficients: Vec<f64>,
-    /// Closure errors (Pa).
-    pub(in crate::newton) errors: Vec<f64>,
-    /// Bound of the displacements of the iteration (m).
-    pub(in crate::newton) displacement: f64,
 }
 
 /// What the iterations in the space work on.

@@ -2,9 +2,10 @@
 
 use faer::Mat;
 use glam::{DMat3, DVec3};
+use kluft_algebra::dot;
 use rayon::prelude::*;
 
-use super::{RecycledSpace, dot};
+use super::space::RecycledSpace;
 use crate::linear::Tangents;
 use crate::newton::facet_points::{self, interface};
 use crate::system::{State, System};

@@ -1,0 +1,76 @@
+//! What the iterations of an increment work on, and what they add to it.
+
+use glam::DVec3;
+use kluft_algebra::largest;
+
+use super::facet_points::LastTrial;
+use crate::linear::Tangents;
+use crate::problem::Load;
+use crate::system::{State, StateScales, System};
+
+/// What the iterations of an increment work on.
+#[derive(Clone)]
+pub(super) struct Iterate {
+    pub(super) state: State,
+    pub(super) last_trials: Vec<LastTrial>,
+    /// Forces by which the rock resists the unknowns (N).
+    pub(super) rock_forces: Vec<DVec3>,
+    /// StateScales that its errors are measured against.
+    pub(super) sizes: StateScales,
+    /// Largest error allowed in the next linear solve, against its right-hand side.
+    pub(super) forcing_term: f64,
+    /// Errors after the last iteration, see `line_search`.
+    pub(super) merit: Option<f64>,
+    /// The guess that it began with, if it was made in the recycled space.
+    pub(super) guess: Option<LastCorrection>,
+    /// Its corrections, if they are to be recycled.
+    pub(super) corrections: Vec<Correction>,
+}
+
+/// What a linear solve does to the unknowns.
+#[derive(Debug, Clone)]
+pub(super) struct Correction {
+    /// Change of the unknowns (m).
+    pub(super) unknowns: Vec<DVec3>,
+    /// Forces by which the rock resists it (N), if it is to be recycled.
+    pub(super) rock_forces: Option<Vec<DVec3>>,
+    /// Its largest displacement (m).
+    pub(super) size: f64,
+}
+
+/// A correction, and the tangents of the facet points (Pa/m) on whose planes it was found.
+#[derive(Clone, Copy)]
+pub(super) struct Update<'a> {
+    pub(super) correction: &'a Correction,
+    pub(super) tangents: &'a Tangents,
+}
+
+impl Correction {
+    pub(super) fn of(system: &System<'_>, unknowns: Vec<DVec3>, is_recycled: bool) -> Self {
+        Self {
+            rock_forces: is_recycled.then(|| system.rock_forces(&unknowns)),
+            size: largest(&system.displacements(&unknowns, &Load::NONE)),
+            unknowns,
+        }
+    }
+
+    pub(super) fn scaled(&self, share: f64) -> Self {
+        let scaled = |vector: &Vec<DVec3>| vector.iter().map(|entry| share * *entry).collect();
+        Self {
+            unknowns: scaled(&self.unknowns),
+            rock_forces: self.rock_forces.as_ref().map(scaled),
+            size: share * self.size,
+        }
+    }
+}
+
+/// The last iteration of a guess that was made in the recycled space.
+#[derive(Debug, Clone)]
+pub(super) struct LastCorrection {
+    /// The guess as coefficients of the directions.
+    pub(super) coefficients: Vec<f64>,
+    /// Closure errors (Pa).
+    pub(super) errors: Vec<f64>,
+    /// Bound of the displacements of the iteration (m).
+    pub(super) displacement: f64,
+}

@@ -1,0 +1,70 @@
+//! A load step and its increments: predict, iterate until the tests hold, commit.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::facet_points;
+use super::iterate::Iterate;
+use super::{Iteration, Newton, Step, StepOutcome, StepRecord};
+use crate::problem::Load;
+use crate::system::{State, System};
+
+impl Newton {
+    /// Solves one load step from `state` to `load`. A step that the laws make too difficult or too
+    /// coarse is divided.
+    ///
+    /// `observe` is called after each iteration with its number and measures, and may stop the step
+    /// there. `state` is replaced if the step converges and kept if it does not or is stopped.
+    pub fn solve_step(
+        &mut self,
+        system: &System<'_>,
+        state: &mut State,
+        load: &Load,
+        mut observe: impl FnMut(usize, &Iteration) -> ControlFlow<()>,
+    ) -> StepRecord {
+        let start = Instant::now();
+        let mut step = Step::new(system, load, &mut observe);
+        let outcome = match self.solve_in_substeps(&mut step, state, load) {
+            Ok(end) => {
+                *state = end;
+                StepOutcome::Converged
+            }
+            Err(outcome) => outcome,
+        };
+        let seconds = start.elapsed().as_secs_f64();
+        step.finished(outcome, seconds)
+    }
+
+    /// Solves from one state to a load in one increment: predicts, iterates until the tests hold,
+    /// and commits.
+    ///
+    /// # Errors
+    /// If the tests do not come to hold; then with the blocks in the record that nothing holds.
+    pub(super) fn solve_increment(
+        &mut self,
+        step: &mut Step<'_>,
+        from: &State,
+        load: &Load,
+    ) -> Result<State, StepOutcome> {
+        step.go_on()?;
+        step.record.rigid_motions.clear();
+        let mut iterate = self.predict(step.system, from, load);
+        let converged = self.iterate_to_convergence(step, &mut iterate);
+        if let Err(outcome) = converged {
+            step.explain(&outcome, &iterate.state);
+            return Err(outcome);
+        }
+        Ok(self.commit(step.system, iterate))
+    }
+
+    /// Makes a converged iterate the state that the next increment starts from.
+    fn commit(&mut self, system: &System<'_>, iterate: Iterate) -> State {
+        if let Some(recycled) = self.recycled.as_mut() {
+            recycled.add(iterate.guess, iterate.corrections);
+        }
+        let mut state = iterate.state;
+        facet_points::commit(system, &mut state);
+        state.reached = iterate.sizes.or_share(1.0, state.reached);
+        state
+    }
+}

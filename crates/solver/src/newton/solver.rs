@@ -1,0 +1,68 @@
+//! The nonlinear solver and what it keeps from one load step to the next.
+
+use glam::DVec3;
+use kluft_algebra::LinearFailure;
+
+use super::extrapolation::Path;
+use super::recycling::RecycledSpace;
+use super::settings::NewtonSettings;
+use crate::linear::{LinearMethod, NonsymmetricSolver, Plan, Unknowns, Workload};
+use crate::system::System;
+
+/// The nonlinear solver of a system; it keeps what the linear solver prepared.
+///
+/// The same solver serves a system whose fracture laws are changed between two steps, because the
+/// rock, which is all that was prepared, stays.
+pub struct Newton {
+    pub(super) settings: NewtonSettings,
+    pub(super) linear: NonsymmetricSolver,
+    pub(super) path: Path,
+    /// Corrections of former steps, if the linear solver iterates.
+    pub(super) recycled: Option<RecycledSpace>,
+}
+
+impl Newton {
+    /// Chooses and prepares the linear solver.
+    ///
+    /// # Errors
+    /// If it cannot be prepared.
+    pub fn new(system: &System<'_>, settings: NewtonSettings) -> Result<Self, LinearFailure> {
+        let unknowns = Unknowns::from(&system.discretisation);
+        let workload = Workload::of_system(system);
+        let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX)?;
+        Self::planned(system, settings, plan)
+    }
+
+    /// Prepares the linear solver of a plan.
+    ///
+    /// # Errors
+    /// If it cannot be prepared.
+    pub fn planned(
+        system: &System<'_>,
+        settings: NewtonSettings,
+        plan: Plan,
+    ) -> Result<Self, LinearFailure> {
+        let recycles = plan.method == LinearMethod::Iterative;
+        Ok(Self {
+            recycled: recycles.then(RecycledSpace::default),
+            linear: NonsymmetricSolver::new(plan.prepare(system)?),
+            path: Path::default(),
+            settings,
+        })
+    }
+
+    /// Unknowns (m) in answer to small `forces` (N) on top of the last state, to `tolerance` times
+    /// their norm; friction keeps its limit.
+    ///
+    /// # Errors
+    /// If the linear solve fails.
+    pub fn respond(
+        &mut self,
+        system: &System<'_>,
+        forces: &[DVec3],
+        tolerance: f64,
+    ) -> Result<Vec<DVec3>, LinearFailure> {
+        let solution = self.linear.solve_positive(system, forces, tolerance)?;
+        Ok(solution.unknowns)
+    }
+}
