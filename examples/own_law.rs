@@ -31,7 +31,7 @@ shear_stiffness = "10 GPa/m"
 [boundary.top]
 pressure = "10 MPa"
 [boundary.bottom]
-displacement = [0, 0, 0]
+displacement = { x = 0.0, y = 0.0, z = 0.0 }
 "#;
 
 fn main() {

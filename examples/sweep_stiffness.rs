@@ -23,7 +23,7 @@ closure = "logarithmic"
 [boundary.top]
 pressure = "20 MPa"
 [boundary.bottom]
-displacement = [0, 0, 0]
+displacement = { x = 0.0, y = 0.0, z = 0.0 }
 "#;
 
 fn main() {

@@ -26,7 +26,7 @@ closure = "logarithmic"
 [boundary.top]
 traction = [0, 0, -7e6]
 [boundary.bottom]
-displacement = [0, 0, 0]
+displacement = { x = 0.0, y = 0.0, z = 0.0 }
 [load]
 steps = [0.5, 1.0]
 "#;

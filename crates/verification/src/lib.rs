@@ -4,7 +4,9 @@
 //! The tests of physics use its scenes and oracles. The program `verify` runs the studies and
 //! writes `docs/verification`:
 //!
-//!     cargo run --release -p kluft-verification --bin verify -- REPORT [--quick] [NAME...]
+//! ```text
+//! cargo run --release -p kluft-verification --bin verify -- REPORT [--quick] [NAME...]
+//! ```
 //!
 //! with `stability`, `closures` or `book` as the report.
 

@@ -220,7 +220,7 @@ fn every_key_of_a_study_in_the_table_is_asked_for() {
 
 #[test]
 fn swept_values_may_have_units() {
-    let text = "[study]\nclosures = [{ label = 'cut', cutoff_aperture = '1 um' }]\n[study.values]\n'a.aperture' = ['0.1 mm', 2e-4]\nshear_stiffness = { from = '1 GPa/m', to = '4 GPa/m', count = 2 }\n";
+    let text = "[study]\nclosures = [{ label = 'cut', closure = 'logarithmic', cutoff_aperture = '1 um' }]\n[study.values]\n'a.aperture' = ['0.1 mm', 2e-4]\nshear_stiffness = { from = '1 GPa/m', to = '4 GPa/m', count = 2 }\n";
     let plan = plan(text);
     assert_eq!(plan.settings.len(), 4);
     let scene = scene(&plan, "aperture=1e-4, shear_stiffness=1e9");
