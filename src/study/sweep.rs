@@ -240,8 +240,8 @@ fn closure_edits(keys: &Table, scene: &Table) -> Vec<Edit> {
         if let Some(law) = keys.get("closure").and_then(Value::as_str) {
             let angle = keys.get("friction_angle");
             let angle = angle.or(fracture.get("friction_angle"));
-            let rubs = angle.is_some_and(|angle| !is_off(angle));
-            let refused = refused_keys(law, rubs).into_iter();
+            let has_friction = angle.is_some_and(|angle| !is_off(angle));
+            let refused = refused_keys(law, has_friction).into_iter();
             let refused = refused.filter(|key| fracture.get(key).is_some());
             edits.extend(refused.map(|key| Edit::remove(&["fracture", name, key])));
         }

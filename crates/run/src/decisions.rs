@@ -47,11 +47,11 @@ pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
             rock.poisson_ratio
         ));
     }
-    let rubbing = names(&lie_core::FractureLaw::is_path_dependent);
-    if !rubbing.is_empty() {
+    let path_dependent = names(&lie_core::FractureLaw::is_path_dependent);
+    if !path_dependent.is_empty() {
         let accuracy = settings.path;
         lines.push(format!(
-            "{rubbing} can slide or break: the way of the loads matters, steps are divided until jumps agree to {accuracy} of the largest"
+            "{path_dependent} can slip or break: the path of the loads matters, steps are divided until jumps agree to {accuracy} of the largest"
         ));
     } else if problem.schedule.steps.len() > 1 {
         let why = "no law has friction: the end state does not depend on the load steps";

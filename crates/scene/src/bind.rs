@@ -240,12 +240,12 @@ fn bind_fixed_points<'a>(
     let mut bound = Vec::new();
     for entry in &scene.fixed_points {
         let at = entry.value.at;
-        let Some((node, distance, reach)) = nearest_node(mesh, at) else {
+        let Some((node, distance, longest_edge)) = nearest_node(mesh, at) else {
             continue;
         };
         let x = mesh.nodes[node];
         let tag = mesh.node_tags[node];
-        if distance > reach {
+        if distance > longest_edge {
             defects.push(Defect::new(
                 &entry.place,
                 format!("({}, {}, {}) is outside the rock", at.x, at.y, at.z),
@@ -254,7 +254,7 @@ fn bind_fixed_points<'a>(
                     x.x, x.y, x.z
                 ),
             ));
-        } else if distance > 1e-6 * reach {
+        } else if distance > 1e-6 * longest_edge {
             decisions.push(format!(
                 "{}: no node at ({}, {}, {}); node {tag} at ({:.6}, {:.6}, {:.6}) is held instead",
                 entry.name, at.x, at.y, at.z, x.x, x.y, x.z
@@ -279,6 +279,6 @@ fn nearest_node(mesh: &Mesh, at: DVec3) -> Option<(usize, f64, f64)> {
     let around = cells
         .filter(|nodes| nodes.contains(&(node as u32)))
         .flatten();
-    let reach = around.map(|&other| mesh.nodes[other as usize].distance(mesh.nodes[node]));
-    Some((node, distance(&node), reach.fold(0.0, f64::max)))
+    let longest_edge = around.map(|&other| mesh.nodes[other as usize].distance(mesh.nodes[node]));
+    Some((node, distance(&node), longest_edge.fold(0.0, f64::max)))
 }

@@ -14,11 +14,11 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
     let is_known = closure.is_some() || !section.has("closure");
     let closure = closure.unwrap_or("linear");
     let contact = closure == "contact";
-    let rubs = section.has("friction_angle");
+    let has_friction = section.has("friction_angle");
     let needed = [
         (true, "aperture"),
         (!contact, "normal_stiffness"),
-        (!contact && !rubs, "shear_stiffness"),
+        (!contact && !has_friction, "shear_stiffness"),
     ];
     for (_, key) in needed.into_iter().filter(|(needed, _)| *needed) {
         section.require(key);
@@ -67,15 +67,15 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
     Some(FractureEntry { fracture, history })
 }
 
-/// Keys that a closure law refuses; `rubs` tells whether the fracture has friction.
-pub fn refused_keys(closure: &str, rubs: bool) -> Vec<&'static str> {
+/// Keys that a closure law refuses; `has_friction` tells whether the fracture has friction.
+pub fn refused_keys(closure: &str, has_friction: bool) -> Vec<&'static str> {
     let refused = [
         (closure != "logarithmic", "cutoff_aperture"),
         (closure != "hyperbolic", "max_closure"),
         (closure == "contact", "normal_stiffness"),
         (closure == "contact", "tensile_strength"),
         (closure == "contact", "fracture_energy"),
-        (closure == "contact" && !rubs, "shear_stiffness"),
+        (closure == "contact" && !has_friction, "shear_stiffness"),
     ];
     let keys = refused.into_iter().filter(|(refuses, _)| *refuses);
     keys.map(|(_, key)| key).collect()
@@ -187,23 +187,23 @@ fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
 
 /// Without one, friction holds the walls rigidly, and walls in contact without friction glide.
 fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64> {
-    let rubs = section.has("friction_angle");
+    let has_friction = section.has("friction_angle");
     let given = section.number("shear_stiffness");
-    if section.has("shear_stiffness") && rubs && given == Some(0.0) {
+    if section.has("shear_stiffness") && has_friction && given == Some(0.0) {
         section.refuse(
             "shear_stiffness",
             "without shear stiffness there is nothing for friction to limit".into(),
             "give a stiffness, or leave it out: then nothing moves before it slides",
         );
     }
-    if section.has("shear_stiffness") && contact && !rubs && given != Some(0.0) {
+    if section.has("shear_stiffness") && contact && !has_friction && given != Some(0.0) {
         section.refuse(
             "shear_stiffness",
             "walls in contact without friction glide freely".into(),
             "remove shear_stiffness, or add friction_angle",
         );
     }
-    match (section.has("shear_stiffness"), rubs, contact) {
+    match (section.has("shear_stiffness"), has_friction, contact) {
         (true, ..) => given,
         (false, true, _) => Some(f64::INFINITY),
         (false, false, true) => Some(0.0),

@@ -57,7 +57,7 @@ pub struct SolverEntry {
     /// Memory it may take (bytes); what the machine has free if not given.
     pub memory_limit: Option<f64>,
     /// Largest difference between a load step in one part and in two, against the largest jump,
-    /// where the way of the loads matters; 1e-3 if not given.
+    /// where the path of the loads matters; 1e-3 if not given.
     pub path_accuracy: Option<f64>,
     /// How fractures are integrated over their facets.
     pub facets: FacetQuadrature,

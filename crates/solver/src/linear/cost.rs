@@ -107,8 +107,8 @@ pub struct Workload {
     pub is_nonlinear: bool,
     /// Whether tangents change gradually, so that a step can be made of the moves of former ones.
     pub is_smooth: bool,
-    /// Whether tractions depend on the way, as with friction: each step is walked in one part and
-    /// in two, and the tangents are not symmetric.
+    /// Whether tractions depend on the path, as with friction: each step is solved in one substep
+    /// and in two, and the tangents are not symmetric.
     pub is_path_dependent: bool,
     /// Factor on the iterations of the multigrid, 1 for cells of about equal edges.
     pub difficulty: f64,
