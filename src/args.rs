@@ -57,11 +57,11 @@ pub enum Command {
 /// A document that has a schema.
 #[derive(Clone, Copy, clap::ValueEnum)]
 pub enum SchemaOf {
-    /// A scene, with [study]
+    /// A scene, with its study
     Scene,
     /// A description for `kluft network`
     Network,
-    /// The table [study] alone
+    /// The study of a scene alone
     Study,
 }
 

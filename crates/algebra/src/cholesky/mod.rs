@@ -132,12 +132,12 @@ impl Cholesky {
         unknowns
     }
 
-    /// Eliminates the first `count` scalars, see [`substitution::eliminate`].
+    /// Eliminates the first `count` scalars, see `substitution::eliminate`.
     pub fn eliminate(&self, count: usize, column: &mut [f64]) {
         substitution::eliminate(self.lower(), count, column);
     }
 
-    /// Substitutes backward the first `count` scalars, see [`substitution::substitute`].
+    /// Substitutes backward the first `count` scalars, see `substitution::substitute`.
     pub fn substitute(&self, count: usize, column: &mut [f64]) {
         substitution::substitute(self.lower(), count, column);
     }
