@@ -9,6 +9,8 @@ pub(super) enum SweepKind {
     Mesh,
     /// Order of the elements.
     Order,
+    /// Whether cells at crack fronts are quarter-point elements.
+    Fronts,
     /// The closure law, with keys of it.
     Closure,
     /// A number of the fractures.
@@ -37,6 +39,18 @@ pub(super) struct Choice {
     pub(super) number: Option<f64>,
     /// Cost against that of the scene's own choice, roughly.
     pub(super) cost: f64,
+}
+
+impl Choice {
+    /// A choice that stands for no number, and costs what the scene's own does.
+    pub(super) fn new(label: &str, edits: Vec<Edit>) -> Self {
+        Self {
+            label: label.to_owned(),
+            edits,
+            number: None,
+            cost: 1.0,
+        }
+    }
 }
 
 /// A dimension of the sweep.

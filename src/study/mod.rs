@@ -16,6 +16,7 @@ mod settings;
 mod sweep;
 mod table;
 mod under_way;
+mod values;
 mod words;
 
 use std::io::Write;

@@ -1,24 +1,36 @@
 //! The dimensions of a study: what `[study]` says, or what is swept without it.
 
-use kluft_keys::Quantity;
-use kluft_keys::scene::{CLOSURES, FRACTURE};
+use kluft_keys::scene::CLOSURES;
 use kluft_mesh::Defect;
 use toml::{Table, Value};
 
 use super::dimension::{Choice, SweepDimension, SweepKind};
 use super::edits::Edit;
-use super::words::digits;
+use super::values::{fractures, values_of};
 use kluft_scene::reader::{Entry, Section};
 use kluft_scene::refused_keys;
 
 /// Factors on cell sizes of a study that the scene does not describe.
 const SIZES: [f64; 3] = [2.0, 1.4, 1.0];
 
+/// Keys of `[study]` that hold lists.
+const LISTS: [&str; 6] = [
+    "meshes",
+    "orders",
+    "quarter_points",
+    "closures",
+    "facets",
+    "solvers",
+];
+
 /// Reads what `[study]` sweeps; `asked` is the same table as values.
 pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<SweepDimension> {
+    let orders = orders(section, scene);
+    let fronts = fronts(section, &orders, scene);
     let mut dimensions = vec![
         ("mesh", SweepKind::Mesh, meshes(section, scene)),
-        ("order", SweepKind::Order, orders(section, scene)),
+        ("order", SweepKind::Order, orders),
+        ("quarter_points", SweepKind::Fronts, fronts),
         (
             "closure",
             SweepKind::Closure,
@@ -31,14 +43,14 @@ pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> V
     }
     let named = |key, path: &[&str]| {
         let names = section.choices(key).unwrap_or_default();
-        let choice = |name| plain(name, vec![Edit::set(path, name)]);
+        let choice = |name| Choice::new(name, vec![Edit::set(path, name)]);
         names.into_iter().map(choice).collect::<Vec<_>>()
     };
     let facets = named("facets", &["solver", "facets"]);
     let solvers = named("solvers", &["solver", "linear"]);
     dimensions.push(("facets", SweepKind::Facets, facets));
     dimensions.push(("solver", SweepKind::Solver, solvers));
-    for key in ["meshes", "orders", "closures", "facets", "solvers"] {
+    for key in LISTS {
         let is_empty = asked
             .get(key)
             .and_then(Value::as_array)
@@ -52,7 +64,7 @@ pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> V
         name: name.to_owned(),
         kind,
         choices: match choices.is_empty() {
-            true => vec![plain(own(kind, scene), Vec::new())],
+            true => vec![Choice::new(own(kind, scene), Vec::new())],
             false => distinct(choices),
         },
     };
@@ -146,7 +158,7 @@ fn mesh_choice(mesh: &[(String, f64)], all: &[Vec<(String, f64)>], scene: &Table
     Choice {
         number: sizes().next().map(|(_, size)| *size),
         cost: finest.unwrap_or(1.0).abs().powi(3),
-        ..plain(&labels.join(" "), mesh.iter().map(set).collect())
+        ..Choice::new(&labels.join(" "), mesh.iter().map(set).collect())
     }
 }
 
@@ -157,11 +169,8 @@ fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
         let remedy = "write orders = [1, 2]";
         section.refuse("orders", "elements have order 1 or 2".into(), remedy);
     }
-    let is_file = scene
-        .get("mesh")
-        .is_some_and(|mesh| mesh.get("file").is_some());
     for key in ["meshes", "orders"] {
-        if is_file && section.has(key) {
+        if is_of_file(scene) && section.has(key) {
             let problem = format!("`{key}` has no effect on a mesh file");
             let remedy = "remove it, or give the geometry instead of the file in [mesh]";
             section.refuse(key, problem, remedy);
@@ -173,16 +182,44 @@ fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
         .collect()
 }
 
+/// Whether the mesh is read and not made.
+fn is_of_file(scene: &Table) -> bool {
+    let mesh = scene.get("mesh");
+    mesh.is_some_and(|mesh| mesh.get("file").is_some())
+}
+
 /// Elements of second order have about eight times the nodes.
 fn order_choice(order: i64) -> Choice {
     Choice {
         number: Some(order as f64),
         cost: (order as f64).powi(3),
-        ..plain(
+        ..Choice::new(
             &format!("order {order}"),
             vec![Edit::set(&["mesh", "order"], order)],
         )
     }
+}
+
+/// Cells of first order have no points to move; a mesh file may hold any.
+fn fronts(section: &Section<'_, '_>, orders: &[Choice], scene: &Table) -> Vec<Choice> {
+    let flags = section.flags("quarter_points").unwrap_or_default();
+    let has_second = match orders {
+        [] => own(SweepKind::Order, scene) == "order 2" || is_of_file(scene),
+        orders => orders.iter().any(|order| order.number == Some(2.0)),
+    };
+    if !flags.is_empty() && !has_second {
+        let problem = "`quarter_points` has no effect on cells of order 1".into();
+        let remedy = "write orders = [2] in [study], or order = 2 in [mesh]";
+        section.refuse("quarter_points", problem, remedy);
+    }
+    let choice = |flag| {
+        let label = match flag {
+            true => "quarter points",
+            false => "no quarter points",
+        };
+        Choice::new(label, vec![Edit::set(&["mesh", "quarter_points"], flag)])
+    };
+    flags.into_iter().map(choice).collect()
 }
 
 fn closures(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Choice> {
@@ -213,7 +250,7 @@ fn closures(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Choi
             section.refuse("closures", problem, remedy);
         }
     }
-    let choice = |(label, keys): (String, Table)| plain(&label, closure_edits(&keys, scene));
+    let choice = |(label, keys): (String, Table)| Choice::new(&label, closure_edits(&keys, scene));
     choices.into_iter().map(choice).collect()
 }
 
@@ -224,12 +261,6 @@ fn label_of(keys: &Table) -> String {
         value => format!("{key}={value}"),
     });
     labels.collect::<Vec<_>>().join(" ")
-}
-
-/// The names of the fractures of a scene.
-fn fractures(scene: &Table) -> impl Iterator<Item = (&String, &Value)> {
-    let fractures = scene.get("fracture").and_then(Value::as_table);
-    fractures.into_iter().flatten()
 }
 
 /// Keys of all fractures; what a new law would refuse goes away, and what is `false`.
@@ -253,57 +284,6 @@ fn closure_edits(keys: &Table, scene: &Table) -> Vec<Edit> {
     edits
 }
 
-/// Numbers of fractures: of all that have the key, of one (`"NAME.key"`), or of all if none has it.
-fn values_of(section: &Section<'_, '_>, scene: &Table) -> Vec<(String, Vec<Choice>)> {
-    let mut swept = Vec::new();
-    for (name, numbers) in section.number_lists("values", quantity_of) {
-        let (wanted, key) = fracture_and_key(&name);
-        let fits = |name: &str| wanted.is_none_or(|wanted| wanted == name);
-        let all: Vec<(&String, &Value)> = fractures(scene).filter(|(name, _)| fits(name)).collect();
-        if all.is_empty() {
-            let names: Vec<&str> = fractures(scene).map(|(name, _)| name.as_str()).collect();
-            let remedy = format!("the scene has: {}", names.join(", "));
-            section.refuse("values", format!("`{name}` is of no fracture"), remedy);
-        }
-        let mut own = all.clone();
-        own.retain(|(_, fracture)| fracture.get(key).is_some());
-        let own = if own.is_empty() { all } else { own };
-        let set = |number: f64| {
-            own.iter()
-                .map(move |(n, _)| Edit::set(&["fracture", n, key], number))
-        };
-        let choice = |number: f64| Choice {
-            number: Some(number),
-            ..plain(
-                &format!("{key}={}", digits(number, 4)),
-                set(number).collect(),
-            )
-        };
-        swept.push((name.clone(), numbers.into_iter().map(choice).collect()));
-    }
-    swept
-}
-
-/// Name of the fracture, if one is named, and the key.
-fn fracture_and_key(name: &str) -> (Option<&str>, &str) {
-    match name.rsplit_once('.') {
-        Some((fracture, key)) => (Some(fracture), key),
-        None => (None, name),
-    }
-}
-
-/// What a swept number is; its range is checked with the scene of each setting.
-fn quantity_of(name: &str) -> Quantity {
-    let key = FRACTURE.key(fracture_and_key(name).1);
-    let dimension = key
-        .and_then(|key| key.kind.quantity())
-        .map_or(Quantity::PLAIN.dimension, |quantity| quantity.dimension);
-    Quantity {
-        dimension,
-        ..Quantity::PLAIN
-    }
-}
-
 /// What the scene itself has in a dimension.
 fn own(kind: SweepKind, scene: &Table) -> &'static str {
     let order = scene.get("mesh").and_then(|mesh| mesh.get("order"));
@@ -311,19 +291,11 @@ fn own(kind: SweepKind, scene: &Table) -> &'static str {
         SweepKind::Order if order.and_then(Value::as_integer) == Some(2) => "order 2",
         SweepKind::Order => "order 1",
         SweepKind::Mesh
+        | SweepKind::Fronts
         | SweepKind::Closure
         | SweepKind::Value
         | SweepKind::Facets
         | SweepKind::Solver => "as in the scene",
-    }
-}
-
-fn plain(label: &str, edits: Vec<Edit>) -> Choice {
-    Choice {
-        label: label.to_owned(),
-        edits,
-        number: None,
-        cost: 1.0,
     }
 }
 

@@ -89,6 +89,9 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Choices(words) => {
             json!({ "type": "array", "items": { "enum": words }, "minItems": 1 })
         }
+        Kind::Flags => {
+            json!({ "type": "array", "items": { "type": "boolean" }, "minItems": 1 })
+        }
         Kind::Numbers(quantity) => json!({ "type": "array", "items": of_quantity(quantity) }),
         Kind::Vector(quantity) => tuple(of_quantity(quantity), 3),
         Kind::Points(quantity) => {

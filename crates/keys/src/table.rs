@@ -60,6 +60,8 @@ pub enum Kind {
     Choice(&'static str, &'static [&'static str]),
     /// Some of these words, in brackets.
     Choices(&'static [&'static str]),
+    /// Truth values in brackets.
+    Flags,
     /// Numbers in brackets.
     Numbers(Quantity),
     /// Three numbers in brackets.

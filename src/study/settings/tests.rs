@@ -87,6 +87,15 @@ fn the_product_is_run_from_cheap_to_dear() {
 }
 
 #[test]
+fn quarter_points_are_swept_beside_orders() {
+    let plan = plan("[study]\norders = [1, 2]\nquarter_points = [true, false]\n");
+    assert_eq!(plan.settings.len(), 4);
+    let flag = |labels: &str| scene(&plan, labels)["mesh"]["quarter_points"].as_bool();
+    assert_eq!(flag("order 2, quarter points"), Some(true));
+    assert_eq!(flag("order 2, no quarter points"), Some(false));
+}
+
+#[test]
 fn closures_by_name_drop_the_keys_that_they_refuse() {
     let plan = plan(
         "[study]\nclosures = ['contact', 'hyperbolic', { label = 'cut', closure = 'logarithmic', cutoff_aperture = 1e-5 }]\n",
@@ -147,6 +156,9 @@ fn slips_are_found_before_anything_is_run() {
         ("[study]\nmeshes = []", "empty"),
         ("[study]\norders = [3]", "between 1 and 2"),
         ("[study]\norders = [1.5]", "order 1 or 2"),
+        ("[study]\nquarter_points = [true]", "orders = [2]"),
+        ("[study]\norders = [2]\nquarter_points = [1]", "true"),
+        ("[study]\norders = [2]\nquarter_points = []", "empty"),
         ("[study]\nclosures = ['logaritmic']", "logarithmic"),
         ("[study]\nclosures = [{ apertur = 1e-4 }]", "aperture"),
         ("[study]\nfacets = ['nodes']", "nodal"),

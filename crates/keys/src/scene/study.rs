@@ -27,6 +27,13 @@ pub static STUDY: KeySection = KeySection {
             says: "Orders of the elements",
         },
         Key {
+            name: "quarter_points",
+            kind: Kind::Flags,
+            need: AS_THE_SCENE,
+            example: "[true, false]",
+            says: "Whether cells of order 2 at crack fronts are quarter-point elements",
+        },
+        Key {
             name: "closures",
             kind: Kind::TablesOrWords(&CLOSURE, &CLOSURES),
             need: AS_THE_SCENE,

@@ -67,6 +67,20 @@ impl<'a, 'i> Section<'a, 'i> {
         }
     }
 
+    /// Truth values in brackets.
+    pub fn flags(&self, key: &'static str) -> Option<Vec<bool>> {
+        let value = self.get(key)?;
+        let array = value.get_ref().as_array();
+        let flags = array.and_then(|array| {
+            let flags = array.iter().map(|entry| entry.get_ref().as_bool());
+            flags.collect()
+        });
+        if flags.is_none() {
+            self.wrong_type(key, value, "true and false in brackets, e.g. [true, false]");
+        }
+        flags
+    }
+
     /// Numbers in brackets.
     pub fn numbers(&self, key: &'static str) -> Option<Vec<f64>> {
         let quantity = self.known(key).and_then(|key| key.kind.quantity());
