@@ -104,7 +104,7 @@ pub(super) fn closest_setting(study: &Study, found: &Assessment, tolerance: f64)
     }
     match next(study, found, tolerance) {
         Some(next) => text + "\nnext: " + &next,
-        None => text + "\nnext: add finer meshes to [study] meshes",
+        None => text + "\nnext: add finer meshes to [study] meshes, or smaller [study] tolerances",
     }
 }
 
@@ -124,14 +124,16 @@ pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
     let count = meshes.map_or(0, |dimension| dimension.choices.len());
     format!(
         "the scene has no closed form for it, and without one errors need three meshes solved with the same \
-         order, law, facet rule and solver (the study has {count}); add meshes to [study] meshes, or an [oracle.NAME]"
+         order, law, facet rule and solver (the study has {count}); add meshes to [study] meshes, \
+         or tolerances, or an [oracle.NAME]"
     )
 }
 
 /// What meshes that are one and the same mean.
 pub(super) fn identical_meshes(labels: &str) -> String {
     format!(
-        "{labels} are one and the same mesh: sweep a parameter that sizes the cells of the geometry"
+        "{labels} are one and the same mesh: sweep a parameter that sizes the cells of the geometry, \
+         or tolerances that lie further apart"
     )
 }
 

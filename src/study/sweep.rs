@@ -14,8 +14,9 @@ use kluft_scene::refused_keys;
 const SIZES: [f64; 3] = [2.0, 1.4, 1.0];
 
 /// Keys of `[study]` that hold lists.
-const LISTS: [&str; 6] = [
+const LISTS: [&str; 7] = [
     "meshes",
+    "tolerances",
     "orders",
     "quarter_points",
     "closures",
@@ -25,10 +26,14 @@ const LISTS: [&str; 6] = [
 
 /// Reads what `[study]` sweeps; `asked` is the same table as values.
 pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<SweepDimension> {
+    let meshes = match tolerances(section, scene) {
+        adaptive if adaptive.is_empty() => meshes(section, scene),
+        adaptive => adaptive,
+    };
     let orders = orders(section, scene);
     let fronts = fronts(section, &orders, scene);
     let mut dimensions = vec![
-        ("mesh", SweepKind::Mesh, meshes(section, scene)),
+        ("mesh", SweepKind::Mesh, meshes),
         ("order", SweepKind::Order, orders),
         ("quarter_points", SweepKind::Fronts, fronts),
         (
@@ -162,6 +167,29 @@ fn mesh_choice(mesh: &[(String, f64)], all: &[Vec<(String, f64)>], scene: &Table
     }
 }
 
+/// Meshes that follow the estimated error until it is below a tolerance. The error falls about
+/// with the second power of the cell size, their number grows with the third power of its inverse.
+fn tolerances(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
+    let tolerances = section.numbers("tolerances").unwrap_or_default();
+    if section.has("tolerances") && section.has("meshes") {
+        let problem = "both `meshes` and `tolerances` are given in [study]".into();
+        let remedy = "keep one: a mesh that follows the estimated error has sizes of its own";
+        section.refuse("tolerances", problem, remedy);
+    }
+    let own = scene.get("mesh").and_then(|mesh| mesh.get("adapt"));
+    let own = own.and_then(|adapt| adapt.get("tolerance"));
+    let own = own.and_then(Value::as_float);
+    let largest = tolerances.iter().copied().fold(0.0, f64::max);
+    let choice = |tolerance: f64| Choice {
+        cost: (own.unwrap_or(largest) / tolerance).powf(1.5),
+        ..Choice::new(
+            &format!("tolerance={tolerance}"),
+            vec![Edit::set(&["mesh", "adapt", "tolerance"], tolerance)],
+        )
+    };
+    tolerances.into_iter().map(choice).collect()
+}
+
 fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
     let orders = section.numbers("orders");
     let orders = orders.unwrap_or_default();
@@ -169,7 +197,7 @@ fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
         let remedy = "write orders = [1, 2]";
         section.refuse("orders", "elements have order 1 or 2".into(), remedy);
     }
-    for key in ["meshes", "orders"] {
+    for key in ["meshes", "tolerances", "orders"] {
         if is_of_file(scene) && section.has(key) {
             let problem = format!("`{key}` has no effect on a mesh file");
             let remedy = "remove it, or give the geometry instead of the file in [mesh]";

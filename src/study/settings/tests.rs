@@ -96,6 +96,18 @@ fn quarter_points_are_swept_beside_orders() {
 }
 
 #[test]
+fn tolerances_are_meshes() {
+    let plan = plan("[study]\ntolerances = [0.01, 0.05]\norders = [1, 2]\n");
+    assert_eq!(plan.settings.len(), 4);
+    assert_eq!(plan.dimensions[0].kind, SweepKind::Mesh);
+    assert!(plan.settings[0].folder.ends_with("tolerance_0.05-order_1"));
+    let scene = scene(&plan, "tolerance=0.01, order 2");
+    let mesh = &scene["mesh"];
+    assert_eq!(mesh["adapt"]["tolerance"].as_float(), Some(0.01));
+    assert_eq!(mesh["parameters"]["h"].as_float(), Some(0.1));
+}
+
+#[test]
 fn closures_by_name_drop_the_keys_that_they_refuse() {
     let plan = plan(
         "[study]\nclosures = ['contact', 'hyperbolic', { label = 'cut', closure = 'logarithmic', cutoff_aperture = 1e-5 }]\n",
@@ -156,6 +168,12 @@ fn slips_are_found_before_anything_is_run() {
         ("[study]\nmeshes = []", "empty"),
         ("[study]\norders = [3]", "between 1 and 2"),
         ("[study]\norders = [1.5]", "order 1 or 2"),
+        ("[study]\ntolerances = [2]", "between 0 and 1"),
+        ("[study]\ntolerances = []", "empty"),
+        (
+            "[study]\nmeshes = [{ h = 1 }]\ntolerances = [0.1]",
+            "keep one",
+        ),
         ("[study]\nquarter_points = [true]", "orders = [2]"),
         ("[study]\norders = [2]\nquarter_points = [1]", "true"),
         ("[study]\norders = [2]\nquarter_points = []", "empty"),
@@ -196,8 +214,10 @@ fn a_scene_of_a_mesh_file_has_no_meshes_to_sweep() {
     let text = text.replace("parameters = { h = 0.1, h_far = 1, dip = 50 }", "");
     let read = |study: &str| StudyPlan::read(Path::new("scene.toml"), &format!("{text}{study}"));
     assert!(read("").expect_err("nothing")[0].remedy.contains("[study]"));
-    let defects = read("[study]\norders = [1, 2]\n").expect_err("no orders");
-    assert!(defects[0].problem.contains("mesh file"), "{defects:?}");
+    for study in ["orders = [1, 2]", "tolerances = [0.1]"] {
+        let defects = read(&format!("[study]\n{study}\n")).expect_err(study);
+        assert!(defects[0].problem.contains("mesh file"), "{defects:?}");
+    }
     assert_eq!(
         read("[study]\nclosures = ['linear', 'contact']\n")
             .expect("a plan")

@@ -20,6 +20,13 @@ pub static STUDY: KeySection = KeySection {
             says: "Tables of mesh parameters",
         },
         Key {
+            name: "tolerances",
+            kind: Kind::Numbers(quantity(Dimension::One, Range::Between(0.0, 1.0))),
+            need: AS_THE_SCENE,
+            example: "[0.05, 0.01]",
+            says: "Tolerances of meshes that follow the estimated error, instead of `meshes`",
+        },
+        Key {
             name: "orders",
             kind: Kind::Numbers(quantity(Dimension::One, Range::Within(1.0, 2.0))),
             need: AS_THE_SCENE,
