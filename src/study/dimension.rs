@@ -13,7 +13,7 @@ pub(super) enum SweepKind {
     Fronts,
     /// The closure law, with keys of it.
     Closure,
-    /// A number of the fractures.
+    /// A number of the fractures, or a load.
     Value,
     /// How facets are integrated.
     Facets,

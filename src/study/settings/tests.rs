@@ -19,6 +19,10 @@ cutoff_aperture = 1e-6
 aperture = 2e-4
 normal_stiffness = 1e11
 friction_angle = 30
+[boundary.top]
+pressure = 1e6
+[boundary."far.side"]
+displacement = { z = 0 }
 "#;
 
 fn read(study: &str) -> Result<StudyPlan, Vec<Defect>> {
@@ -161,6 +165,22 @@ fn values_are_of_all_fractures_that_have_the_key_or_of_one() {
 }
 
 #[test]
+fn loads_are_values() {
+    let plan = plan(
+        "[study.values]\n'boundary.top.pressure' = [5e6, '10 MPa']\n'boundary.far.side.displacement.z' = [-1e-3]\n'fracture.a.fluid_pressure' = [1e6, 2e6]\n",
+    );
+    assert_eq!(plan.settings.len(), 4);
+    let scene = scene(&plan, "top.pressure=1e7, fluid_pressure=1e6");
+    let boundary = &scene["boundary"];
+    assert_eq!(boundary["top"]["pressure"].as_float(), Some(1e7));
+    let side = &boundary["far.side"]["displacement"];
+    assert_eq!(side["z"].as_float(), Some(-1e-3));
+    let pressure = |name: &str| scene["fracture"][name].get("fluid_pressure").cloned();
+    assert_eq!(pressure("a"), Some(Value::Float(1e6)));
+    assert_eq!(pressure("b"), None);
+}
+
+#[test]
 fn slips_are_found_before_anything_is_run() {
     for (study, named) in [
         ("[study]\nmesh = [1]", "did you mean `meshes`"),
@@ -188,7 +208,22 @@ fn slips_are_found_before_anything_is_run() {
             "count",
         ),
         ("[study.values]\nnormal_stiffness = 3", "brackets"),
-        ("[study.values]\n'c.aperture' = [1]", "a, b"),
+        (
+            "[study.values]\n'c.aperture' = [1]",
+            "fracture.a, fracture.b",
+        ),
+        (
+            "[study.values]\n'boundary.a.pressure' = [1]",
+            "boundary.top",
+        ),
+        (
+            "[study.values]\n'boundary.top.traction' = [1]",
+            "boundary.top.pressure",
+        ),
+        (
+            "[study.values]\n'boundary.top.pressure' = ['1 mm']",
+            "a stress",
+        ),
     ] {
         let defects = read(study).expect_err(study);
         let text: Vec<String> = defects.iter().map(ToString::to_string).collect();

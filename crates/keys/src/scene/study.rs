@@ -52,7 +52,7 @@ pub static STUDY: KeySection = KeySection {
             kind: Kind::Sweeps(&SERIES),
             need: Need::Without("none"),
             example: "{ normal_stiffness = [1e9, 1e10] }",
-            says: "Numbers of all fractures that have the key; `\"NAME.key\"` is of one fracture",
+            says: "Numbers of all fractures that have the key; `\"NAME.key\"` is of one fracture, `\"boundary.NAME.pressure\"` a load",
         },
         Key {
             name: "facets",
