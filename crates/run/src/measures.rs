@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use kluft_solver::{FacetResult, Solution, System};
-use lie_core::{FacetQuadrature, FacetRulePoint, Rock, facet_points};
+use lie_core::{Closure, FacetQuadrature, FacetRulePoint, Rock, facet_points};
 
 use kluft_scene::{Extent, JumpProfile, Oracle};
 
@@ -61,6 +61,7 @@ pub fn energy(joules: f64) -> Measure {
 /// A fracture of a solution.
 struct MeasuredFracture<'a> {
     rock: Rock,
+    closure: Closure,
     samples: Vec<Sample>,
     /// Results at the facet points, with their places and areas.
     points: Vec<(&'a FacetResult, DVec3, f64)>,
@@ -77,6 +78,7 @@ impl<'a> MeasuredFracture<'a> {
         let beside = own.first().map_or(0, |&facet| facets.plus[facet] as usize);
         Self {
             rock: *system.problem().rock(beside),
+            closure: system.problem().fractures[index].law.closure,
             samples: own
                 .iter()
                 .flat_map(|&facet| samples(system, solution, facet))
@@ -101,14 +103,28 @@ impl<'a> MeasuredFracture<'a> {
         if let Some(exact) = oracle.slip(&self.rock) {
             found.extend(self.field("slip", oracle, |sample| sample.slip, &exact));
         }
-        if let Some(exact) = oracle.normal_traction {
-            let points = || {
-                let points = self.points.iter();
-                points.map(|(result, x, area)| (*x, result.normal_traction - exact, exact, *area))
-            };
-            found.extend(norms("normal_traction", oracle, points));
+        if let Some(exact) = oracle.aperture(&self.rock, &self.closure) {
+            found.extend(self.constant("aperture", oracle, |result| result.aperture, exact));
+        }
+        if let Some(exact) = oracle.normal_traction(&self.rock, &self.closure) {
+            let of = |result: &FacetResult| result.normal_traction;
+            found.extend(self.constant("normal_traction", oracle, of, exact));
         }
         found
+    }
+
+    /// Errors of what is the same everywhere, at the facet points.
+    fn constant(
+        &self,
+        name: &str,
+        oracle: &Oracle,
+        of: fn(&FacetResult) -> f64,
+        exact: f64,
+    ) -> Vec<Measure> {
+        norms(name, oracle, || {
+            let points = self.points.iter();
+            points.map(move |(result, x, area)| (*x, of(result) - exact, exact, *area))
+        })
     }
 
     fn field(

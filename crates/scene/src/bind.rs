@@ -63,7 +63,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         defects.extend(missing_densities(scene));
     }
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
-    let oracles = bind_oracles(scene, &mesh, &mut defects);
+    let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
     if !defects.is_empty() {
         return Err(defects);
     }
@@ -117,7 +117,12 @@ fn quarter_points(moved: usize) -> Option<String> {
 }
 
 /// Closed form of each fracture.
-fn bind_oracles(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<Option<Oracle>> {
+fn bind_oracles(
+    scene: &Scene,
+    mesh: &Mesh,
+    fractures: &[&Named<FractureEntry>],
+    defects: &mut Vec<Defect>,
+) -> Vec<Option<Oracle>> {
     let strangers = scene
         .oracles
         .iter()
@@ -132,6 +137,13 @@ fn bind_oracles(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<Op
         Defect::new(&entry.place, problem, remedy)
     }));
     let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
+    for (name, fracture) in mesh.fractures.iter().zip(fractures) {
+        let refused = of(name).and_then(|entry| {
+            let [problem, remedy] = entry.value.refusal(&fracture.value.fracture)?;
+            Some(Defect::new(&entry.place, problem, remedy))
+        });
+        defects.extend(refused);
+    }
     let names = mesh.fractures.iter();
     names
         .map(|name| of(name).map(|entry| entry.value))

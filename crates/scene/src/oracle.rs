@@ -1,6 +1,6 @@
 //! Closed forms that a scene may name for a fracture.
 //!
-//! All of them have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance
+//! A joint that a pressure closes has a file of its own, `joint`. All others have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance
 //! from the centre as a share of the radius: cracks in unbounded rock, opened by a pressure `p` or
 //! sheared by a stress drop `tau`. With `nu`, `E`, `mu = E / (2 (1 + nu))` of the rock:
 //!
@@ -11,12 +11,16 @@
 //!   A 221, 1921);
 //! - "uniform": the same everywhere, as given.
 
+mod joint;
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use lie_core::Rock;
+use kluft_solver::Fracture;
+use lie_core::{Closure, Rock};
 
 use crate::reader::Section;
+use joint::PressedJoint;
 
 /// Share of the radius next to the front that measures "inside" leave out, unless given.
 const RING: f64 = 0.1;
@@ -28,8 +32,9 @@ pub struct Oracle {
     pub extent: Extent,
     opening: Option<Prescribed>,
     slip: Option<Prescribed>,
-    /// Normal traction (Pa), tension positive.
-    pub normal_traction: Option<f64>,
+    /// Normal traction as given (Pa), tension positive.
+    normal_traction: Option<f64>,
+    joint: Option<PressedJoint>,
     /// Share of the radius next to the crack front that measures "inside" leave out.
     pub ring: f64,
 }
@@ -97,6 +102,37 @@ impl Oracle {
             Extent::Everywhere => 0.0,
         };
         self.profile(self.slip, per_stress)
+    }
+
+    /// Normal traction everywhere (Pa), tension positive: as given, or what a joint with this law
+    /// carries.
+    pub fn normal_traction(&self, rock: &Rock, closure: &Closure) -> Option<f64> {
+        let carried = |joint: PressedJoint| joint.carried(rock, closure);
+        let of_joint = self.joint.and_then(carried).map(|pressure| -pressure);
+        self.normal_traction.or(of_joint)
+    }
+
+    /// Aperture everywhere (m) of a joint with this law; none where it is 0, of which no error is a
+    /// share.
+    pub fn aperture(&self, rock: &Rock, closure: &Closure) -> Option<f64> {
+        let aperture = self.joint?.aperture(rock, closure);
+        aperture.filter(|aperture| *aperture != 0.0)
+    }
+
+    /// Why the closed form does not hold for a fracture, and the remedy.
+    pub(crate) fn refusal(&self, fracture: &Fracture) -> Option<[&'static str; 2]> {
+        let joint = self.joint?;
+        if fracture.law.closure.normal_stiffness == 0.0 {
+            return Some([
+                "a fracture without stiffness carries no pressure",
+                "give the fracture a normal_stiffness, or remove the closed form",
+            ]);
+        }
+        let is_sphere = matches!(joint, PressedJoint::Sphere { .. });
+        (is_sphere && fracture.fluid_pressure != 0.0).then_some([
+            "the closed form of a sphere has no fluid pressure",
+            "remove the fluid_pressure of the fracture, or the closed form",
+        ])
     }
 
     fn profile(&self, amount: Option<Prescribed>, per_stress: f64) -> Option<JumpProfile> {
@@ -169,6 +205,17 @@ impl JumpProfile {
 pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
     section.require("form");
     let name = section.choice("form");
+    if let Some("column" | "sphere") = name {
+        let joint = joint::read(section, name == Some("sphere"))?;
+        return Some(Oracle {
+            extent: Extent::Everywhere,
+            opening: None,
+            slip: None,
+            normal_traction: None,
+            joint: Some(joint),
+            ring: 0.0,
+        });
+    }
     let centre = || section.vector("centre").map(DVec3::from);
     let extent = match name? {
         "penny" => {
@@ -209,6 +256,7 @@ pub(crate) fn read(section: &Section<'_, '_>) -> Option<Oracle> {
         opening,
         slip,
         normal_traction,
+        joint: None,
         ring: if crack { ring.unwrap_or(RING) } else { 0.0 },
     })
 }
@@ -234,57 +282,4 @@ fn read_strip(section: &Section<'_, '_>, centre: impl Fn() -> Option<DVec3>) -> 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const ROCK: Rock = Rock {
-        young_modulus: 25e9,
-        poisson_ratio: 0.25,
-        density: 0.0,
-    };
-
-    fn disc() -> Oracle {
-        Oracle {
-            extent: Extent::Disc {
-                centre: DVec3::ZERO,
-                radius: 1.0,
-            },
-            opening: Some(Prescribed::Stress(2e6)),
-            slip: Some(Prescribed::Stress(2e6)),
-            normal_traction: None,
-            ring: RING,
-        }
-    }
-
-    fn near(found: f64, expected: f64) {
-        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
-    }
-
-    /// Numbers of the literature for E = 25 GPa, nu = 0.25, 2 MPa, radius 1 m.
-    #[test]
-    fn a_disc_has_published_values() {
-        let opening = disc().opening(&ROCK).expect("an opening");
-        near(opening.at(DVec3::ZERO), 1.909859e-4);
-        near(opening.volume(0.0), 4.0e-4);
-        near(disc().stress_intensity().expect("K_I"), 2.256758e6);
-        near(
-            disc().slip(&ROCK).expect("a slip").at(DVec3::ZERO),
-            2.182696e-4,
-        );
-        assert_eq!(opening.at(DVec3::X), 0.0);
-    }
-
-    #[test]
-    fn a_strip_has_published_values() {
-        let extent = Extent::Strip {
-            centre: DVec3::ZERO,
-            along: DVec3::X,
-            half_length: 1.0,
-        };
-        let strip = Oracle { extent, ..disc() };
-        let opening = strip.opening(&ROCK).expect("an opening");
-        near(opening.at(DVec3::new(0.0, 7.0, 0.0)), 3.0e-4);
-        near(opening.volume(2.0), 4.712389e-4);
-        near(strip.stress_intensity().expect("K_I"), 3.544908e6);
-    }
-}
+mod tests;

@@ -5,7 +5,7 @@ use crate::range::Range;
 use crate::table::{Key, KeySection, Kind, Need, number, quantity};
 
 /// Names of the closed forms.
-pub const FORMS: [&str; 3] = ["penny", "line", "uniform"];
+pub const FORMS: [&str; 5] = ["penny", "line", "uniform", "column", "sphere"];
 
 /// The closed form of a fracture.
 pub static ORACLE: KeySection = KeySection {
@@ -17,21 +17,28 @@ pub static ORACLE: KeySection = KeySection {
             kind: Kind::Choice("closed form", &FORMS),
             need: Need::Required,
             example: "\"penny\"",
-            says: "A disc (penny) or a strip in plane strain (line) in unbounded rock, or a uniform jump",
+            says: "A disc (penny) or a strip in plane strain (line) in unbounded rock, a uniform jump, a joint that carries a pressure (column), or one between core and shell (sphere)",
         },
         Key {
             name: "centre",
             kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
-            need: Need::Unless("the form is `\"uniform\"`"),
+            need: Need::Unless("the form is neither penny nor line"),
             example: "[0, 0, 0]",
             says: "Centre of a penny, or a point of the middle of a line",
         },
         Key {
             name: "radius",
             kind: number(Dimension::Length, Range::Positive),
-            need: Need::Unless("the form is no penny"),
+            need: Need::Unless("the form is neither penny nor sphere"),
             example: "1.0",
-            says: "Radius of a penny",
+            says: "Radius of a penny, or of the joint in a sphere",
+        },
+        Key {
+            name: "outer_radius",
+            kind: number(Dimension::Length, Range::Positive),
+            need: Need::Unless("the form is no sphere"),
+            example: "2.0",
+            says: "Radius of the shell around the joint of a sphere",
         },
         Key {
             name: "along",
@@ -52,7 +59,7 @@ pub static ORACLE: KeySection = KeySection {
             kind: number(Dimension::Stress, Range::Finite),
             need: Need::Without("not compared"),
             example: "2e6",
-            says: "Pressure that opens a penny or line",
+            says: "Pressure that opens a penny or line; that closes a column (without fluid pressure), or acts outside of a sphere, required there",
         },
         Key {
             name: "stress_drop",

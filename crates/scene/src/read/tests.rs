@@ -15,6 +15,9 @@ opening = 1e-5
 slip = 1e-5
 [oracle.b]
 form = 'penny'
+[oracle.c]
+form = 'sphere'
+pressure = 1e6
 ";
 
 /// The scene with its edits, if it is one, its warnings, and the keys that nobody asked for.
@@ -176,4 +179,29 @@ fn a_key_that_others_leave_without_effect_is_told_apart_from_an_unknown_one() {
     let defects = edited(&[("form = \"line\"", "form = \"uniform\"")]).expect_err("no effect");
     let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
     assert!(text[0].contains("`centre` has no effect"), "{text:#?}");
+}
+
+#[test]
+fn slips_in_closed_forms_of_joints_are_named() {
+    for (keys, named) in [
+        ("form = 'column'", "pressure = 2e6"),
+        ("form = 'column'\npressure = -1e6", "positive"),
+        ("form = 'column'\npressure = 1e6\nopening = 1e-5", "opening"),
+        (
+            "form = 'sphere'\npressure = 1e6\nradius = 1",
+            "outer_radius",
+        ),
+        (
+            "form = 'sphere'\npressure = 1e6\nradius = 2\nouter_radius = 1",
+            "above that of the joint",
+        ),
+    ] {
+        let text = EVERY_KEY.replace(
+            "[oracle.joint]",
+            &format!("[oracle.other]\n{keys}\n[oracle.joint]"),
+        );
+        let defects = read(&text).0.expect_err(keys);
+        let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
+        assert!(text.join("\n").contains(named), "{keys}: {text:?}");
+    }
 }
