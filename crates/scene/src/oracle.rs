@@ -1,8 +1,9 @@
 //! Closed forms that a scene may name for a fracture.
 //!
-//! A joint that a pressure closes has a file of its own, `joint`. All others have the shape `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance
-//! from the centre as a share of the radius: cracks in unbounded rock, opened by a pressure `p` or
-//! sheared by a stress drop `tau`. With `nu`, `E`, `mu = E / (2 (1 + nu))` of the rock:
+//! A joint that a pressure closes has a file of its own, `joint`. All others have the shape
+//! `value(x) = amplitude sqrt(1 - rho(x)^2)`, with `rho` the distance from the centre as a share of
+//! the radius: cracks in unbounded rock, opened by a pressure `p` or sheared by a stress drop
+//! `tau`. With `nu`, `E`, `mu = E / (2 (1 + nu))` of the rock:
 //!
 //! - disc ("penny"), opening `8 (1 - nu^2) p a / (pi E)` (I. N. Sneddon, Proc. R. Soc. A 187,
 //!   1946), slip `8 (1 - nu) tau a / (pi (2 - nu) mu)` (C. M. Segedin, Proc. Camb. Phil. Soc. 47,
