@@ -6,7 +6,9 @@
 //!
 //! ```text
 //! core     u = -q r (1 - 2 nu) / E
-//! shell    u = C r + D / r^2     D = (q - p) / (4 G (1/a^3 - 1/b^3))     C = (4 G D / b^3 - p) / (3 K)
+//! shell    u = C r + D / r^2
+//!          D = (q - p) / (4 G (1/a^3 - 1/b^3))
+//!          C = (4 G D / b^3 - p) / (3 K)
 //! joint    u_shell(a) - u_core(a) = w(q)
 //! ```
 //!
