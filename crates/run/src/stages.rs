@@ -271,8 +271,11 @@ impl<'a> Run<'a> {
         let limit = asked.memory_limit.map_or(available, |limit| limit as usize);
         let before = former.and_then(|former| former.progress.choice.0.parse().ok());
         let plan = self.stage(Stage::ChooseSolver, |_| {
+            let discretisation = system.discretisation();
             let workload = Workload::of(system.problem());
-            let unknowns = system.discretisation().into();
+            let points = discretisation.points().len();
+            let workload = workload.with_extra_memory(&system.problem().mesh, points);
+            let unknowns = discretisation.into();
             Plan::of(unknowns, workload, before.or(asked.linear), limit)
         });
         let plan = solved(plan, system)?;
