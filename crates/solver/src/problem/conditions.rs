@@ -23,7 +23,7 @@ pub enum Support {
 /// What acts on one part of the outer surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition {
-    /// Index into [`kluft_mesh::Mesh::boundaries`].
+    /// Index into [`kluft_mesh::MeshData::boundaries`].
     pub boundary: usize,
     /// Its load, if any.
     pub load: Option<SurfaceLoad>,
