@@ -54,7 +54,7 @@ pub use problem::{
 };
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use space::pattern::{CellOfSlot, Pattern};
-pub use space::rigid_modes::HOLD;
+pub use space::rigid_modes::UNHELD_BLOCK;
 pub use space::sector_nodes::SectorNodes;
 pub use space::supports::{Constraint, Supports};
 pub use system::{Discretisation, FacetPointState, State, System};

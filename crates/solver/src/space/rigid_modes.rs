@@ -22,8 +22,10 @@ const MOST_BLOCKS: usize = 400;
 
 /// Remedy for a block that nothing holds. Whoever knows how supports are written may put it more
 /// plainly.
-pub const HOLD: &str =
+const HOLD: &str =
     "hold the block by a support or a fixed point, or give the fractures around it stiffness";
+/// Code of the defect that nothing holds a block, see [`kluft_mesh::Defect::code`].
+pub const UNHELD_BLOCK: &str = "unheld-block";
 
 const MOTIONS: [&str; 6] = [
     "translation along x",
@@ -61,7 +63,9 @@ pub(crate) fn find(
     };
     let facets = 0..problem.mesh.facets.elements.len();
     let ties: Vec<Tie> = facets.map(tie).collect();
-    find_with(problem, points, supports, &ties, HOLD)
+    let found = find_with(problem, points, supports, &ties, HOLD);
+    let coded = found.into_iter();
+    coded.map(|defect| defect.with_code(UNHELD_BLOCK)).collect()
 }
 
 /// Names every group of blocks that can move freely with what `ties` hold, one for each facet.
