@@ -90,11 +90,10 @@ impl Multigrid {
             modes,
         };
         let (fixed, buffers) = FixedHierarchy::of(nodes, MeanField::into_basis)?;
-        let multigrid = Self::complete(fixed, &SumRows::of_fixed(matrix), buffers)?;
-        Ok(Self {
-            fixed: multigrid.fixed.without_basis(),
-            ..multigrid
-        })
+        let mut multigrid = Self::prepared(fixed, LevelBuffers::default());
+        multigrid.set_levels(&SumRows::of_fixed(matrix), buffers)?;
+        multigrid.fixed.forget_basis();
+        Ok(multigrid)
     }
 
     /// Prepares the hierarchy of a matrix whose node `n` has the rows `first_row[n]..first_row[n +
@@ -116,16 +115,22 @@ impl Multigrid {
             modes,
         };
         let (fixed, spare) = FixedHierarchy::of(nodes, |means| basis(&means))?;
-        Ok(Self {
+        Ok(Self::prepared(fixed, spare))
+    }
+
+    /// Without levels.
+    fn prepared(fixed: FixedHierarchy, spare: LevelBuffers) -> Self {
+        Self {
             fixed,
             spare,
             factors: InverseFactors::default(),
             finest: Level::empty(),
             coarser: Vec::new(),
-        })
+        }
     }
 
-    /// Takes over the blocks of the interface. What depends on the fixed matrix alone stays.
+    /// Takes over the blocks of the interface. What depends on the fixed matrix alone stays, also
+    /// when the levels cannot be made; it has none then, until other blocks are taken over.
     ///
     /// # Errors
     /// If a diagonal block is not positive definite, or an entry not finite.
@@ -134,7 +139,6 @@ impl Multigrid {
         matrix: BlockRows<'_>,
         interface: InterfaceBlocks<'_>,
     ) -> Result<(), MultigridFailure> {
-        let fixed = std::mem::take(&mut self.fixed);
         // The old levels make room for the new ones.
         let former = std::mem::replace(&mut self.finest, Level::empty());
         self.coarser.clear();
@@ -146,29 +150,23 @@ impl Multigrid {
             interface: Some(interface),
             ..SumRows::of_fixed(matrix)
         };
-        *self = Self::complete(fixed, &rows, buffers)?;
-        Ok(())
+        self.set_levels(&rows, buffers)
     }
 
-    fn complete(
-        mut fixed: FixedHierarchy,
+    fn set_levels(
+        &mut self,
         rows: &SumRows<'_>,
         buffers: LevelBuffers,
-    ) -> Result<Self, MultigridFailure> {
-        let (factors, finest, mut next) = fixed.finest(rows, buffers)?;
+    ) -> Result<(), MultigridFailure> {
+        let (factors, finest, mut next) = self.fixed.finest(rows, buffers)?;
         let mut coarser = Vec::new();
         while let Some(galerkin::Coarse { matrix, modes }) = next {
             let (level, below) = setup::level(matrix, &modes)?;
             coarser.push(level);
             next = below;
         }
-        Ok(Self {
-            fixed,
-            spare: LevelBuffers::default(),
-            factors,
-            finest,
-            coarser,
-        })
+        (self.factors, self.finest, self.coarser) = (factors, finest, coarser);
+        Ok(())
     }
 
     /// Smooths for spectra that reach further by `margin` than their bounds say.

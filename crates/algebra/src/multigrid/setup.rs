@@ -200,16 +200,9 @@ impl FixedHierarchy {
         whole
     }
 
-    /// Without what only other blocks of the interface would ask for.
-    pub(super) fn without_basis(self) -> Self {
-        let modes = self.basis.modes;
-        Self {
-            basis: CoarseBasis {
-                prolongator: Sparse::default(),
-                modes,
-            },
-            ..self
-        }
+    /// Frees what only other blocks of the interface would ask for.
+    pub(super) fn forget_basis(&mut self) {
+        self.basis.prolongator = Sparse::default();
     }
 
     /// Bytes of storage.

@@ -324,6 +324,32 @@ mod tests {
         assert!(remaining(&system, &loose, &solved, &rhs) < 1e-7);
     }
 
+    /// What a step is divided for: the next substep has a tangent of its own.
+    #[test]
+    fn a_tangent_that_is_refused_leaves_a_solver_for_others() {
+        let problem = problem(|z| z);
+        let system = system(&problem);
+        let interface = &system.discretisation.interface;
+        let stiffness = |size: f64| {
+            let tangents = vec![size * DMat3::IDENTITY; interface.points.len()];
+            interface.stiffness(&tangents)
+        };
+        let mut rhs = vec![DVec3::ZERO; system.discretisation.points.len()];
+        rhs[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
+        let fixed = system.fixed_part();
+        let mut solver = Iterative::new(&system).expect("definite");
+        for former in [None, Some(1e6)] {
+            if let Some(former) = former {
+                solver.update(fixed, stiffness(former)).expect("definite");
+            }
+            let refused = solver.update(fixed, stiffness(-1e3));
+            assert!(matches!(refused, Err(LinearFailure::Indefinite(_))), "{refused:?}");
+            solver.update(fixed, stiffness(1.0)).expect("definite");
+            let solved = solver.solve(fixed, &rhs, 1e-8).expect("solved").unknowns;
+            assert!(remaining(&system, &stiffness(1.0), &solved, &rhs) < 1e-7);
+        }
+    }
+
     /// `old` and `new` on orthogonal axes that no coordinate follows.
     fn alike(old: DVec3, new: DVec3) -> bool {
         let turn = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, 0.7, 1.1);

@@ -14,9 +14,6 @@ use crate::system::{FacetPointState, State, System};
 /// Stiffness that stands for walls in contact, against that of the rock beside them. Their
 /// tractions follow by increments, so it decides how fast they converge and not where.
 const RIGID: f64 = 1e6;
-/// Stiffness against sudden motions of walls that nothing holds, against that of the rock beside
-/// them. It enters the matrix only and no balance.
-const STABILISATION: f64 = 1e-6;
 
 pub(super) fn interface<'a>(system: &'a System<'_>) -> &'a Interface {
     &system.discretisation.interface
@@ -78,18 +75,19 @@ pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
     }
 }
 
-/// The tangents with some stiffness for walls that nothing may hold.
-pub(super) fn stabilised(system: &System<'_>, tangents: &Tangents) -> Tangents {
+/// The tangents with stiffness against sudden motions of walls: `damping` times that of the rock
+/// beside them.
+pub(super) fn damped(system: &System<'_>, tangents: &Tangents, damping: f64) -> Tangents {
     let points = &interface(system).points;
-    let stabilised = |tangents: &Vec<DMat3>| {
+    let damped = |tangents: &Vec<DMat3>| {
         let pairs = tangents.iter().zip(points);
         pairs
-            .map(|(tangent, point)| *tangent + STABILISATION * point.spring * DMat3::IDENTITY)
+            .map(|(tangent, point)| *tangent + damping * point.spring * DMat3::IDENTITY)
             .collect()
     };
     Tangents {
-        exact: stabilised(&tangents.exact),
-        positive: tangents.positive.as_ref().map(stabilised),
+        exact: damped(&tangents.exact),
+        positive: tangents.positive.as_ref().map(damped),
     }
 }
 

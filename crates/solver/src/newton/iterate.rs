@@ -17,6 +17,10 @@ pub(super) struct Iterate {
     pub(super) rock_forces: Vec<DVec3>,
     /// StateScales that its errors are measured against.
     pub(super) sizes: StateScales,
+    /// Largest of the forces that must balance in the first guess (N).
+    pub(super) first_force: f64,
+    /// Springs on the facet points, against the stiffness of the rock beside them, see `damping`.
+    pub(super) damping: f64,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     pub(super) forcing_term: f64,
     /// Errors after the last iteration, see `line_search`.

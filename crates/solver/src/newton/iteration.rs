@@ -6,6 +6,7 @@ use kluft_algebra::{LinearFailure, norm};
 use rayon::prelude::*;
 
 use super::convergence;
+use super::damping;
 use super::facet_points::{self, interface};
 use super::forcing_term;
 use super::iterate::{Correction, Iterate, Update};
@@ -15,6 +16,10 @@ use super::{Iteration, Newton, Step, StepOutcome};
 use crate::linear::{LinearSolution, Tangents};
 use crate::problem::Load;
 use crate::system::System;
+
+/// Forces of an iterate, against those that its increment began with, which no path of the loads
+/// leads to.
+const OVERSHOOT: f64 = 100.0;
 
 impl Iterate {
     /// Adds a correction to the unknowns, lets the facet points follow, and measures the errors.
@@ -95,9 +100,39 @@ impl Newton {
         iterate: &mut Iterate,
         count: usize,
     ) -> Result<Iteration, StepOutcome> {
+        if step.system.is_smooth() {
+            return self.advance(step, iterate, count);
+        }
+        let mut spent = 0;
+        loop {
+            let start = iterate.clone();
+            let mut iteration = self.advance(step, iterate, count)?;
+            iteration.linear_iterations += spent;
+            spent = iteration.linear_iterations;
+            let overshoots = iterate.sizes.force > OVERSHOOT * start.first_force;
+            match damping::stronger(start.damping) {
+                Some(damping) if overshoots => *iterate = Iterate { damping, ..start },
+                _ => {
+                    iterate.damping = damping::weaker(iterate.damping);
+                    return Ok(iteration);
+                }
+            }
+        }
+    }
+
+    /// Linearises, solves, corrects and measures.
+    ///
+    /// # Errors
+    /// If the linear solve fails or numbers are no longer finite.
+    fn advance(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+        count: usize,
+    ) -> Result<Iteration, StepOutcome> {
         let system = step.system;
         let tangents = facet_points::tangents(system, &iterate.state);
-        self.update_tangent(step, &tangents)?;
+        self.update_tangent(step, &tangents, iterate.damping)?;
         let solution = self.solve_linearised(system, iterate, &tangents);
         let solution = solution.map_err(StepOutcome::Linear)?;
         let is_recycled = self.recycled.is_some() && system.is_smooth();
@@ -120,14 +155,15 @@ impl Newton {
         &mut self,
         step: &mut Step<'_>,
         tangents: &Tangents,
+        damping: f64,
     ) -> Result<(), StepOutcome> {
         let start = Instant::now();
         let system = step.system;
         let updated = if system.is_smooth() {
             self.linear.update(system, tangents)
         } else {
-            let stabilised = facet_points::stabilised(system, tangents);
-            self.linear.update(system, &stabilised)
+            let damped = facet_points::damped(system, tangents, damping);
+            self.linear.update(system, &damped)
         };
         updated.map_err(StepOutcome::Linear)?;
         step.record.factorise_seconds += start.elapsed().as_secs_f64();

@@ -17,6 +17,7 @@
 //! committed.
 
 mod convergence;
+mod damping;
 mod extrapolation;
 mod facet_points;
 mod forcing_term;

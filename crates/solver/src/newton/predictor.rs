@@ -2,6 +2,7 @@
 //! one, else the path of the last states continued.
 
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
+use super::damping;
 use super::facet_points::{self, LastTrial};
 use super::forcing_term;
 use super::iterate::Iterate;
@@ -30,17 +31,21 @@ impl Newton {
                 (from, last_trials, None)
             }
         };
+        let reached = state.reached;
         let rock_forces = system.rock_forces(&state.unknowns);
         let tractions = system.law_tractions(&state);
         let force = system.force_scale(&rock_forces, &tractions, load);
+        let force = force.max(SHARE_OF_FORMER_SIZES * reached.force);
         Iterate {
             last_trials,
             guess,
             corrections: Vec::new(),
             sizes: StateScales {
-                force: force.max(SHARE_OF_FORMER_SIZES * state.reached.force),
-                ..state.reached
+                force,
+                ..reached
             },
+            first_force: force,
+            damping: damping::LEAST,
             rock_forces,
             forcing_term: forcing_term::first(system, &self.settings),
             merit: None,
