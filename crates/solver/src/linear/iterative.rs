@@ -343,7 +343,10 @@ mod tests {
                 solver.update(fixed, stiffness(former)).expect("definite");
             }
             let refused = solver.update(fixed, stiffness(-1e3));
-            assert!(matches!(refused, Err(LinearFailure::Indefinite(_))), "{refused:?}");
+            assert!(
+                matches!(refused, Err(LinearFailure::Indefinite(_))),
+                "{refused:?}"
+            );
             solver.update(fixed, stiffness(1.0)).expect("definite");
             let solved = solver.solve(fixed, &rhs, 1e-8).expect("solved").unknowns;
             assert!(remaining(&system, &stiffness(1.0), &solved, &rhs) < 1e-7);

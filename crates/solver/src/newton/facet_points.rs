@@ -57,6 +57,32 @@ pub(super) fn commit(system: &System<'_>, state: &mut State) {
     }
 }
 
+/// What stands for the laws in a linear solve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Linearisation {
+    /// Their tangents, as Newton's method has it.
+    Tangents,
+    /// Springs as stiff as the rock beside them, see `splitting`.
+    Springs,
+}
+
+/// The planes on which a linear solve takes the laws to be.
+pub(super) struct Linearised {
+    /// Stiffnesses (Pa/m).
+    pub(super) tangents: Tangents,
+    /// Where they come from.
+    pub(super) by: Linearisation,
+}
+
+/// The planes of the laws at the state.
+pub(super) fn linearised(system: &System<'_>, state: &State, by: Linearisation) -> Linearised {
+    let tangents = match by {
+        Linearisation::Tangents => tangents(system, state),
+        Linearisation::Springs => springs(system, state),
+    };
+    Linearised { tangents, by }
+}
+
 /// Tangents of the laws at the state (Pa/m).
 pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
     let points = interface(system).points.par_iter();
@@ -73,6 +99,19 @@ pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
         positive: (positive != exact).then_some(positive),
         exact,
     }
+}
+
+/// Stiffness of the rock beside each point in place of the tangents, except those of linear laws.
+fn springs(system: &System<'_>, state: &State) -> Tangents {
+    let points = interface(system).points.par_iter();
+    let all: Vec<DMat3> = points
+        .zip(&state.facet_points)
+        .map(|(point, state)| match system.law(point) {
+            law if law.is_linear() => tangent(law, point, state).exact,
+            _ => point.spring * DMat3::IDENTITY,
+        })
+        .collect();
+    all.into()
 }
 
 /// The tangents with stiffness against sudden motions of walls: `damping` times that of the rock
@@ -123,16 +162,20 @@ pub(super) fn follow(
     state: &mut State,
     last: &mut [LastTrial],
     changes: &[DVec3],
-    tangents: &Tangents,
+    planes: &Linearised,
 ) -> Vec<f64> {
     let points = interface(system).points.par_iter();
     points
         .zip(changes)
-        .zip(&tangents.exact)
+        .zip(&planes.tangents.exact)
         .zip(state.facet_points.par_iter_mut().zip(last))
         .map(|(((point, change), tangent), (state, last))| {
+            let law = system.law(point);
             let trial = trial(point, state, *tangent, *change);
-            follow_point(system.law(point), point, &trial, state, last)
+            match planes.by {
+                Linearisation::Springs if !law.is_linear() => split(law, point, trial, state),
+                _ => follow_point(law, point, &trial, state, last),
+            }
         })
         .collect()
 }
@@ -164,10 +207,41 @@ fn follow_point(
         separation: Some(trial.separation),
         traction: trial.normal_traction,
     };
+    let rock = rock_stiffness(law, point, trial, secant);
+    settle(law, point, trial, rock, state)
+}
+
+/// The half step of the laws in the splitting: from the traction that the law had, not from what
+/// the spring made of it.
+fn split(
+    law: &FractureLaw,
+    point: &FacetPoint,
+    trial: TrialState,
+    state: &mut FacetPointState,
+) -> f64 {
+    let trial = TrialState {
+        normal_traction: state.joint.normal_traction,
+        shear: state.joint.shear,
+        ..trial
+    };
+    let spring = RockStiffness {
+        normal: point.spring,
+        shear: point.spring,
+    };
+    settle(law, point, &trial, spring, state)
+}
+
+/// Moves a facet point to where its law balances the rock; returns its closure error (Pa).
+fn settle(
+    law: &FractureLaw,
+    point: &FacetPoint,
+    trial: &TrialState,
+    rock: RockStiffness,
+    state: &mut FacetPointState,
+) -> f64 {
     state.joint = if law.is_linear() {
         law.state_at(trial)
     } else {
-        let rock = rock_stiffness(law, point, trial, secant);
         law.return_map(trial, rock, &state.history)
     };
     let joint = &state.joint;

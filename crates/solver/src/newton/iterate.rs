@@ -3,8 +3,7 @@
 use glam::DVec3;
 use kluft_algebra::largest;
 
-use super::facet_points::LastTrial;
-use crate::linear::Tangents;
+use super::facet_points::{LastTrial, Linearisation, Linearised};
 use crate::problem::Load;
 use crate::system::{State, StateScales, System};
 
@@ -21,6 +20,8 @@ pub(super) struct Iterate {
     pub(super) first_force: f64,
     /// Springs on the facet points, against the stiffness of the rock beside them, see `damping`.
     pub(super) damping: f64,
+    /// What stands for the laws in the next linear solve.
+    pub(super) linearisation: Linearisation,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     pub(super) forcing_term: f64,
     /// Errors after the last iteration, see `line_search`.
@@ -42,11 +43,11 @@ pub(super) struct Correction {
     pub(super) size: f64,
 }
 
-/// A correction, and the tangents of the facet points (Pa/m) on whose planes it was found.
+/// A correction, and the planes of the laws on which it was found.
 #[derive(Clone, Copy)]
 pub(super) struct Update<'a> {
     pub(super) correction: &'a Correction,
-    pub(super) tangents: &'a Tangents,
+    pub(super) planes: &'a Linearised,
 }
 
 impl Correction {

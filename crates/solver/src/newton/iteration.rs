@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::convergence;
 use super::damping;
-use super::facet_points::{self, interface};
+use super::facet_points::{self, Linearisation, interface};
 use super::forcing_term;
 use super::iterate::{Correction, Iterate, Update};
 use super::line_search;
@@ -45,7 +45,7 @@ impl Iterate {
             &mut self.state,
             &mut self.last_trials,
             &interface(system).jumps(&correction.unknowns, &Load::NONE),
-            update.tangents,
+            update.planes,
         );
         let iteration = convergence::measure(step, self, &errors, correction.size)?;
         self.merit = Some(line_search::merit(&iteration));
@@ -77,8 +77,31 @@ impl Newton {
             step.report(iteration);
             return Ok(());
         }
+        let start = (!step.system.is_smooth()).then(|| iterate.clone());
+        let most = self.settings.max_iterations;
+        let failed = self.iterate_by_newton(step, iterate, most);
+        match (failed, start) {
+            (Ok(()), _) => Ok(()),
+            (Err(outcome), Some(start)) if outcome != StepOutcome::Stopped => {
+                *iterate = start;
+                self.iterate_by_splitting(step, iterate)
+            }
+            (failed, _) => failed,
+        }
+    }
+
+    /// Iterates by Newton's method until the tests hold, at `most` so often.
+    ///
+    /// # Errors
+    /// Once it is clear that they will not, or the observer stops the step.
+    pub(super) fn iterate_by_newton(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+        most: usize,
+    ) -> Result<(), StepOutcome> {
         let mut rigid_body_motion = RigidBodyMotion::default();
-        for count in 1..=self.settings.max_iterations {
+        for count in 1..=most {
             let iteration = self.iterate(step, iterate, count)?;
             step.report(iteration);
             if self.settings.accept(step.system, &iteration) {
@@ -94,13 +117,14 @@ impl Newton {
     ///
     /// # Errors
     /// If the linear solve fails or numbers are no longer finite.
-    fn iterate(
+    pub(super) fn iterate(
         &mut self,
         step: &mut Step<'_>,
         iterate: &mut Iterate,
         count: usize,
     ) -> Result<Iteration, StepOutcome> {
-        if step.system.is_smooth() {
+        let is_split = iterate.linearisation == Linearisation::Springs;
+        if step.system.is_smooth() || is_split {
             return self.advance(step, iterate, count);
         }
         let mut spent = 0;
@@ -131,17 +155,20 @@ impl Newton {
         count: usize,
     ) -> Result<Iteration, StepOutcome> {
         let system = step.system;
-        let tangents = facet_points::tangents(system, &iterate.state);
-        self.update_tangent(step, &tangents, iterate.damping)?;
-        let solution = self.solve_linearised(system, iterate, &tangents);
+        let planes = facet_points::linearised(system, &iterate.state, iterate.linearisation);
+        self.update_tangent(step, &planes.tangents, iterate.damping)?;
+        let solution = self.solve_linearised(system, iterate, &planes.tangents);
         let solution = solution.map_err(StepOutcome::Linear)?;
         let is_recycled = self.recycled.is_some() && system.is_smooth();
         let correction = Correction::of(system, solution.unknowns, is_recycled);
         let update = Update {
             correction: &correction,
-            tangents: &tangents,
+            planes: &planes,
         };
-        let mut iteration = line_search::advance(step, iterate, update, count)?;
+        let mut iteration = match planes.by {
+            Linearisation::Tangents => line_search::advance(step, iterate, update, count)?,
+            Linearisation::Springs => iterate.correct(step, update)?,
+        };
         iteration.linear_iterations = solution.iterations;
         if is_recycled {
             iterate.corrections.push(correction);

@@ -75,7 +75,7 @@ mod tests {
     use lie_core::Rock;
 
     use super::*;
-    use crate::newton::facet_points;
+    use crate::newton::facet_points::{self, Linearisation};
     use crate::newton::iterate::Correction;
     use crate::newton::{Newton, NewtonSettings, unobserved};
     use crate::problem::Load;
@@ -125,8 +125,12 @@ mod tests {
         let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
         let load = Load::proportional(1.0);
         let start = newton.predict(&system, &system.initial_state(), &load);
-        let tangents = facet_points::tangents(&system, &start.state);
-        newton.linear.update(&system, &tangents).expect("definite");
+        let tangents = Linearisation::Tangents;
+        let planes = facet_points::linearised(&system, &start.state, tangents);
+        newton
+            .linear
+            .update(&system, &planes.tangents)
+            .expect("definite");
         let residual = system.residual(&start.rock_forces, &[], &load);
         let solved = newton.linear.solve(&system, &residual, 1e-12);
         let exact = solved.expect("solvable").unknowns;
@@ -139,7 +143,7 @@ mod tests {
             iterate.merit = Some(1e-3);
             let update = Update {
                 correction,
-                tangents: &tangents,
+                planes: &planes,
             };
             let reached = advance(&mut step, &mut iterate, update, count);
             reached.expect("finite").force_residual

@@ -14,7 +14,8 @@
 //!
 //! A load step is solved in one increment or in several ([`substepping`]). An increment is
 //! predicted ([`predictor`]), iterated ([`iteration`]) until the tests hold ([`convergence`]), and
-//! committed.
+//! committed. Where contact and friction lead Newton's method around in circles, the laws and the
+//! rock are solved in turn ([`splitting`]) until it finds its way.
 
 mod convergence;
 mod damping;
@@ -33,6 +34,7 @@ mod restart;
 mod rigid_motion;
 mod settings;
 mod solver;
+mod splitting;
 mod step;
 mod substepping;
 

@@ -3,7 +3,7 @@
 
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::damping;
-use super::facet_points::{self, LastTrial};
+use super::facet_points::{self, LastTrial, Linearisation};
 use super::forcing_term;
 use super::iterate::Iterate;
 use super::recycling::GalerkinGuess;
@@ -40,12 +40,10 @@ impl Newton {
             last_trials,
             guess,
             corrections: Vec::new(),
-            sizes: StateScales {
-                force,
-                ..reached
-            },
+            sizes: StateScales { force, ..reached },
             first_force: force,
             damping: damping::LEAST,
+            linearisation: Linearisation::Tangents,
             rock_forces,
             forcing_term: forcing_term::first(system, &self.settings),
             merit: None,

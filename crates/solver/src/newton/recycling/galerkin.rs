@@ -103,8 +103,12 @@ impl RecycledSpace {
 
     /// One iteration of Newton's method in the space.
     fn iterate(&self, system: &System<'_>, iterate: &mut ReducedIterate) -> Option<Measures> {
-        let tangents = facet_points::tangents(system, &iterate.state);
-        let projected = self.project(system, &iterate.state, &tangents);
+        let planes = facet_points::linearised(
+            system,
+            &iterate.state,
+            facet_points::Linearisation::Tangents,
+        );
+        let projected = self.project(system, &iterate.state, &planes.tangents);
         let rock = self.rock_forces(&iterate.coefficients);
         let fractures = projected.fracture_forces;
         let residual: Vec<f64> = (0..rock.len())
@@ -117,7 +121,7 @@ impl RecycledSpace {
             &mut iterate.state,
             &mut iterate.last_trials,
             &interface(system).jumps(&correction, &Load::NONE),
-            &tangents,
+            &planes,
         );
         for (coefficient, change) in iterate.coefficients.iter_mut().zip(&change) {
             *coefficient += change;

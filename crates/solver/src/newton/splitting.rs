@@ -1,0 +1,78 @@
+//! Rock and laws in turn: the splitting of Douglas and Rachford (Lions and Mercier 1979; ALG2 of
+//! Glowinski and Le Tallec 1989).
+//!
+//! Newton's method may go around in circles where walls begin and cease to touch and to slide. With
+//! `rho` the stiffness of the rock beside a facet point, the rock is solved with springs `rho`
+//! instead of the laws, and each law is then balanced with its spring:
+//!
+//! ```text
+//! K y + B^T (t + rho (B y - w)) = f       rock: y
+//! t' + rho w' = t + rho B y               laws: w', t' = t(w')
+//! ```
+//!
+//! For laws that are monotone it always comes closer, by a factor an iteration. Its matrix never
+//! changes. It ends where Newton's method converges from what it has found.
+
+use super::facet_points::{LastTrial, Linearisation};
+use super::iterate::Iterate;
+use super::{Newton, Step, StepOutcome};
+
+/// Iterations before Newton's method is tried the first time; each time after twice as many.
+const FIRST_ITERATIONS: usize = 20;
+/// How often it is tried.
+const TRIALS: u32 = 4;
+/// Iterations of such a trial.
+const NEWTON_ITERATIONS: usize = 10;
+
+impl Newton {
+    /// Iterates by the splitting and by Newton's method in turn until the tests hold.
+    ///
+    /// # Errors
+    /// Why they do not, or that the observer stops the step.
+    pub(super) fn iterate_by_splitting(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+    ) -> Result<(), StepOutcome> {
+        let mut outcome = StepOutcome::OutOfIterations;
+        for trial in 0..TRIALS {
+            iterate.linearisation = Linearisation::Springs;
+            if self.split_times(step, iterate, FIRST_ITERATIONS << trial)? {
+                return Ok(());
+            }
+            let mut tried = iterate.clone();
+            tried.linearisation = Linearisation::Tangents;
+            tried.last_trials = vec![LastTrial::default(); iterate.last_trials.len()];
+            match self.iterate_by_newton(step, &mut tried, NEWTON_ITERATIONS) {
+                Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
+                Err(failed) => outcome = failed,
+                Ok(()) => {
+                    *iterate = tried;
+                    return Ok(());
+                }
+            }
+        }
+        Err(outcome)
+    }
+
+    /// Iterates so often by the splitting; whether the tests came to hold.
+    ///
+    /// # Errors
+    /// If a linear solve fails, numbers are no longer finite, or the observer stops the step.
+    fn split_times(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+        iterations: usize,
+    ) -> Result<bool, StepOutcome> {
+        for count in 1..=iterations {
+            let iteration = self.iterate(step, iterate, count)?;
+            step.report(iteration);
+            if self.settings.accept(step.system, &iteration) {
+                return Ok(true);
+            }
+            step.go_on()?;
+        }
+        Ok(false)
+    }
+}
