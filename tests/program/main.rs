@@ -16,6 +16,7 @@ mod read_back;
 mod renumbered;
 mod results;
 mod resume;
+mod studies;
 mod study;
 mod talk;
 mod usage;
