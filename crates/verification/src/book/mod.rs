@@ -1,5 +1,5 @@
-//! The verification book: real runs beside closed forms, a page for each benchmark that a scene with
-//! `[study]` cannot say; what one can say stands in `docs/verification/studies.md`.
+//! The verification book: real runs beside closed forms, a page for each benchmark that no study of
+//! a scene can say; those that one can stand in `docs/verification/studies.md`.
 //!
 //! A new page is a file here and an entry of [`report`].
 
