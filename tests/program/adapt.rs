@@ -44,7 +44,7 @@ fn a_penny_is_refined_until_its_opening_is_good_enough() {
     let stated = uncertainty(&said);
     assert!(off < stated && stated < 0.1, "{off} {stated}");
     // Errors go as one over the unknowns. Graded by hand, 18480 unknowns are 3.06 % off
-    // (docs/verification/book/penny.md).
+    // (docs/verification/studies.md).
     let unknowns = last["unknowns"].as_f64().expect("a number");
     assert!(unknowns * off < 18480.0 * 0.0306, "{unknowns} {off}");
     let decisions = said["decisions"].to_string();

@@ -23,11 +23,12 @@ const SMALL: [(&str, &str); 4] = [
     ("at = [-10.0, 10.0, -10.0]", "at = [-2, 2, -2]"),
 ];
 
-/// The penny with a section `[study]`.
+/// The penny with another section `[study]`.
 fn workshop(study: &str) -> Workshop {
     let workshop = Workshop::new("penny", &SMALL);
     let scene = fs::read_to_string(workshop.scene()).expect("the scene");
-    fs::write(workshop.scene(), format!("{scene}\n[study]\n{study}\n")).expect("written");
+    let (scene, _) = scene.split_once("[study]").expect("a study at its end");
+    fs::write(workshop.scene(), format!("{scene}[study]\n{study}\n")).expect("written");
     workshop
 }
 
@@ -318,6 +319,49 @@ fn values_are_swept_and_charted() {
         (ratio - 2.0).abs() < 1e-9,
         "a free crack opens in proportion: {ratio}"
     );
+}
+
+/// A crack in rock that is pulled opens as one under a fluid pressure of the same size: a uniform
+/// stress, which every mesh has exactly, is the difference. Facets of quarter-point cells are
+/// integrated at their nodes, which is not exact for a pressure: there 1 % is left. And cells
+/// without quarter points are too stiff (`docs/verification/studies.md`).
+#[test]
+fn loads_are_values_and_quarter_points_a_dimension() {
+    let workshop = workshop(
+        "measure = 'volume'\norders = [2]\nquarter_points = [true, false]\n[study.values]\n\
+         'boundary.top.pressure' = [-1e6, -2e6]\n'penny.fluid_pressure' = [0, 1e6]",
+    );
+    let scene = fs::read_to_string(workshop.scene()).expect("the scene");
+    let boundaries = "[boundary.top]\npressure = 0.0\n[boundary.bottom]\nsymmetry = true\n";
+    let scene = scene.replacen("[oracle.", &format!("{boundaries}\n[oracle."), 1);
+    fs::write(workshop.scene(), scene).expect("written");
+    let run = study(&workshop, &["-q"]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    let rows = table(&workshop.path("study"));
+    assert_eq!(rows.len(), 8);
+    let volume = |front: &str, pressure: &str, fluid: &str| -> f64 {
+        let wanted = [
+            ("quarter_points", front.to_owned()),
+            ("boundary.top.pressure", format!("top.pressure={pressure}")),
+            ("penny.fluid_pressure", format!("fluid_pressure={fluid}")),
+        ];
+        let row = rows
+            .iter()
+            .find(|row| wanted.iter().all(|(head, label)| row(head) == *label));
+        let row = row.expect("a setting");
+        row("penny.volume").parse().expect("a volume")
+    };
+    let equal = |a: f64, b: f64, share: f64| assert!((a / b - 1.0).abs() < share, "{a:e} {b:e}");
+    for (front, superposed) in [("quarter points", 1e-2), ("no quarter points", 1e-8)] {
+        let pulled = volume(front, "-1e6", "0");
+        equal(volume(front, "-2e6", "0"), 2.0 * pulled, 1e-8);
+        let both = volume(front, "-1e6", "1e6");
+        equal(volume(front, "-2e6", "1e6"), both + pulled, 1e-8);
+        equal(both, 2.0 * pulled, superposed);
+    }
+    let [quarter, plain] =
+        ["", "no "].map(|no| volume(&format!("{no}quarter points"), "-1e6", "0"));
+    assert!(quarter > 1.1 * plain, "{quarter:e} {plain:e}");
 }
 
 #[test]

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use kluft_chart::{Axis, Chart, Series};
 
-use super::line_crack::plate;
 use super::scene::{self, Outcome};
 use crate::oracles::spherical_joint::Exact;
 use crate::report::{Effort, Finding, Study, Table, digits, percent};
@@ -13,7 +12,7 @@ use crate::scenes::{EXACT, ROCK};
 pub const PAGE: Study = Study {
     name: "estimate",
     title: "Error estimate",
-    subject: "the closed forms of the other pages; of a crack under a pressure p, |e|² = p (V - \
+    subject: "the closed forms of the studies; of a crack under a pressure p, |e|² = p (V - \
               V_h) in the energy norm",
     run,
 };
@@ -88,7 +87,7 @@ fn discs() -> Vec<Case> {
             ("order 2, plain", "order = 2\nquarter_points = false", 3.0),
             ("order 2, quarter points", "order = 2", 2.0),
         ] {
-            let outcome = scene::run("penny", &format!("{}\n{more}", sizes(h)), &[]);
+            let outcome = scene::run("penny", &format!("{}\n{more}", sizes(h)));
             cases.push(pressurised(
                 format!("disc, {kind}, h = {h} m"),
                 &outcome,
@@ -108,7 +107,8 @@ fn lines() -> Vec<Case> {
         ("order 2, plain", "order = 2\nquarter_points = false", 3.0),
         ("order 2, quarter points", "order = 2", 2.0),
     ] {
-        let outcome = plate(0.08, 60.0, more);
+        let mesh = format!("parameters = {{ h = 0.08, half = 60, h_far = 12 }}\n{more}");
+        let outcome = scene::run("plates", &mesh);
         cases.push(pressurised(format!("line, {kind}"), &outcome, mean, safety));
     }
     cases
@@ -116,7 +116,7 @@ fn lines() -> Vec<Case> {
 
 /// A crack that slides: mean slip from the slips at its nodes.
 fn sliding(scene_name: &str, name: &str, mesh: &str, mean: f64) -> Case {
-    let outcome = scene::run(scene_name, mesh, &[]);
+    let outcome = scene::run(scene_name, mesh);
     Case {
         name: name.to_owned(),
         unknowns: outcome.unknowns(),
@@ -136,7 +136,7 @@ fn spheres() -> Vec<Case> {
     let exact = Exact::of(EXACT, ROCK).opening();
     let case = |(order, h): (u32, f64)| {
         let mesh = format!("parameters = {{ h = {h} }}\norder = {order}");
-        let outcome = scene::run("sphere", &mesh, &[]);
+        let outcome = scene::run("sphere", &mesh);
         let found = outcome.of_fracture(&["aperture", "mean"]).expect("a mean") - 1e-4;
         Case {
             name: format!("sphere, order {order}, h = {h} m"),

@@ -1,24 +1,15 @@
-//! The verification book: real runs beside closed forms, a page for each benchmark.
+//! The verification book: real runs beside closed forms, a page for each benchmark that no study of
+//! a scene can say; those that one can stand in `docs/verification/studies.md`.
 //!
 //! A new page is a file here and an entry of [`report`].
 
-mod adaptive;
-mod barton_bandis;
-mod charts;
 mod estimate;
-mod inclined_crack;
-mod inclined_penny;
 mod joint_sets;
-mod line_crack;
-mod log_law;
 mod oscillation;
 mod parts;
 mod patch_test;
 mod paths;
-mod penny;
 mod scene;
-mod single_joint;
-mod spherical_joint;
 
 use crate::report::{Layout, Report};
 
@@ -41,19 +32,10 @@ pub fn report() -> Report {
             "time of the page",
         ],
         studies: vec![
-            penny::PAGE,
-            adaptive::PAGE,
-            line_crack::PAGE,
-            inclined_crack::PAGE,
-            inclined_penny::PAGE,
-            single_joint::PAGE,
-            log_law::PAGE,
             patch_test::PAGE,
             joint_sets::PAGE,
-            spherical_joint::PAGE,
             oscillation::PAGE,
             paths::PAGE,
-            barton_bandis::PAGE,
             estimate::PAGE,
         ],
         layout: Layout::PageEach,

@@ -3,9 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
 use kluft_run::Ending;
-use kluft_solver::{Discretisation, FacetResult, Problem};
+use kluft_solver::{Discretisation, Problem};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -18,14 +17,13 @@ pub struct Outcome {
     pub summary: Value,
 }
 
-/// Runs `geometries/SCENE` with these lines in `[mesh]` (beside `geometry`) and these parts of its
-/// text replaced.
-pub fn run(scene: &str, mesh: &str, replaced: &[(&str, &str)]) -> Outcome {
+/// Runs `geometries/SCENE` with these lines in `[mesh]` (beside `geometry`).
+pub fn run(scene: &str, mesh: &str) -> Outcome {
     let own = root().join("geometries").join(scene);
     let text = fs::read_to_string(own.join("scene.toml")).expect("a scene");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("scene.toml");
-    fs::write(&file, varied(&text, &own, mesh, replaced)).expect("a scene of its own");
+    fs::write(&file, varied(&text, &own, mesh)).expect("a scene of its own");
     let ran = scenes::run_scene_file(&file, &folder.path().join("out"));
     let ran = ran.unwrap_or_else(|defects| panic!("{scene}, {mesh}: {defects:?}"));
     assert_eq!(ran.ending, Ending::Solved, "{scene}, {mesh}");
@@ -34,7 +32,7 @@ pub fn run(scene: &str, mesh: &str, replaced: &[(&str, &str)]) -> Outcome {
     Outcome { folder, summary }
 }
 
-fn varied(text: &str, own: &Path, mesh: &str, replaced: &[(&str, &str)]) -> String {
+fn varied(text: &str, own: &Path, mesh: &str) -> String {
     let start = text.find("[mesh]").expect("a mesh");
     let end = start + text[start..].find("\n\n").expect("an end of the section");
     let named = text[start..end].lines();
@@ -46,11 +44,7 @@ fn varied(text: &str, own: &Path, mesh: &str, replaced: &[(&str, &str)]) -> Stri
         .expect("a geometry");
     let geometry: PathBuf = own.join(geometry);
     let section = format!("[mesh]\ngeometry = {geometry:?}\n{mesh}");
-    let text = format!("{}{section}{}", &text[..start], &text[end..]);
-    replaced.iter().fold(text, |text, (from, to)| {
-        assert!(text.contains(from), "{from} is not in the scene");
-        text.replace(from, to)
-    })
+    format!("{}{section}{}", &text[..start], &text[end..])
 }
 
 impl Outcome {
@@ -59,11 +53,6 @@ impl Outcome {
         let mut all = all.filter(|measure| measure["name"] == name);
         let found = all.next().and_then(|measure| measure[of].as_f64());
         found.unwrap_or_else(|| panic!("no {of} of {name}"))
-    }
-
-    /// A measure against its closed form.
-    pub fn error(&self, name: &str) -> f64 {
-        self.measure(name, "error")
     }
 
     /// The value of a measure.
@@ -89,7 +78,7 @@ impl Outcome {
     }
 
     /// The problem on the mesh of the run.
-    pub fn problem(&self) -> Problem {
+    fn problem(&self) -> Problem {
         let file = self.folder.path().join("scene.toml");
         let mesh = self.folder.path().join("out/mesh.msh");
         let draft = kluft_io::load_msh(&mesh, self.folder.path());
@@ -110,33 +99,4 @@ impl Outcome {
             .sum();
         slip / points().map(|(point, _)| point.area).sum::<f64>()
     }
-
-    /// Nodes of the facets and the results there.
-    pub fn facet_nodes(&self) -> Vec<(DVec3, FacetResult)> {
-        let problem = self.problem();
-        let solution = scenes::solve(&problem);
-        let interface = Discretisation::of(&problem)
-            .expect("supported")
-            .into_interface();
-        let results = solution.facet_nodes(&problem, &interface);
-        let nodes = problem.mesh.facets.elements.nodes.iter();
-        let places = nodes.map(|&node| problem.mesh.nodes[node as usize]);
-        places.zip(results).collect()
-    }
-}
-
-/// Of many points those nearest to evenly spaced places from 0 to `end`, from left to right.
-pub fn thinned(mut points: Vec<(f64, f64)>, end: f64, count: usize) -> Vec<(f64, f64)> {
-    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let nearest = |i: usize| {
-        let place = end * i as f64 / (count - 1) as f64;
-        let by = |point: &&(f64, f64)| (point.0 - place).abs();
-        *points
-            .iter()
-            .min_by(|a, b| by(a).total_cmp(&by(b)))
-            .expect("points")
-    };
-    let mut chosen: Vec<(f64, f64)> = (0..count).map(nearest).collect();
-    chosen.dedup_by(|a, b| a.0 == b.0);
-    chosen
 }

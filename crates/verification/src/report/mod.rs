@@ -10,7 +10,7 @@ mod writer;
 
 use kluft_chart::Chart;
 
-pub use numbers::{count, digits, largest, percent, reaches, slope};
+pub use numbers::{digits, largest, percent};
 pub use table::Table;
 pub use writer::{Layout, Report};
 
