@@ -2,6 +2,7 @@
 
 use crate::closure::{Separation, Tension};
 use crate::fracture_law::FractureLaw;
+use crate::joint_state::JointState;
 
 /// The share of the shear stiffness that is left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,5 +61,17 @@ impl FractureLaw {
         } else {
             ShearRetention::WHOLE
         }
+    }
+    /// Largest traction (Pa) by which the slip of a closed state could push the walls apart, were
+    /// they open: `max |dg/dw_n| K_s |w_s|^2 / 2` with `max |dg/dw_n| = 3 / (2 b0)`. Pressed less,
+    /// the state is metastable: open walls would balance the same tractions. 0 if the fracture is
+    /// open or keeps its shear.
+    pub fn largest_thrust(&self, state: &JointState) -> f64 {
+        let fades = self.closure.tension == Tension::CutOff && self.friction.is_none();
+        if !fades || self.closure.gap(state.separation) > 0.0 {
+            return 0.0;
+        }
+        let energy = 0.5 * state.shear.dot(state.slip);
+        1.5 / self.closure.aperture * energy
     }
 }

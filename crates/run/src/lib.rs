@@ -49,6 +49,7 @@ mod run;
 mod stages;
 mod steps;
 mod summary;
+mod undetermined;
 
 pub use checkpoint::{Fingerprint, fingerprint, fingerprint_of};
 pub use grids::{integer_field, real_field};
@@ -60,3 +61,4 @@ pub use prepare::{folder_for, mesh_file};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;
 pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary};
+pub use undetermined::Undetermined;

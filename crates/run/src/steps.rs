@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use kluft_io::Grid;
 use kluft_solver::{
-    Estimator, Newton, Plan, Problem, State, StepOutcome, StepRecord, System, solution,
+    Estimator, Newton, Plan, Problem, State, StepOutcome, StepRecord, System, determinacy, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -18,6 +18,7 @@ use crate::outcome::StepResult;
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
 use crate::summary::{self, StepSummary};
+use crate::undetermined;
 
 /// A run that has a system and a solver.
 struct Prepared<'s, 'p> {
@@ -194,6 +195,10 @@ impl Run<'_> {
         let nodes = solution.facet_nodes(system.problem(), interface);
         let mut fractures = summary::fractures(system.problem(), interface, &solution, &nodes);
         accuracy.note_in(&mut fractures);
+        let facets = determinacy(system, &prepared.state);
+        if let Some(facets) = &facets {
+            undetermined::note_in(&mut fractures, system, facets);
+        }
         self.summary.fractures = fractures;
         self.summary.stress_error = accuracy.relative;
         // Closed forms speak of the end of the loads.
@@ -203,12 +208,18 @@ impl Run<'_> {
         self.summary.warnings = [
             kluft_scene::warnings(self.request.scene, system.problem()),
             decisions::warnings(&self.summary.fractures),
+            undetermined::warnings(&self.summary.fractures),
         ]
         .concat();
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(system, &solution, &accuracy);
-            let fractures = || fracture_grid(system, &nodes, &accuracy);
+            let fractures = || {
+                let mut grid = fracture_grid(system, &nodes, &accuracy);
+                let field = facets.as_deref().map(undetermined::field);
+                grid.cell_fields.extend(field);
+                grid
+            };
             if !run.request.keep_results {
                 return run.output.write_step(time, rock, fractures);
             }

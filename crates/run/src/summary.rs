@@ -8,6 +8,7 @@ use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, 
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
+use crate::undetermined::Undetermined;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -41,6 +42,8 @@ pub struct FractureSummary {
     pub below_cutoff_facets: usize,
     /// Area whose walls overlap (negative aperture) (m^2).
     pub overlap_area: f64,
+    /// Where the state is not unique.
+    pub undetermined: Undetermined,
     /// What the mean aperture may be off for the sake of the mesh (m); none if it could not be
     /// estimated.
     pub aperture_uncertainty: Option<f64>,
@@ -290,6 +293,7 @@ fn fracture_summary(
         below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
         below_cutoff_facets: below.count(),
         overlap_area: area_where(&|result| result.aperture < 0.0),
+        undetermined: Undetermined::default(),
         aperture_uncertainty: None,
         slip_uncertainty: None,
     }

@@ -46,7 +46,8 @@ pub use linear::{
     Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns, Workload,
 };
 pub use newton::{
-    Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord, unobserved,
+    Determinacy, Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord,
+    determinacy, unobserved,
 };
 pub use problem::{
     Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,

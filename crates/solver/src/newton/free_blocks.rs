@@ -40,7 +40,7 @@ fn untied_fractures(system: &System<'_>, ties: &[Tie]) -> Vec<String> {
 }
 
 /// How each facet holds its two sides together.
-fn ties(system: &System<'_>, state: &State) -> Vec<Tie> {
+pub(super) fn ties(system: &System<'_>, state: &State) -> Vec<Tie> {
     let none = Tie {
         across: false,
         along: false,

@@ -19,6 +19,7 @@
 
 mod convergence;
 mod damping;
+mod determinacy;
 mod extrapolation;
 mod facet_points;
 mod forcing_term;
@@ -40,6 +41,7 @@ mod substepping;
 
 use step::Step;
 
+pub use determinacy::{Determinacy, determinacy};
 pub use record::{Iteration, StepOutcome, StepRecord};
 pub(crate) use recycling::bytes as recycling_bytes;
 pub use restart::RestartState;

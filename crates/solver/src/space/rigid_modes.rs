@@ -76,10 +76,44 @@ pub(crate) fn find_with(
     ties: &[Tie],
     remedy: &str,
 ) -> Vec<Defect> {
+    let Some(free) = free_motions(problem, points, supports, ties) else {
+        return Vec::new();
+    };
+    let mesh = &problem.mesh;
+    (0..free.body_count)
+        .filter_map(|body| {
+            let share = |motion: usize| -> f64 {
+                let squares = free.motions.iter().map(|own| own[body][motion].powi(2));
+                squares.sum()
+            };
+            let shares: Vec<f64> = (0..6).map(share).collect();
+            describe(mesh, &free.body_of_block, body, &shares, remedy)
+        })
+        .collect()
+}
+
+/// Rigid motions of bodies, which are blocks that fractures hold together, that nothing resists.
+pub(crate) struct FreeMotions {
+    body_of_block: Vec<u32>,
+    body_count: usize,
+    /// Orthonormal; of each the six components of every body, rotations about the middle of the
+    /// mesh, lengths in units of its size.
+    motions: Vec<Vec<[f64; 6]>>,
+    bounds: (DVec3, DVec3),
+}
+
+/// The free motions with what `ties` hold, one for each facet; none if there are too many bodies to
+/// tell.
+pub(crate) fn free_motions(
+    problem: &Problem,
+    points: &SectorNodes,
+    supports: &Supports,
+    ties: &[Tie],
+) -> Option<FreeMotions> {
     let mesh = &problem.mesh;
     let (body_of_block, body_count) = tie_blocks(mesh, ties);
     if body_count > MOST_BLOCKS {
-        return Vec::new();
+        return None;
     }
     let body_of_point = bodies_of_points(mesh, points, &body_of_block);
     let constraints = Constraints {
@@ -91,25 +125,37 @@ pub(crate) fn find_with(
         bounds: mesh.bounds(),
     };
     let resistance = constraints.resistance(supports, body_count);
-    let Ok(eigen) = apart(|| resistance.self_adjoint_eigen(Side::Lower)) else {
-        return Vec::new();
-    };
+    let eigen = apart(|| resistance.self_adjoint_eigen(Side::Lower)).ok()?;
     let values = eigen.S().column_vector();
     let largest = (0..values.nrows()).map(|i| values[i]).fold(0.0, f64::max);
-    let free: Vec<usize> = (0..values.nrows())
-        .filter(|&i| values[i] <= FREE * largest)
-        .collect();
-    let share = |body: usize, motion: usize| -> f64 {
-        free.iter()
-            .map(|&i| eigen.U()[(6 * body + motion, i)].powi(2))
-            .sum()
-    };
-    (0..body_count)
-        .filter_map(|body| {
-            let shares: Vec<f64> = (0..6).map(|motion| share(body, motion)).collect();
-            describe(mesh, &body_of_block, body, &shares, remedy)
-        })
-        .collect()
+    let free = (0..values.nrows()).filter(|&i| values[i] <= FREE * largest);
+    let of_body = |i: usize, body: usize| std::array::from_fn(|m| eigen.U()[(6 * body + m, i)]);
+    let motions = free.map(|i| (0..body_count).map(|body| of_body(i, body)).collect());
+    Some(FreeMotions {
+        motions: motions.collect(),
+        bounds: constraints.bounds,
+        body_count,
+        body_of_block,
+    })
+}
+
+impl FreeMotions {
+    /// The jump at a corner of a facet in each of the motions; lengths in units of the body.
+    pub(crate) fn jumps(&self, mesh: &Mesh, facet: usize, at: DVec3) -> Vec<DVec3> {
+        let [plus, minus] = blocks_at(mesh, facet).map(|block| self.body_of_block[block] as usize);
+        if plus == minus {
+            return Vec::new();
+        }
+        let (low, high) = self.bounds;
+        let arm = (at - 0.5 * (low + high)) / (high - low).length();
+        let moved = |[x, y, z, turn_x, turn_y, turn_z]: [f64; 6]| {
+            DVec3::new(x, y, z) + DVec3::new(turn_x, turn_y, turn_z).cross(arm)
+        };
+        let motions = self.motions.iter();
+        motions
+            .map(|motion| moved(motion[plus]) - moved(motion[minus]))
+            .collect()
+    }
 }
 
 /// Blocks joined by fractures stiff in normal and shear move as one body.
