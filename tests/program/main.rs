@@ -11,6 +11,7 @@ mod inspect;
 mod load_paths;
 mod network;
 mod network_seeds;
+mod one_answer;
 mod pressed_joints;
 mod read_back;
 mod renumbered;

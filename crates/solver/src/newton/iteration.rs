@@ -104,7 +104,7 @@ impl Newton {
         for count in 1..=most {
             let iteration = self.iterate(step, iterate, count)?;
             step.report(iteration);
-            if self.settings.accept(step.system, &iteration) {
+            if self.settings.accept(step.system, iterate, &iteration) {
                 return Ok(());
             }
             step.go_on()?;

@@ -70,7 +70,7 @@ impl Newton {
             iterate.forcing_term = forcing_term::after(iteration.force_residual);
         }
         let is_exact = iteration.force_residual <= forcing_term::exact_enough(&self.settings);
-        let is_accepted = is_exact && self.settings.accept(step.system, &iteration);
+        let is_accepted = is_exact && self.settings.accept(step.system, iterate, &iteration);
         Ok(is_accepted.then_some(iteration))
     }
 }

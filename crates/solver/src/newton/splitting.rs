@@ -68,7 +68,7 @@ impl Newton {
         for count in 1..=iterations {
             let iteration = self.iterate(step, iterate, count)?;
             step.report(iteration);
-            if self.settings.accept(step.system, &iteration) {
+            if self.settings.accept(step.system, iterate, &iteration) {
                 return Ok(true);
             }
             step.go_on()?;

@@ -1,0 +1,126 @@
+//! A scene has one answer, whatever linear solver; where it has not, the program says so.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::harness::{kluft, root, scratch, summary};
+
+const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
+
+/// `summary.json` of a scene of this test with each solver; all must solve it.
+fn solved(scene: &str, edits: &[(&str, &str)]) -> Vec<Value> {
+    let folder = scratch();
+    let own = root().join("tests/program/one_answer");
+    let text = fs::read_to_string(own.join(scene)).expect("the scene");
+    let beside = format!("geometry = \"{}/", own.display());
+    let text = text.replace("geometry = \"", &beside);
+    let text = edits
+        .iter()
+        .fold(text, |text, (from, to)| text.replace(from, to));
+    let solve = |solver: &str| {
+        let file = folder.path().join(format!("{solver}.toml"));
+        let out = folder.path().join(solver);
+        let text = format!("{text}\n[solver]\nlinear = \"{solver}\"\n");
+        fs::write(&file, text).expect("written");
+        let arguments = [
+            "run".as_ref(),
+            file.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ];
+        let run = kluft(&arguments);
+        assert_eq!(run.code, Some(0), "{solver}: {}", run.err);
+        summary(&out)
+    };
+    SOLVERS.map(solve).into()
+}
+
+/// The smallest, mean and largest aperture of a fracture (m).
+fn apertures(said: &Value, fracture: &str) -> [f64; 3] {
+    ["min", "mean", "max"].map(|which| {
+        let value = &said["fractures"][fracture]["aperture"][which];
+        value.as_f64().expect("a number")
+    })
+}
+
+fn is_unique(said: &Value) -> bool {
+    let warnings = said["warnings"].as_array().expect("warnings");
+    let mut texts = warnings.iter().filter_map(Value::as_str);
+    !texts.any(|text| text.contains("the state is not unique"))
+}
+
+fn assert_one_answer(answers: &[Value], fractures: &[&str]) {
+    for fracture in fractures {
+        let first = apertures(&answers[0], fracture);
+        let size = first[2].max(1e-9);
+        for (solver, other) in SOLVERS.iter().zip(answers) {
+            let apart = std::iter::zip(first, apertures(other, fracture));
+            let apart = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(
+                apart < 1e-3 * size,
+                "{fracture}: {solver} is {apart:e} m off"
+            );
+        }
+    }
+}
+
+/// A wedge that nothing stops until a gap is closed: a linear solve before that throws it far off,
+/// to where slip holds the other joint open. The path of the loads leads to closed walls. Their
+/// slip stores more than what presses them together, which is to be said.
+#[test]
+fn a_wedge_ends_in_the_state_that_the_loads_lead_to() {
+    let answers = solved("wedge_slips.toml", &[]);
+    assert_one_answer(&answers, &["f", "g"]);
+    for said in &answers {
+        assert_eq!(said["fractures"]["g"]["open_area"], 0.0);
+        let metastable = &said["fractures"]["g"]["undetermined"]["metastable_area"];
+        assert!(metastable.as_f64().expect("an area") > 0.9, "{metastable}");
+    }
+}
+
+/// Points of contact with friction that begin and cease to slide in cycles. The stress is that of a
+/// column: 1 MPa on both joints, and both stick.
+#[test]
+fn cycles_of_contact_and_friction_end() {
+    let answers = solved("wedge_sticks.toml", &[]);
+    assert_one_answer(&answers, &["f", "g"]);
+    for said in &answers {
+        assert!(is_unique(said));
+        let traction = said["fractures"]["f"]["normal_traction"]["mean"].as_f64();
+        assert!((traction.expect("a traction") + 1e6).abs() < 1.0);
+    }
+}
+
+/// A core in a contact without friction: pressed from above, free to the sides.
+#[test]
+fn apertures_beside_rock_that_floats_are_no_results() {
+    for said in solved("floating_core.toml", &[]) {
+        assert!(!is_unique(&said));
+        let own = &said["fractures"]["f"]["undetermined"];
+        let sides = own["aperture_area"].as_f64().expect("an area");
+        let ends = own["slip_area"].as_f64().expect("an area");
+        assert!((sides - 4.0 * 0.36).abs() < 1e-9 && (ends - 2.0 * 0.36).abs() < 1e-9);
+    }
+}
+
+/// Stiff rock on soft rock, and rock that keeps its volume: the rounding of displacements times a
+/// stiffness exceeds 1e-9 of the forces. Uniaxial stress: the joint carries the load, and closes by
+/// `load / K_n` (1 + ...) as its logarithmic law has it, 5e-5 of the aperture.
+#[test]
+fn rounding_does_not_keep_a_run_from_ending() {
+    let soft = [("50e3", "50e3")];
+    let firm = [
+        ("50e3", "50e9"),
+        ("poisson_ratio = 0.0", "poisson_ratio = 0.4999999"),
+    ];
+    for edits in [&soft[..], &firm[..]] {
+        let answers = solved("layers.toml", edits);
+        for said in &answers {
+            for aperture in apertures(said, "f") {
+                let closed = 1e-3 - aperture;
+                assert!((closed / 5e-8 - 1.0).abs() < 1e-3, "closed by {closed:e} m");
+            }
+        }
+    }
+}
