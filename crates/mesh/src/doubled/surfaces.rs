@@ -125,6 +125,7 @@ pub(crate) fn doubled_surfaces(
             surfaces: holding
                 .into_iter()
                 .map(|set| names(draft, set, 2))
+                .filter(|names| !names.is_empty())
                 .collect(),
             touch,
             faces: sum.faces.len(),
