@@ -93,7 +93,8 @@ impl Draft {
         }
     }
 
-    /// The faces of a surface between volumes; `pairs` are those that lie on one another without sharing nodes.
+    /// The faces of a surface between volumes; `pairs` are those that lie on one another without
+    /// sharing nodes.
     fn between(
         &self,
         surface: &CommonSurface,

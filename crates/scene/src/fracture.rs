@@ -62,9 +62,6 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
     if contact {
         refuse_in_contact(section);
     }
-    if !is_known {
-        return None;
-    }
     let closure = if contact {
         Closure::contact(aperture?)
     } else {
@@ -83,7 +80,7 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
         },
         fluid_pressure: fluid_pressure.unwrap_or(0.0),
     };
-    Some(FractureEntry {
+    is_known.then_some(FractureEntry {
         between: None,
         fracture,
         history,

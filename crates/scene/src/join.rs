@@ -1,4 +1,4 @@
-//! What a scene wants joined before a mesh is checked: nodes at one place, surfaces between volumes.
+//! What a scene wants joined before a mesh is checked: doubled nodes, surfaces between volumes.
 
 use kluft_mesh::{CommonSurface, Defect, Draft, Faces, Joined, Joining};
 
