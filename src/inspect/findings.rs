@@ -25,6 +25,8 @@ pub struct Inspection {
     pub mesh: MeshCounts,
     /// Physical groups.
     pub groups: Vec<GroupFinding>,
+    /// Where outer faces lie on one another.
+    pub doubled_surfaces: Vec<DoubledFinding>,
     /// Fractures.
     pub fractures: Vec<FractureFinding>,
     /// Fractures that meet, by pair.
@@ -77,6 +79,23 @@ pub struct GroupFinding {
     pub role: &'static str,
     /// The rock's section, or what acts on a boundary.
     pub detail: String,
+}
+
+/// Outer faces that lie on one another in the file: rock that touches without sharing nodes.
+#[derive(Debug, Clone, Serialize)]
+pub struct DoubledFinding {
+    /// Physical volumes, one or two; an empty name for cells in none.
+    pub volumes: Vec<String>,
+    /// Physical surfaces that hold some of the faces.
+    pub surfaces: Vec<String>,
+    /// `doubled nodes`, `not matching` or `same side`.
+    pub kind: &'static str,
+    /// Number of faces, those of both sides.
+    pub faces: usize,
+    /// Area on which they lie on one another (m^2).
+    pub area: f64,
+    /// Middle of one of the largest faces (m).
+    pub at: Place,
 }
 
 /// A fracture.
@@ -333,6 +352,22 @@ impl Inspection {
             },
             ..Self::default()
         }
+    }
+}
+
+impl DoubledFinding {
+    /// The volumes, with the surfaces on their faces, in words.
+    pub fn between(&self) -> String {
+        let volumes = self.volumes.iter().map(|name| match name.is_empty() {
+            true => "cells in no physical volume".to_owned(),
+            false => format!("`{name}`"),
+        });
+        let volumes: Vec<String> = volumes.collect();
+        let surfaces = match self.surfaces.as_slice() {
+            [] => String::new(),
+            names => format!(" on `{}`", names.join("`, `")),
+        };
+        format!("{}{surfaces}", volumes.join(" and "))
     }
 }
 

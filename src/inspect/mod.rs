@@ -1,6 +1,7 @@
 //! An inspection: what a scene or a mesh is like, told before anything is solved.
 
 mod cost;
+mod doubled;
 mod findings;
 mod gather;
 mod grid;
@@ -19,7 +20,7 @@ use kluft_solver::{Discretisation, Problem, Workload};
 use crate::failure::Failure;
 use kluft_run::Output;
 use kluft_run::{folder_for, mesh_file};
-use kluft_scene::{Scene, bind, in_terms_of_scene, roles};
+use kluft_scene::{Scene, bind, in_terms_of_scene, join, roles};
 
 use findings::Inspection;
 
@@ -79,8 +80,12 @@ fn look(
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
     let faces = Faces::of(&draft);
+    inspection.groups = groups::list(&draft, &faces.inner_surfaces(&draft), None, scene);
+    let (draft, faces) = match joined(draft, faces, scene, inspection) {
+        Ok(joined) => joined,
+        Err(defects) => return defects,
+    };
     let inner = faces.inner_surfaces(&draft);
-    inspection.groups = groups::list(&draft, &inner, None, scene);
     let surface_roles = match scene {
         None => Ok(groups::guess(&draft, &inner)),
         Some(scene) => roles(scene, &draft, &inner).map(|found| found.of_group),
@@ -112,6 +117,24 @@ fn look(
         Err(found) => defects.extend(found),
     }
     defects
+}
+
+/// Tells where outer faces lie on one another, and joins what the scene wants joined. A mesh alone
+/// is looked at as it is.
+fn joined(
+    draft: Draft,
+    faces: Faces,
+    scene: Option<&Scene>,
+    inspection: &mut Inspection,
+) -> Result<(Draft, Faces), Vec<Defect>> {
+    doubled::tell(&faces.doubled_surfaces(&draft), scene.is_none(), inspection);
+    match scene {
+        None => Ok((draft, faces.let_touch())),
+        Some(scene) => {
+            let joined = join(scene, draft, faces)?;
+            Ok((joined.draft, joined.faces))
+        }
+    }
 }
 
 /// Adds what supports, loads and laws make of the mesh.

@@ -15,6 +15,7 @@ pub fn of(inspection: &Inspection) -> String {
     let out = &mut text;
     head(out, inspection);
     groups(out, inspection);
+    doubled(out, inspection);
     fractures(out, inspection);
     contacts(out, inspection);
     patches(out, inspection);
@@ -97,6 +98,27 @@ fn groups(out: &mut String, inspection: &Inspection) {
             ),
         );
     }
+}
+
+fn doubled(out: &mut String, inspection: &Inspection) {
+    if inspection.doubled_surfaces.is_empty() {
+        return;
+    }
+    line(out, "\nouter faces that lie on one another");
+    list(out, &inspection.doubled_surfaces, |surface| {
+        let kind = match surface.kind {
+            "doubled nodes" => "nodes are doubled",
+            "not matching" => "nodes do not match",
+            _ => "rock on the same side",
+        };
+        format!(
+            "  {}: {} faces, {:.6} m2, one of the largest at {}, {kind}",
+            surface.between(),
+            surface.faces,
+            surface.area,
+            at(surface.at)
+        )
+    });
 }
 
 fn fractures(out: &mut String, inspection: &Inspection) {
@@ -242,10 +264,11 @@ fn blocks(out: &mut String, inspection: &Inspection) {
         true => format!(", {} of them held by fractures only", loose.count()),
         false => String::new(),
     };
-    line(
-        out,
-        &format!("\n{} blocks that fractures cut free{loose}", blocks.len()),
-    );
+    let what = match inspection.fractures.is_empty() {
+        true => "parts of rock that share no faces",
+        false => "blocks that fractures cut free",
+    };
+    line(out, &format!("\n{} {what}{loose}", blocks.len()));
     list(out, blocks, block_text);
 }
 

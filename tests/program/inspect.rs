@@ -69,6 +69,7 @@ fn the_json_has_its_keys() {
         "title",
         "mesh",
         "groups",
+        "doubled_surfaces",
         "fractures",
         "contacts",
         "unresolved_patches",
@@ -98,7 +99,12 @@ fn the_json_has_its_keys() {
             "{key}"
         );
     }
-    for key in ["warnings", "defects", "unresolved_patches"] {
+    for key in [
+        "warnings",
+        "defects",
+        "unresolved_patches",
+        "doubled_surfaces",
+    ] {
         assert!(report[key].is_array(), "{key}");
     }
     assert_eq!(report["title"], "A joint ending on another, both closing");

@@ -3,6 +3,7 @@
 mod adapt;
 mod bad_input;
 mod book;
+mod doubled;
 mod doubts;
 mod examples;
 mod fuzz_scene;

@@ -80,6 +80,16 @@ impl Adjacency {
         first..first + cells.shapes[cell].faces().len() as u32
     }
 
+    /// Faces without a cell on their other side, ascending.
+    pub(crate) fn outer_faces(&self, cells: &Elements) -> Vec<u32> {
+        let all = (0..cells.len()).into_par_iter();
+        let outer = all.flat_map_iter(|cell| {
+            let faces = self.faces_of(cells, cell);
+            faces.filter(|&face| self.neighbour[face as usize] == NONE)
+        });
+        outer.collect()
+    }
+
     /// Faces of lower cells that lie at the faces of this one.
     pub(crate) fn lower_neighbours(
         &self,

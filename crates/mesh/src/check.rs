@@ -1,11 +1,12 @@
 //! Everything that may be wrong with a mesh.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::adjacency::{Adjacency, FacetPlace, NONE};
+use crate::doubled::{DoubledSurface, Touch};
 use crate::draft::{Draft, Elements};
 use crate::geometry::cell_volume;
 use crate::roles::SurfaceRole;
@@ -19,6 +20,12 @@ const FLAT: f64 = 1e-13;
 
 /// The code of a condition on a surface inside the rock.
 pub const CONDITION_INSIDE: &str = "condition-inside";
+/// The code of outer faces that lie on one another node on node.
+pub const DOUBLED_NODES: &str = "doubled-nodes";
+/// The code of outer faces that lie on one another with nodes at different places.
+pub const FACES_NOT_MATCHING: &str = "faces-not-matching";
+/// The code of a fracture on outer faces that lie on one another.
+pub const FRACTURE_ON_DOUBLED_NODES: &str = "fracture-on-doubled-nodes";
 
 /// What can be wrong, and the remedy.
 type Kind = (&'static str, &'static str);
@@ -50,6 +57,10 @@ const NOT_EMBEDDED: Kind = (
 const ON_THE_OUTSIDE: Kind = (
     "the facet lies on the outer boundary: there is rock on one side only",
     "a fracture must lie inside the rock; take this surface out of the fracture's group",
+);
+const ON_DOUBLED_NODES: Kind = (
+    "the facet lies where nodes are doubled: the rock on its two sides shares no nodes",
+    "make nodes at one place one node (gmsh: Coherence Mesh;), so that the facet lies inside",
 );
 const TWICE: Kind = (
     "the facet stands in the file twice",
@@ -172,14 +183,71 @@ pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
     defects
 }
 
-/// Matches the surfaces to faces of cells and collects what does not fit.
+/// The defect of outer faces that lie on one another.
+pub(crate) fn touching(surface: &DoubledSurface) -> Defect {
+    let (what, remedy, code) = match surface.touch {
+        Touch::Matching => (
+            "nodes are doubled there, so the rock does not hold together",
+            "share the faces in the geometry (BooleanFragments), or make nodes at one place one \
+             node (gmsh: Coherence Mesh;)",
+            Some(DOUBLED_NODES),
+        ),
+        Touch::NotMatching => (
+            "their nodes do not match, so the rock does not hold together there",
+            "share the faces in the geometry (BooleanFragments) and mesh it again; nodes at \
+             different places cannot be welded",
+            Some(FACES_NOT_MATCHING),
+        ),
+        Touch::SameSide => (
+            "with rock on the same side, so cells lie on top of others",
+            "remove the copy (gmsh: Coherence; or BooleanFragments)",
+            None,
+        ),
+    };
+    let DoubledSurface {
+        faces, area, at, ..
+    } = surface;
+    let held = match surface.surfaces.as_slice() {
+        [] => String::new(),
+        names => format!(" (physical surface `{}`)", names.join("`, `")),
+    };
+    let problem = format!(
+        "{faces} outer faces{held} lie on one another over {area:.6} m2, one of the largest at \
+         ({:.6}, {:.6}, {:.6}): {what}",
+        at.x, at.y, at.z
+    );
+    Defect {
+        code,
+        ..Defect::new(volumes(&surface.volumes), problem, remedy)
+    }
+}
+
+/// Physical volumes, or the cells in none, in words.
+fn volumes(names: &[String]) -> String {
+    let named = |name: &String| match name.is_empty() {
+        true => "the cells in no physical volume".to_owned(),
+        false => format!("`{name}`"),
+    };
+    let names: Vec<String> = names.iter().map(named).collect();
+    let what = if names.len() == 1 {
+        "physical volume"
+    } else {
+        "physical volumes"
+    };
+    format!("{what} {}", names.join(" and "))
+}
+
+/// Matches the surfaces to faces of cells and collects what does not fit; `doubled` are the outer
+/// faces that lie on others.
 pub(crate) fn surfaces(
     draft: &Draft,
     roles: &[SurfaceRole],
     adjacency: &Adjacency,
+    doubled: &BTreeSet<u32>,
 ) -> (Surfaces, Vec<Defect>) {
     let mut matching = Matching {
         draft,
+        doubled,
         surfaces: Surfaces::default(),
         defects: Vec::new(),
         taken: vec![NONE; draft.facets.elements.len()],
@@ -222,6 +290,8 @@ fn facets_of_sets(draft: &Draft) -> Vec<Vec<u32>> {
 /// The surfaces matched so far, and what did not fit.
 struct Matching<'a> {
     draft: &'a Draft,
+    /// Outer faces that lie on others.
+    doubled: &'a BTreeSet<u32>,
     surfaces: Surfaces,
     defects: Vec<Defect>,
     /// The fracture that holds a facet, at the first facet with its corners.
@@ -237,10 +307,12 @@ impl Matching<'_> {
         let already = surfaces.facets.len();
         surfaces.fractures.push(group);
         let (mut loose, mut outer, mut double) = (Vec::new(), Vec::new(), Vec::new());
+        let mut split = Vec::new();
         for Placed { tag, place } in facets {
             let owner = &mut self.taken[place.first as usize];
             match place.faces {
                 [NONE, _] => loose.push(tag),
+                [face, NONE] if self.doubled.contains(&face) => split.push(tag),
                 [_, NONE] => outer.push(tag),
                 _ if *owner == number => double.push(tag),
                 _ if *owner != NONE => {
@@ -256,12 +328,18 @@ impl Matching<'_> {
                 }
             }
         }
-        let is_empty = surfaces.facets.len() == already && loose.is_empty() && outer.is_empty();
+        let has_none = [&loose, &outer, &split].iter().all(|tags| tags.is_empty());
+        let is_empty = surfaces.facets.len() == already && has_none;
         let place = format!("fracture `{}`", self.draft.groups[group].name);
         let defects = &mut self.defects;
         report(defects, &place, "facet", &loose, NOT_EMBEDDED);
         report(defects, &place, "facet", &outer, ON_THE_OUTSIDE);
         report(defects, &place, "facet", &double, TWICE);
+        let before = defects.len();
+        report(defects, &place, "facet", &split, ON_DOUBLED_NODES);
+        for defect in &mut defects[before..] {
+            defect.code = Some(FRACTURE_ON_DOUBLED_NODES);
+        }
         if is_empty {
             self.report_empty(group);
         }

@@ -58,7 +58,7 @@ pub(crate) fn collect(
 }
 
 /// Appends the cell face `face` to `elements` and its slots to `slots`.
-fn push_face(
+pub(crate) fn push_face(
     cells: &Elements,
     adjacency: &Adjacency,
     face: u32,

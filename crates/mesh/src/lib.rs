@@ -4,6 +4,8 @@
 //! [`Defect`] at once or with a [`Mesh`], which promises:
 //!
 //! - every cell has a positive volume, no two cells share more than a face;
+//! - no two outer faces lie on one another, unless [`Faces::let_touch`] says so: rock that touches
+//!   shares its nodes;
 //! - every fracture facet lies between exactly two cells, its `minus` and its `plus` cell, and its
 //!   nodes run counter-clockwise seen from the plus side: the normal points from minus to plus;
 //! - the facets of one connected fracture surface agree in orientation;
@@ -19,10 +21,13 @@ mod arrange;
 mod blocks;
 mod check;
 mod disjoint_sets;
+mod doubled;
 mod draft;
 mod facets;
 mod fracture_edges;
 mod geometry;
+mod join;
+mod merge;
 mod mesh;
 mod orient;
 mod pairing;
@@ -34,12 +39,14 @@ pub mod structured;
 mod surfaces;
 mod survey;
 
-pub use check::CONDITION_INSIDE;
+pub use check::{CONDITION_INSIDE, DOUBLED_NODES, FACES_NOT_MATCHING, FRACTURE_ON_DOUBLED_NODES};
 pub use disjoint_sets::DisjointSets;
+pub use doubled::{DoubledSurface, Touch};
 pub use draft::{Draft, Elements, Group, TaggedElements};
 pub use facets::{Boundary, Facets};
 pub use fracture_edges::{FacetEdge, FractureEdges, FracturesAtNodes};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
+pub use join::{CommonSurface, Joined, Joining};
 pub use kluft_defect::{Defect, nearest, sample};
 pub use mesh::{Mesh, MeshData};
 pub use roles::{Faces, SurfaceRole};

@@ -5,6 +5,7 @@ use std::ops::Deref;
 use glam::DVec3;
 
 use crate::adjacency::Adjacency;
+use crate::doubled::{DoubledFaces, doubled_faces, doubled_surfaces};
 use crate::draft::{Draft, Elements, Group};
 use crate::facets::{self, Boundary, Facets};
 use crate::roles::{Faces, SurfaceRole};
@@ -82,8 +83,8 @@ impl Mesh {
     ///
     /// # Errors
     /// Every defect found: cells without volume or inside out, faces that do not fit together,
-    /// fractures that are not embedded, lie on the outer boundary, hold a facet twice or have only
-    /// one side.
+    /// outer faces that lie on one another, fractures that are not embedded, lie on the outer
+    /// boundary, hold a facet twice or have only one side.
     pub fn build(draft: Draft, roles: &[SurfaceRole]) -> Result<Self, Vec<Defect>> {
         let faces = Faces::of(&draft);
         Self::build_on(draft, faces, roles)
@@ -95,7 +96,10 @@ impl Mesh {
     /// As [`Mesh::build`].
     pub fn build_on(
         mut draft: Draft,
-        Faces { mut adjacency }: Faces,
+        Faces {
+            mut adjacency,
+            may_touch,
+        }: Faces,
         roles: &[SurfaceRole],
     ) -> Result<Self, Vec<Defect>> {
         let nodes = std::mem::take(&mut draft.nodes).into_iter();
@@ -110,7 +114,14 @@ impl Mesh {
                 broken
             });
         }
-        let (surfaces, mut defects) = check::surfaces(&draft, roles, &adjacency);
+        let doubled = match may_touch {
+            true => DoubledFaces::default(),
+            false => doubled_faces(&draft, &nodes, &adjacency),
+        };
+        let touching = doubled_surfaces(&draft, &nodes, &adjacency, &doubled);
+        let mut defects: Vec<Defect> = touching.iter().map(check::touching).collect();
+        let (surfaces, unfit) = check::surfaces(&draft, roles, &adjacency, &doubled.faces());
+        defects.extend(unfit);
         for facet in &surfaces.facets {
             adjacency.part(facet.faces);
         }

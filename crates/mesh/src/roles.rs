@@ -1,6 +1,9 @@
 //! The roles of physical surfaces, and what can be told of surfaces before they have one.
 
+use glam::DVec3;
+
 use crate::adjacency::{Adjacency, NONE};
+use crate::doubled::{DoubledSurface, doubled_faces, doubled_surfaces};
 use crate::draft::Draft;
 
 /// What the scene makes of a physical surface.
@@ -19,6 +22,7 @@ pub enum SurfaceRole {
 #[derive(Debug, Clone)]
 pub struct Faces {
     pub(crate) adjacency: Adjacency,
+    pub(crate) may_touch: bool,
 }
 
 impl Faces {
@@ -26,7 +30,25 @@ impl Faces {
     pub fn of(draft: &Draft) -> Self {
         Self {
             adjacency: Adjacency::of(draft),
+            may_touch: false,
         }
+    }
+
+    /// Lets outer faces lie on one another, which is a defect otherwise: for a look at a mesh.
+    /// Rock does not hold together there, and nothing keeps it from passing through itself.
+    #[must_use]
+    pub fn let_touch(self) -> Self {
+        Self {
+            may_touch: true,
+            ..self
+        }
+    }
+
+    /// The surfaces of the same `draft` on which outer faces lie on one another.
+    pub fn doubled_surfaces(&self, draft: &Draft) -> Vec<DoubledSurface> {
+        let nodes: Vec<DVec3> = draft.nodes.iter().copied().map(DVec3::from).collect();
+        let doubled = doubled_faces(draft, &nodes, &self.adjacency);
+        doubled_surfaces(draft, &nodes, &self.adjacency, &doubled)
     }
 
     /// For each group of the same `draft` whether it is a surface with a facet inside the body,

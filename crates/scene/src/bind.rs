@@ -8,6 +8,7 @@ use lie_core::Rock;
 use crate::cases::{Bound, schedule};
 use crate::conditions::{FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
+use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
 use crate::remedies::in_terms_of_scene;
 use crate::roles::{DEFAULT, Roles, roles};
@@ -32,10 +33,16 @@ impl Scene {
     /// Every defect of the mesh, and everything in the scene that does not fit it.
     pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let faces = Faces::of(&draft);
+        let JoinedDraft {
+            draft,
+            faces,
+            mut decisions,
+        } = join(self, draft, faces)?;
         let Roles {
             of_group,
-            mut decisions,
+            decisions: unused,
         } = roles(self, &draft, &faces.inner_surfaces(&draft))?;
+        decisions.extend(unused);
         let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
         let mut binding = bind(self, mesh)?;
         decisions.append(&mut binding.decisions);

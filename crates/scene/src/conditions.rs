@@ -18,9 +18,11 @@ pub struct BoundaryEntry {
     pub history: Option<LoadHistory>,
 }
 
-/// A fracture and the history of its fluid pressure.
+/// A fracture, where it is if not on a physical surface, and the history of its fluid pressure.
 #[derive(Debug, Clone)]
 pub struct FractureEntry {
+    /// The physical volumes that it lies between; none if it is a physical surface of the mesh.
+    pub between: Option<[String; 2]>,
     /// Its law and what fills it.
     pub fracture: Fracture,
     /// How the fluid pressure changes with time.

@@ -7,8 +7,27 @@ use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
 use crate::conditions::FractureEntry;
 use crate::load::{Clock, Scaled, read_history};
 use crate::reader::Section;
+use crate::roles::DEFAULT;
 
-/// Reads a section on a fracture.
+/// Reads a section on a fracture of a scene: its law, and where it is.
+pub(crate) fn read_placed_fracture(
+    section: &Section<'_, '_>,
+    name: &str,
+    clock: Clock,
+) -> Option<FractureEntry> {
+    let between = section.pair("between");
+    if between.is_some() && name == DEFAULT {
+        section.refuse(
+            "between",
+            "[fracture.default] serves surfaces that the mesh has, none of its own".into(),
+            "give the fracture between these volumes a name: [fracture.NAME]",
+        );
+    }
+    let entry = read_fracture(section, clock)?;
+    Some(FractureEntry { between, ..entry })
+}
+
+/// Reads what a section says of a fracture, wherever it is.
 pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
     let closure = section.choice("closure");
     let is_known = closure.is_some() || !section.has("closure");
@@ -43,9 +62,6 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
     if contact {
         refuse_in_contact(section);
     }
-    if !is_known {
-        return None;
-    }
     let closure = if contact {
         Closure::contact(aperture?)
     } else {
@@ -64,7 +80,11 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
         },
         fluid_pressure: fluid_pressure.unwrap_or(0.0),
     };
-    Some(FractureEntry { fracture, history })
+    is_known.then_some(FractureEntry {
+        between: None,
+        fracture,
+        history,
+    })
 }
 
 /// Keys that a closure law refuses; `has_friction` tells whether the fracture has friction.

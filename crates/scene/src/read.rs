@@ -8,7 +8,7 @@ use kluft_solver::{InitialStress, Profile};
 use lie_core::{FacetQuadrature, Rock};
 
 use crate::conditions::{read_body, read_boundary, read_fixed_point};
-use crate::fracture::read_fracture;
+use crate::fracture::read_placed_fracture;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
 use crate::reader::{Section, Source};
@@ -105,12 +105,15 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let quarter_points = section
         .as_ref()
         .and_then(|section| section.flag("quarter_points"));
+    let weld = section.as_ref().and_then(|section| section.flag("weld"));
     let mesh = section.and_then(|section| read_mesh(section, folder));
     root.require("rock");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
-    let fractures = named("fracture")
-        .filter_map(|(name, s)| entry(source, name, s, |s| read_fracture(s, clock)));
+    let fractures = named("fracture").filter_map(|(name, s)| {
+        let called = name.clone();
+        entry(source, name, s, |s| read_placed_fracture(s, &called, clock))
+    });
     let fractures = fractures.collect();
     let boundaries = named("boundary")
         .filter_map(|(name, s)| entry(source, name, s, |s| read_boundary(s, clock)));
@@ -139,6 +142,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         boundaries,
         fixed_points,
         quarter_points: quarter_points.unwrap_or(true),
+        weld: weld.unwrap_or(false),
         mesh: mesh?,
         // After everything has been read.
         warnings: source.take_warnings(),

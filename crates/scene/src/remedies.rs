@@ -1,6 +1,8 @@
 //! Remedies as a scene says them, for defects that a library found.
 
-use kluft_mesh::{CONDITION_INSIDE, Defect};
+use kluft_mesh::{
+    CONDITION_INSIDE, DOUBLED_NODES, Defect, FACES_NOT_MATCHING, FRACTURE_ON_DOUBLED_NODES,
+};
 use kluft_solver::UNHELD_BLOCK;
 
 /// The same defects, each with the remedy as it is written in a scene where there is one.
@@ -18,6 +20,18 @@ fn words(code: &str) -> Option<&'static str> {
         CONDITION_INSIDE => {
             Some("conditions act on the outer surface; give a fracture a [fracture] entry instead")
         }
+        DOUBLED_NODES => Some(
+            "add `weld = true` to [mesh], take the surface as a fracture ([fracture.NAME] with \
+             `between = [\"VOLUME\", \"VOLUME\"]`), or share the faces in the geometry \
+             (BooleanFragments; Coherence; for a mesh, Coherence Mesh;)",
+        ),
+        FACES_NOT_MATCHING => Some(
+            "share the faces in the geometry (BooleanFragments) and mesh it again; neither \
+             `weld = true` nor `between` joins nodes at different places",
+        ),
+        FRACTURE_ON_DOUBLED_NODES => Some(
+            "add `weld = true` to [mesh]: with nodes at one place made one the fracture lies inside",
+        ),
         UNHELD_BLOCK => Some(
             "add a [boundary.NAME] with displacement or symmetry, a [[fixed_point]], or stiffness \
              on the fractures around it",

@@ -106,7 +106,11 @@ fn kind(dimension: usize) -> &'static str {
     ["point", "curve", "surface", "volume"][dimension.min(3)]
 }
 
-fn find_group(
+/// The group of a dimension and a name; `place` is where the scene speaks of it.
+///
+/// # Errors
+/// If the mesh has none, with the nearest name or what it has instead.
+pub(crate) fn find_group(
     groups: &[Group],
     name: &str,
     dimension: usize,

@@ -72,6 +72,8 @@ pub struct Scene {
     pub mesh: MeshSource,
     /// Whether second-order cells at crack fronts become quarter-point elements.
     pub quarter_points: bool,
+    /// Whether nodes at one place become one node.
+    pub weld: bool,
     /// Rocks by physical volume.
     pub rocks: Vec<Named<Rock>>,
     /// Fractures by physical surface.

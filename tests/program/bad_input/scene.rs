@@ -39,6 +39,22 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "volumes of a default fracture, and three of them",
+        scene: &[(
+            "[boundary.top]",
+            "between = [\"rock\", \"rock\", \"rock\"]\n[fracture.default]\nbetween = [\"rock\", \"rock\"]\n\
+             aperture = 1e-4\nnormal_stiffness = 1e10\nshear_stiffness = 1e10\n[boundary.top]",
+        )],
+        defects: 2,
+        says: &[
+            "scene.toml:15: `between` in [fracture.joint] is no pair of names",
+            "write two names in brackets",
+            "scene.toml:17: [fracture.default] serves surfaces that the mesh has",
+            "give the fracture between these volumes a name",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "unknown facet rule",
         scene: &[(
             "[fracture.joint]",

@@ -123,6 +123,13 @@ pub static FRACTURE: KeySection = KeySection {
             says: "Opening per slip beyond the elastic slip; at most the friction angle",
         },
         Key {
+            name: "between",
+            kind: Kind::Pair,
+            need: Need::Without("the physical surface NAME"),
+            example: "[\"left\", \"right\"]",
+            says: "Physical volumes whose common surface is the fracture, nodes shared or doubled; one name twice for the doubled faces within it",
+        },
+        Key {
             name: "fluid_pressure",
             kind: number(Dimension::Stress, Range::Finite),
             need: Need::Default("0"),

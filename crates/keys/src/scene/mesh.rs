@@ -45,6 +45,13 @@ pub static MESH: KeySection = KeySection {
             says: "Whether cells of order 2 at crack fronts follow the square root of the distance",
         },
         Key {
+            name: "weld",
+            kind: Kind::Flag,
+            need: Need::Default("false"),
+            example: "true",
+            says: "Whether nodes at one place become one node; without it rock that touches without sharing nodes is refused",
+        },
+        Key {
             name: "adapt",
             kind: Kind::Table(&ADAPT),
             need: Need::Without("one mesh, as the geometry says"),

@@ -67,6 +67,23 @@ impl<'a, 'i> Section<'a, 'i> {
         }
     }
 
+    /// Two texts in brackets.
+    pub fn pair(&self, key: &'static str) -> Option<[String; 2]> {
+        let value = self.get(key)?;
+        let array = value.get_ref().as_array();
+        let texts = array.and_then(|array| {
+            let texts = array.iter().map(|entry| entry.get_ref().as_str());
+            texts.map(|text| text.map(str::to_owned)).collect()
+        });
+        let pair = texts.and_then(|texts: Vec<String>| <[String; 2]>::try_from(texts).ok());
+        if pair.is_none() {
+            let problem = format!("`{key}` in {} is no pair of names", self.name());
+            let remedy = "write two names in brackets, e.g. [\"left\", \"right\"]";
+            self.refuse(key, problem, remedy);
+        }
+        pair
+    }
+
     /// Truth values in brackets.
     pub fn flags(&self, key: &'static str) -> Option<Vec<bool>> {
         let value = self.get(key)?;
