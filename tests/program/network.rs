@@ -114,6 +114,26 @@ fn a_list_becomes_a_geometry_that_runs() {
 }
 
 #[test]
+fn domains_of_all_sizes_run() {
+    for side in [1e-3, 1e-2, 1e3] {
+        let disc = |name: &str, [x, y, z, radius]: [f64; 4], angles: &str| {
+            let [x, y, z, radius] = [x, y, z, radius].map(|length| length * side);
+            format!("{name},disc,{x},{y},{z},{angles},{radius}\n")
+        };
+        let list = "name,shape,x,y,z,dip,dip_direction,radius\n".to_owned()
+            + &disc("a", [0.5, 0.5, 0.45, 0.35], "20,90")
+            + &disc("b", [0.55, 0.5, 0.5, 0.4], "70,180")
+            + &disc("c", [0.3, 0.3, 0.5, 0.3], "45,30");
+        let domain = format!("0,0,0,{side},{side},{side}");
+        let h = (side / 4.0).to_string();
+        let folder = made("list.csv", &list, &["--domain", &domain, "--h", &h]);
+        let summary = solve_and_compare(&folder.path().join("made"));
+        let fractures = summary["fractures"].as_object().expect("fractures");
+        assert_eq!(fractures.len(), 3, "{side} m");
+    }
+}
+
+#[test]
 fn sets_may_be_the_groups() {
     let folder = made(
         "list.csv",

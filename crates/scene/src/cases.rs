@@ -1,5 +1,6 @@
 //! Conditions with the same history are one load case.
 
+use kluft_keys::section_head;
 use kluft_solver::{Cases, Load, Schedule, Step, Support};
 
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, is_moved};
@@ -55,13 +56,13 @@ impl Found {
         let conditions = bound.boundaries.iter().map(|entry| {
             let value = &entry.value;
             let moves = matches!(value.support, Some(Support::Displacement(d)) if is_moved(&d));
-            let name = format!("[boundary.{}]", entry.name);
+            let name = section_head("boundary", &entry.name);
             self.case(value.load.is_some() || moves, &value.history, name)
         });
         let conditions = conditions.collect();
         let fractures = bound.fractures.iter().map(|entry| {
             let acts = entry.value.fracture.fluid_pressure != 0.0;
-            let name = format!("[fracture.{}]", entry.name);
+            let name = section_head("fracture", &entry.name);
             self.case(acts, &entry.value.history, name)
         });
         let fractures = fractures.collect();
