@@ -109,6 +109,13 @@ fn a_list_becomes_a_geometry_that_runs() {
         !wall["changes"].as_array().expect("changes").is_empty(),
         "{wall}"
     );
+    // Planes of 10 and 90 degrees: within its own, the foot moves to where they meet.
+    let farthest = wall["farthest_move"].as_f64().expect("a move");
+    let gap = record["gap"].as_f64().expect("a gap");
+    assert!(farthest > 0.0 && farthest < 2.0 * gap, "{farthest}");
+    let told = format!("moved by {farthest:.3e} m");
+    let changes = wall["changes"].as_array().expect("changes").iter();
+    assert!(changes.flat_map(|text| text.as_str()).any(|text| text.contains(&told)));
     assert_eq!(wall["area_given"].as_f64().map(f64::round), Some(30.0));
     assert_eq!(record["intersections"]["count"], 3);
 }

@@ -100,25 +100,22 @@ fn decimals(text: &str) -> Decimals {
 /// the one that the quote opens.
 fn torn(headers: &StringRecord, record: &StringRecord, text: &str, place: &str) -> Option<Defect> {
     let start = record.position().map_or(0, |at| at.byte() as usize);
-    let behind = text.get(start..).unwrap_or_default();
+    let mut behind = text.get(start..).unwrap_or_default().lines();
+    let line = behind.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let mut values = line.unwrap_or_default().split([',', ';']).map(str::trim_start);
+    let opens = values.any(|value| value.starts_with('"'));
+    let is_odd = line.unwrap_or_default().matches('"').count() % 2 == 1;
     let last = record.len().checked_sub(1)?;
-    let is_open = |(number, value): (usize, &str)| {
-        let before = behind.trim_end().strip_suffix(value).map(str::trim_end);
-        let begins_with_quote = number == last && before.is_some_and(|text| text.ends_with('"'));
-        let is_odd = behind.matches('"').count() % 2 == 1;
-        value.contains(['\n', '\r']) || begins_with_quote && is_odd
-    };
-    let column = record.iter().enumerate().position(is_open)?;
+    let mut columns = record.iter().enumerate();
+    let (column, _) = columns.find(|(column, value)| {
+        value.contains(['\n', '\r']) || *column == last && opens && is_odd
+    })?;
     let place = match headers.get(column) {
         Some(name) => format!("{place}, column `{name}`"),
         None => place.to_owned(),
     };
     let remedy = "close it on the same line, or remove it";
-    Some(Defect::new(
-        place,
-        "a quote is opened here and not closed",
-        remedy,
-    ))
+    Some(Defect::new(place, "a quote is opened here and not closed", remedy))
 }
 
 /// A line with more values than there are columns: which of them belongs where, nobody knows.
