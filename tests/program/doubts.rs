@@ -44,7 +44,7 @@ fn assert_silenced_by(name: &str, parts: &[&str], edits: &[(&str, &str)]) {
     let key = format!("silence = [\"{name}\"]");
     assert!(told[0].contains(&key), "{key}: {}", told[0]);
     let silence = format!("[warnings]\n{key}\n\n[boundary.bottom]");
-    let edits = [edits, &[("[boundary.bottom]", &silence)]].concat();
+    let edits = [edits, &[("[boundary.bottom]", silence.as_str())]].concat();
     let rest = warnings("run", "summary.json", &edits);
     assert_eq!(rest.len() + 1, found.len(), "{rest:#?}");
     assert!(!rest.iter().any(is_told), "{rest:#?}");
@@ -136,21 +136,21 @@ fn every_warning_of_a_result_is_silenced_by_its_key() {
 /// a third of the triangle below, 0.5 m2; the section of the box is (1 m 1 m 2 m)^(2/3).
 #[test]
 fn an_initial_stress_out_of_balance_is_told_with_its_force() {
-    let stress = "[initial_stress]\nxx = -1e6\nyy = -1e6\nzz = -1e6\n\n[boundary.top]";
+    let stress = "[initial_stress]\nxx = -1e5\nyy = -1e5\nzz = -1e5\n\n[boundary.top]";
     let pressure = |size: &'static str| {
         [
             ("[boundary.top]", stress),
             ("traction = [0, 0, -1e5]", size),
         ]
     };
-    let (force, share) = (0.5e6 * 0.5 / 3.0, 0.25 / 3.0 / 4_f64.cbrt());
+    let (force, share) = (0.5e5 * 0.5 / 3.0, 0.25 / 3.0 / 4_f64.cbrt());
     let (force, share) = (format!("{force:.3e} N"), format!("{:.0} %", 100.0 * share));
     assert_silenced_by(
         "initial_stress",
         &["the initial stress is out of balance", &force, &share],
-        &pressure("pressure = 0.5e6"),
+        &pressure("pressure = 0.5e5"),
     );
-    let balanced = warnings("run", "summary.json", &pressure("pressure = 1e6"));
+    let balanced = warnings("run", "summary.json", &pressure("pressure = 1e5"));
     assert_eq!(balanced, Vec::<String>::new());
 }
 
@@ -160,14 +160,13 @@ fn surfaces_without_a_name_become_no_joints_where_others_have_names() {
     let nameless = edited(MESH, &[("5\n1 5", "4\n1 5"), ("2 1 \"joint\"\n", "")]);
     for (command, file) in [("run", "summary.json"), ("inspect", "inspect.json")] {
         let found = warnings_on(&nameless, command, file, &edits);
-        assert_eq!(found.len(), 1, "{found:#?}");
-        for part in [
+        let parts = [
             "without a name, 1, stay welded",
             "[fracture.1]",
             "unnamed_surfaces",
-        ] {
-            assert!(found[0].contains(part), "{part}: {}", found[0]);
-        }
+        ];
+        let is_told = |warning: &String| parts.iter().all(|part| warning.contains(part));
+        assert!(found.iter().any(is_told), "{found:#?}");
     }
     let report = report(&nameless, "run", "summary.json", &edits);
     assert_eq!(

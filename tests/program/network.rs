@@ -115,7 +115,11 @@ fn a_list_becomes_a_geometry_that_runs() {
     assert!(farthest > 0.0 && farthest < 2.0 * gap, "{farthest}");
     let told = format!("moved by {farthest:.3e} m");
     let changes = wall["changes"].as_array().expect("changes").iter();
-    assert!(changes.flat_map(|text| text.as_str()).any(|text| text.contains(&told)));
+    assert!(
+        changes
+            .flat_map(|text| text.as_str())
+            .any(|text| text.contains(&told))
+    );
     assert_eq!(wall["area_given"].as_f64().map(f64::round), Some(30.0));
     assert_eq!(record["intersections"]["count"], 3);
 }

@@ -102,7 +102,10 @@ fn torn(headers: &StringRecord, record: &StringRecord, text: &str, place: &str) 
     let start = record.position().map_or(0, |at| at.byte() as usize);
     let mut behind = text.get(start..).unwrap_or_default().lines();
     let line = behind.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
-    let mut values = line.unwrap_or_default().split([',', ';']).map(str::trim_start);
+    let mut values = line
+        .unwrap_or_default()
+        .split([',', ';'])
+        .map(str::trim_start);
     let opens = values.any(|value| value.starts_with('"'));
     let is_odd = line.unwrap_or_default().matches('"').count() % 2 == 1;
     let last = record.len().checked_sub(1)?;
@@ -115,7 +118,11 @@ fn torn(headers: &StringRecord, record: &StringRecord, text: &str, place: &str) 
         None => place.to_owned(),
     };
     let remedy = "close it on the same line, or remove it";
-    Some(Defect::new(place, "a quote is opened here and not closed", remedy))
+    Some(Defect::new(
+        place,
+        "a quote is opened here and not closed",
+        remedy,
+    ))
 }
 
 /// A line with more values than there are columns: which of them belongs where, nobody knows.
