@@ -109,10 +109,17 @@ fn torn(headers: &StringRecord, record: &StringRecord, text: &str, place: &str) 
     let opens = values.any(|value| value.starts_with('"'));
     let is_odd = line.unwrap_or_default().matches('"').count() % 2 == 1;
     let last = record.len().checked_sub(1)?;
-    let mut columns = record.iter().enumerate();
-    let (column, _) = columns.find(|(column, value)| {
-        value.contains(['\n', '\r']) || *column == last && opens && is_odd
-    })?;
+    let swallows = |value: &str| value.contains(['\n', '\r']);
+    let column = match record.iter().position(swallows) {
+        Some(column) => column,
+        // It ends at a quote of a later value, or at the end of the file.
+        None if opens && is_odd => {
+            let mut columns = (0..record.len()).rev();
+            let holds_more = |column: &usize| record[*column].contains([',', ';']);
+            columns.find(holds_more).unwrap_or(last)
+        }
+        None => return None,
+    };
     let place = match headers.get(column) {
         Some(name) => format!("{place}, column `{name}`"),
         None => place.to_owned(),
