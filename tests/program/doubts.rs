@@ -190,3 +190,17 @@ fn in_a_mesh_without_names_numbers_serve() {
     assert_eq!(fractures.keys().collect::<Vec<_>>(), ["1"]);
     assert_eq!(report["warnings"].as_array().map(Vec::len), Some(0));
 }
+
+#[test]
+fn a_second_group_on_a_fracture_is_not_called_welded() {
+    let edits = [
+        ("5\n1 5", "6\n2 6 \"twin\"\n1 5"),
+        ("1 0 0 0 1 1 0 1 1 0", "1 0 0 0 1 1 0 2 1 6 0"),
+    ];
+    let report = report(&edited(MESH, &edits), "run", "summary.json", &[]);
+    let decisions = report["decisions"].as_array().expect("decisions").iter();
+    let told: Vec<&str> = decisions.filter_map(Value::as_str).collect();
+    let of_twin: Vec<&&str> = told.iter().filter(|text| text.contains("twin")).collect();
+    assert_eq!(of_twin.len(), 1, "{told:#?}");
+    assert!(of_twin[0].contains("part of a fracture"), "{}", of_twin[0]);
+}
