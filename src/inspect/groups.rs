@@ -1,5 +1,6 @@
 //! Physical groups: how many elements they hold and what the scene makes of them.
 
+use kluft_keys::section_head;
 use kluft_mesh::{Draft, SurfaceRole, TaggedElements};
 use kluft_solver::{Support, SurfaceLoad};
 
@@ -82,7 +83,7 @@ fn rock(scene: Option<&Scene>, name: &str) -> String {
     let found = names
         .into_iter()
         .find(|name| scene.rocks.iter().any(|entry| entry.name == *name));
-    found.map_or("no rock is given".into(), |name| format!("[rock.{name}]"))
+    found.map_or("no rock is given".into(), |name| section_head("rock", name))
 }
 
 fn surface(

@@ -88,7 +88,10 @@ fn look(
     let inner = faces.inner_surfaces(&draft);
     let surface_roles = match scene {
         None => Ok(groups::guess(&draft, &inner)),
-        Some(scene) => roles(scene, &draft, &inner).map(|found| found.of_group),
+        Some(scene) => roles(scene, &draft, &inner).map(|found| {
+            inspection.warnings.extend(found.warnings);
+            found.of_group
+        }),
     };
     let surface_roles = match surface_roles {
         Ok(found) => found,

@@ -1,7 +1,6 @@
 //! Sections of a description that go into the scene as they are.
 
-use std::fmt::Write;
-
+use kluft_keys::{key_text, quoted, section_head};
 use kluft_scene::reader::Section;
 use toml::de::{DeTable, DeValue};
 
@@ -46,10 +45,7 @@ pub(super) fn passages(root: &Section<'_, '_>) -> Passages {
             Some(DeValue::Table(table)) if ["rock", "boundary"].contains(&key) => {
                 for (name, value) in table.iter() {
                     if let DeValue::Table(inner) = value.get_ref() {
-                        found.push((
-                            format!("[{key}.{}]", key_text(name.get_ref())),
-                            passage(inner, &[]),
-                        ));
+                        found.push((section_head(key, name.get_ref()), passage(inner, &[])));
                     }
                 }
             }
@@ -65,29 +61,6 @@ pub(super) fn passages(root: &Section<'_, '_>) -> Passages {
         }
     }
     Passages(found)
-}
-
-pub(super) fn key_text(key: &str) -> String {
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if !key.is_empty() && key.chars().all(is_bare) {
-        key.to_owned()
-    } else {
-        quoted(key)
-    }
-}
-
-pub(super) fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => out.extend(['\\', c]),
-            c if c.is_control() => {
-                let _ = write!(out, "\\u{:04X}", c as u32);
-            }
-            c => out.push(c),
-        }
-    }
-    out + "\""
 }
 
 fn value_text(value: &DeValue<'_>) -> String {

@@ -24,6 +24,8 @@ pub(super) struct NetworkRecord {
     intersections: IntersectionsRecord,
     /// What is too small for the mesh and stays.
     small_features: Vec<FeatureRecord>,
+    /// Gaps below this are closed (m).
+    gap: f64,
     assumptions: Vec<String>,
 }
 
@@ -75,6 +77,8 @@ struct FractureRecord {
     corners: usize,
     /// What was changed besides clipping.
     changes: Vec<String>,
+    /// Farthest that a corner was moved at once (m).
+    farthest_move: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -124,6 +128,7 @@ impl NetworkRecord {
                 total_length: lengths.fold(0.0, |sum, length| sum + length),
             },
             small_features: network.features.iter().map(feature_record).collect(),
+            gap: network.sizes.gap(),
             assumptions: input.assumptions.clone(),
         }
     }
@@ -149,6 +154,15 @@ impl NetworkRecord {
             for change in &fracture.changes {
                 report.entry("mended", &format!("`{}`: {change}", fracture.name));
             }
+        }
+        let moves = self.fractures.iter().map(|one| one.farthest_move);
+        let farthest = moves.fold(0.0, f64::max);
+        if farthest > 0.0 {
+            let text = format!(
+                "corners moved by at most {farthest:.3e} m, each within its plane, to close gaps below {:.3e} m",
+                self.gap
+            );
+            report.entry("mended", &text);
         }
         for feature in &self.small_features {
             report.entry("too small", &feature.text);
@@ -183,6 +197,7 @@ fn fracture_record(fracture: &NetworkFracture) -> FractureRecord {
         dip_direction,
         corners: fracture.polygon.corners().len(),
         changes: fracture.changes.clone(),
+        farthest_move: fracture.farthest_move,
     }
 }
 

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
+use kluft_keys::{quoted, section_head};
 use kluft_network::{Grouping, Network};
 
 use super::input::Input;
-use super::passages::{Passage, key_text, quoted};
+use super::passages::Passage;
 
 /// First line of a scene that may be written again.
 pub(super) const MADE: &str = "# Made by `kluft network`; remove this line to protect the file.";
@@ -83,12 +84,7 @@ fn fractures(out: &mut String, input: &Input, network: &Network, grouping: Group
                     .iter()
                     .any(|fracture| fracture.set == set.name)
                 {
-                    material(
-                        out,
-                        &format!("[fracture.{}]", key_text(&set.name)),
-                        input,
-                        &set.name,
-                    );
+                    material(out, &section_head("fracture", &set.name), input, &set.name);
                 }
             }
         }
@@ -96,7 +92,7 @@ fn fractures(out: &mut String, input: &Input, network: &Network, grouping: Group
             for fracture in &network.fractures {
                 material(
                     out,
-                    &format!("[fracture.{}]", key_text(&fracture.name)),
+                    &section_head("fracture", &fracture.name),
                     input,
                     &fracture.set,
                 );

@@ -109,8 +109,39 @@ fn a_list_becomes_a_geometry_that_runs() {
         !wall["changes"].as_array().expect("changes").is_empty(),
         "{wall}"
     );
+    // Planes of 10 and 90 degrees: within its own, the foot moves to where they meet.
+    let farthest = wall["farthest_move"].as_f64().expect("a move");
+    let gap = record["gap"].as_f64().expect("a gap");
+    assert!(farthest > 0.0 && farthest < 2.0 * gap, "{farthest}");
+    let told = format!("moved by {farthest:.3e} m");
+    let changes = wall["changes"].as_array().expect("changes").iter();
+    assert!(
+        changes
+            .flat_map(|text| text.as_str())
+            .any(|text| text.contains(&told))
+    );
     assert_eq!(wall["area_given"].as_f64().map(f64::round), Some(30.0));
     assert_eq!(record["intersections"]["count"], 3);
+}
+
+#[test]
+fn domains_of_all_sizes_run() {
+    for side in [1e-3, 1e-2, 1e3] {
+        let disc = |name: &str, [x, y, z, radius]: [f64; 4], angles: &str| {
+            let [x, y, z, radius] = [x, y, z, radius].map(|length| length * side);
+            format!("{name},disc,{x},{y},{z},{angles},{radius}\n")
+        };
+        let list = "name,shape,x,y,z,dip,dip_direction,radius\n".to_owned()
+            + &disc("a", [0.5, 0.5, 0.45, 0.35], "20,90")
+            + &disc("b", [0.55, 0.5, 0.5, 0.4], "70,180")
+            + &disc("c", [0.3, 0.3, 0.5, 0.3], "45,30");
+        let domain = format!("0,0,0,{side},{side},{side}");
+        let h = (side / 4.0).to_string();
+        let folder = made("list.csv", &list, &["--domain", &domain, "--h", &h]);
+        let summary = solve_and_compare(&folder.path().join("made"));
+        let fractures = summary["fractures"].as_object().expect("fractures");
+        assert_eq!(fractures.len(), 3, "{side} m");
+    }
 }
 
 #[test]

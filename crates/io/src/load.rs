@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use kluft_mesh::{Defect, Draft, Elements, TaggedElements};
+use kluft_mesh::{Defect, Draft, Elements, Group, TaggedElements};
 
 use crate::gmsh::convert_mesh;
-use crate::msh::{bytes_of, older_version, parse_msh};
+use crate::msh::{bytes_of, older_names, older_version, parse_msh};
 
 /// Cells from which on a mesh outgrows the caches, so that it pays to arrange it.
 const LARGE: usize = 20_000;
@@ -33,13 +33,25 @@ fn load(path: &Path, scratch_dir: &Path) -> Result<(Draft, Vec<u8>), Vec<Defect>
     let Some(version) = older_version(&bytes, &name).map_err(|defect| vec![defect])? else {
         return parse_msh(&bytes, &name).map(|draft| (draft, bytes));
     };
+    let named = older_names(&bytes, &name);
     drop(bytes);
     let mut draft = load_older(path, scratch_dir)?;
+    rename(&mut draft.groups, &named);
     if version < 4.0 {
         drop_repeated(&mut draft.cells);
         drop_repeated(&mut draft.facets);
     }
     Ok((draft, Vec::new()))
+}
+
+/// Gives groups the names of the file: gmsh cuts those that hold a quote.
+fn rename(groups: &mut [Group], named: &[Group]) {
+    let key = |group: &Group| (group.dimension, group.tag);
+    for group in groups {
+        if let Some(named) = named.iter().find(|named| key(named) == key(group)) {
+            group.name.clone_from(&named.name);
+        }
+    }
 }
 
 fn load_older(path: &Path, scratch_dir: &Path) -> Result<Draft, Vec<Defect>> {

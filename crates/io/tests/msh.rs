@@ -223,6 +223,25 @@ fn older_versions_are_converted() {
 }
 
 #[test]
+fn names_with_quotes_survive_the_conversion() {
+    let scratch = Scratch::new("quotes");
+    let path = scratch.mesh(BLOCKS, "-format msh22");
+    let text = fs::read_to_string(&path).expect("text");
+    let quoted = text.replace("\"joint one\"", "\"he said \"hi\" there\"");
+    assert!(quoted != text);
+    fs::write(&path, quoted).expect("written");
+    let names = load_msh(&path, &scratch.0).expect("a draft").groups;
+    let names: Vec<&str> = names.iter().map(|group| group.name.as_str()).collect();
+    for name in [
+        "he said \"hi\" there",
+        "all $EndPhysicalNames \\surfaces",
+        "7",
+    ] {
+        assert!(names.contains(&name), "{name}: {names:?}");
+    }
+}
+
+#[test]
 fn what_gmsh_cannot_convert_is_a_defect() {
     let scratch = Scratch::new("cut");
     let path = scratch.mesh(BLOCKS, "-format msh22");

@@ -158,7 +158,7 @@ mod tests {
             for part in [
                 "[rock.NAME]",
                 "Pa, or as text: Pa, kPa",
-                "> 0",
+                "1 to 1e15",
                 "required",
                 "50e9",
             ] {

@@ -9,6 +9,7 @@
 mod dimension;
 mod document;
 mod explain;
+mod head;
 mod names;
 pub mod network;
 mod page;
@@ -22,6 +23,7 @@ mod units;
 pub use dimension::Dimension;
 pub use document::Document;
 pub use explain::{explain, overview};
+pub use head::{key_text, quoted, section_head};
 pub use names::nearest;
 pub use page::page;
 pub use plausible::Plausible;

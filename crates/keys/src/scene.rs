@@ -8,6 +8,7 @@ mod oracle;
 mod rock;
 mod solver;
 mod study;
+mod warnings;
 
 pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
 pub use fracture::{CLOSURES, FRACTURE};
@@ -17,6 +18,7 @@ pub use oracle::{FORMS, ORACLE};
 pub use rock::ROCK;
 pub use solver::{FACETS, SOLVER, SOLVERS};
 pub use study::{CLOSURE, SERIES, STUDY};
+pub use warnings::{SILENCED, WARNINGS};
 
 use crate::table::{Key, KeySection, Kind, Need};
 
@@ -50,6 +52,13 @@ pub static ROOT: KeySection = KeySection {
         INITIAL_STRESSES,
         LOADS,
         SOLVING,
+        Key {
+            name: "warnings",
+            kind: Kind::Table(&SILENCED),
+            need: Need::Without("all are told"),
+            example: "[warnings]",
+            says: "What is meant, however unlikely it looks",
+        },
         Key {
             name: "study",
             kind: Kind::Table(&STUDY),

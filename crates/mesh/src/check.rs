@@ -87,6 +87,20 @@ fn report(defects: &mut Vec<Defect>, place: &str, what: &str, tags: &[u64], kind
     }
 }
 
+/// A boundary that holds facets inside the rock beside so many on its surface.
+fn mixed(place: &str, outer: usize, inner: &[u64]) -> Defect {
+    Defect::new(
+        format!("{place}, facet {}", sample(inner)),
+        format!(
+            "the group mixes {outer} facets of the outer surface with {} inside the rock, which have \
+             cells on both sides",
+            inner.len()
+        ),
+        "give the surfaces inside the rock a physical group of their own: conditions act on the outer \
+         surface only",
+    )
+}
+
 /// Defects of the nodes and cells by themselves.
 pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
     let mut defects = Vec::new();
@@ -340,9 +354,36 @@ impl Matching<'_> {
         for defect in &mut defects[before..] {
             defect.code = Some(FRACTURE_ON_DOUBLED_NODES);
         }
-        if is_empty {
-            self.report_empty(group);
+        let owners: Vec<u32> = self
+            .surfaces
+            .shared
+            .keys()
+            .copied()
+            .filter_map(|(own, owner)| (own == number).then_some(owner))
+            .collect();
+        match is_empty {
+            true if owners.is_empty() => self.report_empty(group),
+            true => self.report_taken(group, &owners),
+            false => {}
         }
+    }
+
+    /// A fracture all of whose facets belong to others too.
+    fn report_taken(&mut self, group: usize, owners: &[u32]) {
+        let name = |group: usize| format!("`{}`", self.draft.groups[group].name);
+        let owners = owners
+            .iter()
+            .map(|&owner| name(self.surfaces.fractures[owner as usize]));
+        let owners: Vec<String> = owners.collect();
+        self.defects.push(Defect::new(
+            format!("fracture {}", name(group)),
+            format!(
+                "all its facets belong to fracture {} too: several physical groups hold one surface, \
+                 which can follow one law only",
+                owners.join(" and ")
+            ),
+            "let one group hold the surface, or make a fracture of one of the groups only",
+        ));
     }
 
     /// Adds a boundary.
@@ -362,10 +403,14 @@ impl Matching<'_> {
         let place = format!("boundary `{}`", self.draft.groups[group].name);
         let defects = &mut self.defects;
         report(defects, &place, "facet", &loose, NOT_ON_THE_ROCK);
-        let before = defects.len();
-        report(defects, &place, "facet", &inner, ON_THE_INSIDE);
-        for defect in &mut defects[before..] {
-            defect.code = Some(CONDITION_INSIDE);
+        if !inner.is_empty() && !faces_kept.is_empty() {
+            defects.push(mixed(&place, faces_kept.len(), &inner));
+        } else {
+            let before = defects.len();
+            report(defects, &place, "facet", &inner, ON_THE_INSIDE);
+            for defect in &mut defects[before..] {
+                defect.code = Some(CONDITION_INSIDE);
+            }
         }
         report(defects, &place, "facet", &double, LOADED_TWICE);
         if is_empty {

@@ -34,6 +34,8 @@ pub struct NetworkFracture {
     pub polygon: Polygon,
     /// What was changed besides clipping, one line a change.
     pub changes: Vec<String>,
+    /// Farthest that a corner of it was moved at once (m).
+    pub farthest_move: f64,
 }
 
 /// A given fracture that is not in the network.

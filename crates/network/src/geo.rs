@@ -23,6 +23,10 @@ pub enum Grouping {
     Set,
 }
 
+/// OpenCASCADE adds 1e-7 m to the boxes around shapes, whatever the size of the domain: a search
+/// within less finds nothing (m).
+const SMALLEST_BOX: f64 = 1e-6;
+
 /// The geometry of a network, with `title` in its first line.
 pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
     let shared = long_intersections(network);
@@ -42,7 +46,7 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
         "growth" => format!("{:?}", sizes.growth),
         "low" => List(&domain.low.to_array()).to_string(),
         "high" => List(&domain.high.to_array()).to_string(),
-        "eps" => format!("{:?}", 1e3 * domain.tolerance()),
+        "eps" => format!("{:?}", (1e3 * domain.tolerance()).max(SMALLEST_BOX)),
         "count" => network.fractures.len().to_string(),
         "corners" => text_of(|out| corners(out, network)),
         "segments" => text_of(|out| segments(out, &shared)),

@@ -6,7 +6,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 use kluft_defect::Defect;
 
 use crate::fracture::InputFracture;
-use crate::list_row::{Row, place_of, polygon, suggestion};
+use crate::list_row::{Decimals, Row, place_of, polygon, suggestion};
 use crate::polygon::check_name;
 
 const COLUMNS: [&str; 17] = [
@@ -42,15 +42,22 @@ pub fn read_list(
 ) -> Result<Vec<InputFracture>, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut fractures = Vec::new();
+    let decimals = decimals(text);
+    let separator = match decimals {
+        Decimals::Point => b',',
+        Decimals::PointOrComma => b';',
+    };
     let mut reader = ReaderBuilder::new()
+        .delimiter(separator)
         .comment(Some(b'#'))
         .trim(Trim::All)
         .flexible(true)
         .from_reader(text.as_bytes());
-    let columns = match reader.headers() {
-        Ok(headers) => columns(headers, text, file, &mut defects),
+    let headers = match reader.headers() {
+        Ok(headers) => headers.clone(),
         Err(error) => return Err(vec![broken(file, &error)]),
     };
+    let columns = columns(&headers, text, file, &mut defects);
     for (number, record) in reader.records().enumerate() {
         let record = match record {
             Ok(record) => record,
@@ -59,7 +66,14 @@ pub fn read_list(
                 continue;
             }
         };
-        let mut row = Row::new(&columns, &record, (text, file), &mut defects);
+        let place = place_of(&record, text, file);
+        if let Some(defect) = torn(&headers, &record, text, &place)
+            .or_else(|| surplus(&headers, &record, decimals, &place))
+        {
+            defects.push(defect);
+            continue;
+        }
+        let mut row = Row::new(&columns, (&record, decimals), place, &mut defects);
         if columns.contains_key("shape") {
             fractures.extend(fracture(&mut row, number, set, only));
         }
@@ -70,6 +84,80 @@ pub fn read_list(
     } else {
         Err(defects)
     }
+}
+
+/// How numbers are written: with decimal commas, too, if semicolons separate the column names.
+fn decimals(text: &str) -> Decimals {
+    let mut lines = text.lines().map(str::trim);
+    let head = lines.find(|line| !line.is_empty() && !line.starts_with('#'));
+    match head {
+        Some(head) if head.contains(';') && !head.contains(',') => Decimals::PointOrComma,
+        _ => Decimals::Point,
+    }
+}
+
+/// A line whose quotes are not closed: the values that follow, on other lines too, would belong to
+/// the one that the quote opens.
+fn torn(headers: &StringRecord, record: &StringRecord, text: &str, place: &str) -> Option<Defect> {
+    let start = record.position().map_or(0, |at| at.byte() as usize);
+    let mut behind = text.get(start..).unwrap_or_default().lines();
+    let line = behind.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let mut values = line
+        .unwrap_or_default()
+        .split([',', ';'])
+        .map(str::trim_start);
+    let opens = values.any(|value| value.starts_with('"'));
+    let is_odd = line.unwrap_or_default().matches('"').count() % 2 == 1;
+    let last = record.len().checked_sub(1)?;
+    let swallows = |value: &str| value.contains(['\n', '\r']);
+    let column = match record.iter().position(swallows) {
+        Some(column) => column,
+        // It ends at a quote of a later value, or at the end of the file.
+        None if opens && is_odd => {
+            let mut columns = (0..record.len()).rev();
+            let holds_more = |column: &usize| record[*column].contains([',', ';']);
+            columns.find(holds_more).unwrap_or(last)
+        }
+        None => return None,
+    };
+    let place = match headers.get(column) {
+        Some(name) => format!("{place}, column `{name}`"),
+        None => place.to_owned(),
+    };
+    let remedy = "close it on the same line, or remove it";
+    Some(Defect::new(
+        place,
+        "a quote is opened here and not closed",
+        remedy,
+    ))
+}
+
+/// A line with more values than there are columns: which of them belongs where, nobody knows.
+fn surplus(
+    headers: &StringRecord,
+    record: &StringRecord,
+    decimals: Decimals,
+    place: &str,
+) -> Option<Defect> {
+    let mut behind = record.iter().skip(headers.len());
+    if behind.all(str::is_empty) {
+        return None;
+    }
+    let (found, wanted) = (record.len(), headers.len());
+    let remedy = match decimals {
+        Decimals::PointOrComma => {
+            "write one value for each column, with quotes around values that hold a semicolon"
+        }
+        Decimals::Point => {
+            "write one value for each column: decimal points in the place of decimal commas (or \
+             semicolons between the values), and quotes around values that hold a comma"
+        }
+    };
+    Some(Defect::new(
+        place,
+        format!("the line has {found} values for {wanted} columns"),
+        remedy,
+    ))
 }
 
 fn broken(file: &str, error: &csv::Error) -> Defect {
@@ -240,5 +328,67 @@ d, , polygon,,,,,,,,,,,, 0 0 0; 2 0 0; 0 2 0
             "{}",
             defects[0]
         );
+    }
+
+    #[test]
+    fn values_beyond_the_columns_are_refused_with_the_decimal_comma_as_a_remedy() {
+        let text = "name,set,shape,x,y,z,dip,dip_direction,radius\n\
+            f1,s,disc,5,1,5,2,5,3,70,135,3,0\n\
+            f2,s,disc,5,1,5,70,135,3,,\n\
+            f3,s,disc,\"5,5\",1,5,70,135,3\n";
+        let defects = read_list(text, "list.csv", "rest", false).expect_err("defects");
+        let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
+        assert_eq!(text.len(), 2, "{text:#?}");
+        for part in [
+            "list.csv:2: the line has 13 values for 9 columns",
+            "decimal points",
+        ] {
+            assert!(text[0].contains(part), "{}", text[0]);
+        }
+        for part in [
+            "list.csv:4, column `x`: `5,5` is not",
+            "write 5.5, with a decimal point",
+        ] {
+            assert!(text[1].contains(part), "{}", text[1]);
+        }
+    }
+
+    #[test]
+    fn semicolons_separate_values_with_decimal_commas() {
+        let commas = "# meant in metres\nname;shape;x;y;z;dip;dip_direction;radius;points\n\
+            f1;disc;5,1;5,2;5.3;70;135;3,0;\n\
+            f2;polygon;;;;;;;\"0 0 0; 2,5 0 0; 0 2 0\"\n";
+        let points = "name,shape,x,y,z,dip,dip_direction,radius,points\n\
+            f1,disc,5.1,5.2,5.3,70,135,3.0,\nf2,polygon,,,,,,,0 0 0; 2.5 0 0; 0 2 0\n";
+        let [commas, points] = [commas, points].map(|text| {
+            let list = read_list(text, "list.csv", "rest", false)
+                .expect("a list")
+                .into_iter();
+            list.map(|one| (one.name, one.polygon)).collect::<Vec<_>>()
+        });
+        assert_eq!(commas, points);
+    }
+
+    #[test]
+    fn a_quote_that_is_not_closed_is_told_where_it_opens() {
+        let closed = "name,shape,x,y,z,dip,dip_direction,radius,comment\n\
+            a,disc,1,2,3,30,90,2,\"in, the tunnel\"\nb,disc,1,2,3,30,90,2,\"a 5\"\" pipe\"\n";
+        assert!(read_list(closed, "list.csv", "rest", false).is_ok());
+        for (from, to, place) in [
+            ("a,disc", "a,\"disc", "list.csv:2, column `shape`"),
+            ("tunnel\"", "tunnel", "list.csv:2, column `comment`"),
+            ("b,disc", "b,\"disc", "list.csv:3, column `shape`"),
+            ("pipe\"\n", "pipe\n", "list.csv:3, column `comment`"),
+            ("pipe\"\n", "pipe", "list.csv:3, column `comment`"),
+        ] {
+            let text = closed.replace(from, to);
+            let defects = read_list(&text, "list.csv", "rest", false).expect_err(to);
+            let text = defects[0].to_string();
+            assert!(
+                text.contains(place) && text.contains("not closed"),
+                "{to}: {text}"
+            );
+            assert_eq!(defects.len(), 1, "{defects:#?}");
+        }
     }
 }

@@ -33,10 +33,39 @@ pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// How numbers of a list are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decimals {
+    /// With a point; a comma may be one between thousands.
+    Point,
+    /// With a point or a comma.
+    PointOrComma,
+}
+
+impl Decimals {
+    fn read(self, text: &str) -> Option<f64> {
+        match self {
+            Self::Point => text.parse().ok(),
+            Self::PointOrComma => text.replacen(',', ".", 1).parse().ok(),
+        }
+    }
+
+    /// What to write instead of a text that is not `wanted`.
+    fn remedy(self, text: &str, wanted: &str) -> String {
+        match Self::PointOrComma.read(text) {
+            Some(number) if text.contains(',') && self == Self::Point => {
+                format!("write {number}, with a decimal point, or separate values by semicolons")
+            }
+            _ => format!("write {wanted}"),
+        }
+    }
+}
+
 /// One line of the list.
 pub(crate) struct Row<'a> {
     columns: &'a HashMap<&'static str, usize>,
     record: &'a StringRecord,
+    decimals: Decimals,
     pub(crate) place: String,
     defects: &'a mut Vec<Defect>,
 }
@@ -44,14 +73,15 @@ pub(crate) struct Row<'a> {
 impl<'a> Row<'a> {
     pub(crate) fn new(
         columns: &'a HashMap<&'static str, usize>,
-        record: &'a StringRecord,
-        (text, file): (&str, &str),
+        (record, decimals): (&'a StringRecord, Decimals),
+        place: String,
         defects: &'a mut Vec<Defect>,
     ) -> Self {
         Self {
             columns,
             record,
-            place: place_of(record, text, file),
+            decimals,
+            place,
             defects,
         }
     }
@@ -74,16 +104,11 @@ impl<'a> Row<'a> {
         wanted: &str,
     ) -> Option<f64> {
         let text = self.text(column)?;
-        let number = text
-            .parse::<f64>()
-            .ok()
-            .filter(|number| number.is_finite() && fits(*number));
+        let number = self.decimals.read(text);
+        let number = number.filter(|number| number.is_finite() && fits(*number));
         if number.is_none() {
-            self.refuse(
-                column,
-                &format!("`{text}` is not {wanted}"),
-                &format!("write {wanted}"),
-            );
+            let remedy = self.decimals.remedy(text, wanted);
+            self.refuse(column, &format!("`{text}` is not {wanted}"), &remedy);
         }
         number
     }
@@ -266,10 +291,11 @@ fn through_points(row: &mut Row<'_>) -> Option<Polygon> {
         row.refuse("points", "the value is missing", remedy);
         return None;
     };
+    let decimals = row.decimals;
     let point = |text: &str| -> Option<DVec3> {
         let numbers: Vec<f64> = text
             .split_whitespace()
-            .map_while(|word| word.parse().ok())
+            .map_while(|word| decimals.read(word))
             .collect();
         let is_whole = numbers.len() == text.split_whitespace().count();
         let point = DVec3::from(<[f64; 3]>::try_from(numbers).ok()?);

@@ -87,6 +87,7 @@ fn clip_all(
                 area_given: given.polygon.area(),
                 polygon,
                 changes: Vec::new(),
+                farthest_move: 0.0,
             }),
             Err(reason) => rejected.push(Rejected {
                 name: given.name,

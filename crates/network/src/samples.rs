@@ -60,6 +60,7 @@ pub(crate) fn fracture(name: &str, corners: &[[f64; 3]]) -> NetworkFracture {
         area_given: input.polygon.area(),
         polygon: input.polygon,
         changes: Vec::new(),
+        farthest_move: 0.0,
     }
 }
 

@@ -5,8 +5,6 @@ use kluft_solver::{
     LinearMethod, NewtonSettings, Plan, Prediction, Problem, Schedule, Step, Support,
 };
 
-use crate::summary::FractureSummary;
-
 /// How much model a problem needs.
 pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
     let mut lines = Vec::new();
@@ -132,21 +130,6 @@ fn nothing_acts(problem: &Problem) -> bool {
         .any(|fixed| moves(&fixed.displacement));
     let body = problem.gravity != glam::DVec3::ZERO || problem.initial_stress.is_some();
     !(loaded || pressed || fixed || body)
-}
-
-/// What the user should know of a result.
-pub fn warnings(fractures: &[(String, FractureSummary)]) -> Vec<String> {
-    let overlapping = fractures
-        .iter()
-        .filter(|(_, summary)| summary.overlap_area > 0.0);
-    overlapping
-        .map(|(name, summary)| {
-            format!(
-                "the walls of `{name}` overlap on {:.4} m2 (smallest aperture {:.3e} m): closure = \"logarithmic\" without cutoff_aperture never does",
-                summary.overlap_area, summary.aperture.min
-            )
-        })
-        .collect()
 }
 
 /// A load step in words: its phase, its time and its factors, as far as the user gave them.

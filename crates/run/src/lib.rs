@@ -34,6 +34,7 @@ mod adapt;
 mod checkpoint;
 mod crack_front;
 mod decisions;
+mod doubts;
 mod failures;
 mod grids;
 mod measure;

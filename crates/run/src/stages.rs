@@ -62,6 +62,8 @@ pub struct Run<'a> {
     pub kept: Vec<StepResult>,
     /// Name of the linear solver, and why it was chosen.
     pub choice: (String, String),
+    /// What is hardly meant of scene and mesh.
+    pub doubts: Vec<String>,
     /// Closed form of each fracture that has one.
     pub oracles: Vec<Option<Oracle>>,
     /// Whether its mesh came from memory; no checkpoint could tell it from another.
@@ -117,6 +119,7 @@ impl<'a> Run<'a> {
             finished: Vec::new(),
             kept: Vec::new(),
             choice: Default::default(),
+            doubts: Vec::new(),
             oracles: Vec::new(),
             start,
             took: Duration::ZERO,
@@ -191,7 +194,8 @@ impl<'a> Run<'a> {
     fn bind(&mut self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let mut binding = self.request.scene.problem(draft)?;
         self.summary.decisions.append(&mut binding.decisions);
-        self.summary.warnings.clone_from(&binding.warnings);
+        self.doubts = std::mem::take(&mut binding.warnings);
+        self.summary.warnings.clone_from(&self.doubts);
         let mesh = &binding.problem.mesh;
         let counts = mesh.sectors.count.iter();
         self.summary.mesh = MeshSummary {

@@ -10,6 +10,7 @@ use kluft_solver::{
 use crate::accuracy::{self, Accuracy};
 use crate::checkpoint::{self, Progress};
 use crate::decisions;
+use crate::doubts;
 use crate::failures;
 use crate::grids::{fracture_grid, rock_grid};
 use crate::measures::{energy, measures};
@@ -68,6 +69,9 @@ impl Run<'_> {
         let system = self.assemble(problem)?;
         let plan = self.plan(&system, former.as_ref())?;
         self.decide(problem);
+        let unbalanced = doubts::of_initial_stress(self.request.scene, &system);
+        self.doubts.extend(unbalanced);
+        self.summary.warnings.clone_from(&self.doubts);
         let mut prepared = match former {
             None => self.begin(&system, plan)?,
             Some(former) => self.go_on(&system, plan, former.progress)?,
@@ -205,12 +209,11 @@ impl Run<'_> {
         let oracles = if is_last { &self.oracles[..] } else { &[] };
         self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
         self.summary.measures.push(energy(accuracy.energy));
-        self.summary.warnings = [
-            kluft_scene::warnings(self.request.scene, system.problem()),
-            decisions::warnings(&self.summary.fractures),
-            undetermined::warnings(&self.summary.fractures),
-        ]
-        .concat();
+        let scene = self.request.scene;
+        let (problem, fractures) = (system.problem(), &self.summary.fractures);
+        let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
+        let unclear = undetermined::warnings(fractures);
+        self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(system, &solution, &accuracy);

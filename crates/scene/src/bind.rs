@@ -41,13 +41,16 @@ impl Scene {
         let Roles {
             of_group,
             decisions: unused,
+            mut warnings,
         } = roles(self, &draft, &faces.inner_surfaces(&draft))?;
         decisions.extend(unused);
         let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
         let mut binding = bind(self, mesh)?;
         decisions.append(&mut binding.decisions);
+        warnings.append(&mut binding.warnings);
         Ok(Binding {
             decisions,
+            warnings,
             ..binding
         })
     }
@@ -90,11 +93,12 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         fixed_points: fixed_entries,
         fractures,
     };
+    let mut idle = Vec::new();
     let problem = Problem {
         conditions,
         rocks: scene.rocks.iter().map(|entry| entry.value).collect(),
         rock_of_cell,
-        schedule: schedule(scene, &bound, &mut decisions),
+        schedule: schedule(scene, &bound, &mut decisions, &mut idle),
         fractures: bound
             .fractures
             .iter()
@@ -107,7 +111,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         mesh,
     };
     Ok(Binding {
-        warnings: warnings(scene, &problem),
+        warnings: [warnings(scene, &problem), idle].concat(),
         problem,
         decisions,
         oracles,

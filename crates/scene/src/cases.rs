@@ -1,10 +1,12 @@
 //! Conditions with the same history are one load case.
 
+use kluft_keys::section_head;
 use kluft_solver::{Cases, Load, Schedule, Step, Support};
 
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, is_moved};
 use crate::history::{LoadHistory, StepEnd, Timetable};
 use crate::scene::{Named, Scene};
+use crate::warning::Doubt;
 
 /// Times that differ by less than this share of the last one are the same.
 const SAME_TIME: f64 = 1e-9;
@@ -16,8 +18,14 @@ pub(crate) struct Bound<'a> {
     pub(crate) fixed_points: Vec<&'a Named<FixedPointEntry>>,
 }
 
-/// The schedule of a scene; what the user should know of it goes to `decisions`.
-pub(crate) fn schedule(scene: &Scene, bound: &Bound<'_>, decisions: &mut Vec<String>) -> Schedule {
+/// The schedule of a scene; what the user should know of it goes to `decisions`, histories that
+/// never act to `warnings`.
+pub(crate) fn schedule(
+    scene: &Scene,
+    bound: &Bound<'_>,
+    decisions: &mut Vec<String>,
+    warnings: &mut Vec<String>,
+) -> Schedule {
     let (ends, grown) = match &scene.timetable {
         Timetable::Factors(factors) => return Schedule::proportional(factors.clone()),
         Timetable::Times { ends, grown } => (ends, *grown),
@@ -28,6 +36,8 @@ pub(crate) fn schedule(scene: &Scene, bound: &Bound<'_>, decisions: &mut Vec<Str
     };
     let cases = found.collect(scene, bound);
     found.tell(ends, decisions);
+    let idle = found.idle(ends);
+    warnings.extend(idle.filter_map(|text| scene.warning(Doubt::IdleHistories, &text)));
     let step = |end: &StepEnd| Step {
         load: Load {
             time: end.time,
@@ -55,13 +65,13 @@ impl Found {
         let conditions = bound.boundaries.iter().map(|entry| {
             let value = &entry.value;
             let moves = matches!(value.support, Some(Support::Displacement(d)) if is_moved(&d));
-            let name = format!("[boundary.{}]", entry.name);
+            let name = section_head("boundary", &entry.name);
             self.case(value.load.is_some() || moves, &value.history, name)
         });
         let conditions = conditions.collect();
         let fractures = bound.fractures.iter().map(|entry| {
             let acts = entry.value.fracture.fluid_pressure != 0.0;
-            let name = format!("[fracture.{}]", entry.name);
+            let name = section_head("fracture", &entry.name);
             self.case(acts, &entry.value.history, name)
         });
         let fractures = fractures.collect();
@@ -110,6 +120,18 @@ impl Found {
                 .map(|(history, _)| history.at(time))
                 .collect(),
         }
+    }
+
+    /// Histories whose factor is 0 wherever a load step ends.
+    fn idle(&self, ends: &[StepEnd]) -> impl Iterator<Item = String> {
+        let never = |history: &LoadHistory| ends.iter().all(|end| history.at(end.time) == 0.0);
+        let idle = self.cases.iter().filter(move |(history, _)| never(history));
+        idle.map(|(_, names)| {
+            format!(
+                "the history of {} has the factor 0 at the end of every load step: what it scales never acts",
+                names.join(", ")
+            )
+        })
     }
 
     fn tell(&self, ends: &[StepEnd], decisions: &mut Vec<String>) {

@@ -4,9 +4,61 @@ use kluft_mesh::Mesh;
 use kluft_solver::Problem;
 
 use crate::scene::Scene;
+use crate::warning::Doubt;
 
-/// What the user should look at twice: values of the scene, and apertures beside their cells.
-pub fn warnings(scene: &Scene, problem: &Problem) -> Vec<String> {
+/// Bodies of so many apertures and fewer, and of so many and more, are hardly meant.
+const PROPORTIONS: (f64, f64) = (10.0, 1e9);
+/// Bodies beyond this are hardly meant (m).
+const LARGEST_BODY: f64 = 1e6;
+
+/// What the user should look at twice: values of the scene, the size of the body, and apertures
+/// beside their facets.
+pub(crate) fn warnings(scene: &Scene, problem: &Problem) -> Vec<String> {
+    let values = scene.warnings.iter();
+    let values = values.filter_map(|text| scene.warning(Doubt::Values, text));
+    let size = body_size(problem);
+    let size = size.and_then(|text| scene.warning(Doubt::BodySize, &text));
+    let wide = wide_apertures(problem).into_iter();
+    let wide = wide.filter_map(|text| scene.warning(Doubt::WideApertures, &text));
+    values.chain(size).chain(wide).collect()
+}
+
+/// A body whose size is out of proportion to the widest aperture.
+fn body_size(problem: &Problem) -> Option<String> {
+    let (low, high) = problem.mesh.bounds();
+    let longest = (high - low).max_element();
+    let apertures = problem.fractures.iter();
+    let apertures = apertures.map(|fracture| fracture.law.closure.aperture);
+    let widest = apertures.fold(0.0, f64::max);
+    let (least, most) = (PROPORTIONS.0 * widest, PROPORTIONS.1 * widest);
+    let is_small = longest < least;
+    let is_large = longest > LARGEST_BODY || widest > 0.0 && longest > most;
+    if !is_small && !is_large {
+        return None;
+    }
+    let (unit, metres) = match is_small {
+        true => ("km", 1e3 * longest),
+        false => ("mm", 1e-3 * longest),
+    };
+    let is_usual = metres >= least && metres < LARGEST_BODY && (widest == 0.0 || metres < most);
+    let meant = match is_usual {
+        true => format!(
+            "; the mesh looks like {unit}: {longest:.4e} {unit} = {metres:.4e} m; coordinates are in metres \
+             (Mesh.ScalingFactor of gmsh changes them)"
+        ),
+        false => String::new(),
+    };
+    let aperture = match widest > 0.0 {
+        true => format!(" where the widest aperture is {widest:.4e} m"),
+        false => String::new(),
+    };
+    Some(format!(
+        "the body is {longest:.4e} m long{aperture}, which is out of proportion{meant}"
+    ))
+}
+
+/// Fractures that are wider than their facets are long.
+fn wide_apertures(problem: &Problem) -> Vec<String> {
     let sizes = facet_sizes(&problem.mesh);
     let fractures = problem.mesh.fractures.iter().zip(&problem.fractures);
     let wide = fractures.zip(sizes).filter_map(|((name, fracture), size)| {
@@ -17,7 +69,7 @@ pub fn warnings(scene: &Scene, problem: &Problem) -> Vec<String> {
             )
         })
     });
-    scene.warnings.iter().cloned().chain(wide).collect()
+    wide.collect()
 }
 
 /// Mean length of the edges of the facets of each fracture (m).

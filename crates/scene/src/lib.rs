@@ -18,10 +18,10 @@ pub mod reader;
 mod remedies;
 mod roles;
 mod scene;
+mod warning;
 
 pub use bind::{Binding, bind};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-pub use doubts::warnings;
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
 pub use join::{JoinedDraft, join};
@@ -31,3 +31,4 @@ pub use read::check_conditions;
 pub use remedies::in_terms_of_scene;
 pub use roles::{Roles, roles};
 pub use scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
+pub use warning::Doubt;

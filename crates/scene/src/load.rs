@@ -83,9 +83,23 @@ pub(crate) fn read_timetable(root: &Section<'_, '_>) -> (Timetable, Clock) {
     (timetable.unwrap_or_default(), clock)
 }
 
+/// Most load steps of a scene, as of one phase.
+const MOST_STEPS: usize = 100_000;
+
+/// Reports a list of more load steps than that.
+fn refuse_too_many(section: &Section<'_, '_>, key: &'static str, count: usize) -> Option<()> {
+    if count <= MOST_STEPS {
+        return Some(());
+    }
+    let remedy = format!("write at most {MOST_STEPS}; a step divides itself where it has to");
+    section.refuse(key, format!("{count} load steps are too many"), remedy);
+    None
+}
+
 fn read_steps(section: &Section<'_, '_>) -> Option<Timetable> {
     section.require("steps");
     let steps = section.numbers("steps")?;
+    refuse_too_many(section, "steps", steps.len())?;
     if steps.is_empty() {
         let remedy = "write steps = [1.0]";
         section.refuse("steps", "there are no load steps".into(), remedy);
@@ -96,6 +110,7 @@ fn read_steps(section: &Section<'_, '_>) -> Option<Timetable> {
 
 fn read_times(section: &Section<'_, '_>) -> Option<Timetable> {
     let times = section.numbers("times")?;
+    refuse_too_many(section, "times", times.len())?;
     if let Some(pair) = times.windows(2).find(|pair| pair[1] <= pair[0]) {
         let problem = format!("the times go from {} to {}", pair[0], pair[1]);
         section.refuse(
@@ -134,6 +149,8 @@ fn read_phases(section: &Section<'_, '_>) -> Option<Timetable> {
         phases.extend(read_phase(&section, &phases));
         section.finish();
     }
+    let count = phases.iter().map(|phase| phase.steps).sum();
+    refuse_too_many(section, "phase", count)?;
     let grown = phases.first()?.until;
     let starts = [0.0]
         .into_iter()

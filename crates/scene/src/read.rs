@@ -136,6 +136,9 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         timetable,
         solver: read_solver(root),
+        silenced: root
+            .section("warnings")
+            .map_or_else(Vec::new, read_silenced),
         title,
         rocks,
         fractures,
@@ -289,6 +292,12 @@ fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
     };
     section.finish();
     entry
+}
+
+fn read_silenced(section: Section<'_, '_>) -> Vec<&'static str> {
+    let silenced = section.choices("silence");
+    section.finish();
+    silenced.unwrap_or_default()
 }
 
 fn read_facets(section: &Section<'_, '_>) -> FacetQuadrature {

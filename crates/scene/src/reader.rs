@@ -1,6 +1,7 @@
 //! Walks a TOML file by the table of keys, and collects every defect with its line.
 
 mod lists;
+mod repeated;
 mod section;
 mod values;
 
@@ -12,6 +13,8 @@ use kluft_keys::Document;
 use kluft_mesh::Defect;
 use toml::Spanned;
 use toml::de::DeTable;
+
+use repeated::{Repeated, follows, repeated};
 
 pub use lists::Entry;
 pub use section::Section;
@@ -101,15 +104,52 @@ impl<'a> Source<'a> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         let is_sound = errors.is_empty();
         let mut lines = BTreeSet::new();
+        let mut section = None;
         for error in errors {
             let at = error.span().unwrap_or(0..0);
+            if section.is_some_and(|section| follows(self.text, &error, section)) {
+                continue;
+            }
             // What follows the first error of a line is mostly its consequence.
-            if lines.insert(self.line(at.start)) {
+            if !lines.insert(self.line(at.start)) {
+                continue;
+            }
+            let Some(found) = repeated(self.text, &error) else {
                 let remedy = "correct the TOML syntax of this line (key = value, [section], \"text\"), or close the bracket that is open above it";
                 self.report(&at, error.message().to_owned(), remedy.into());
+                continue;
+            };
+            if found.what.starts_with('[') {
+                section = Some(at.start);
             }
+            self.report_repeated(&at, &found);
         }
         is_sound.then_some(table)
+    }
+
+    /// Keeps a key or a section that stands twice.
+    fn report_repeated(&self, at: &Range<usize>, found: &Repeated<'_>) {
+        let first = found.first.map_or_else(
+            || "above".to_owned(),
+            |first| format!("in line {}", self.line(first)),
+        );
+        let (problem, remedy) = match found.what.starts_with('[') {
+            true => (
+                format!(
+                    "the section {} stands twice: it is {first} already",
+                    found.what
+                ),
+                "put the keys of both under one head, or give one another name",
+            ),
+            false => (
+                format!(
+                    "the key `{}` stands twice: it is {first} already",
+                    found.what
+                ),
+                "keep one of them",
+            ),
+        };
+        self.report(at, problem, remedy.into());
     }
 }
 

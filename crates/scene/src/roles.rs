@@ -1,8 +1,12 @@
 //! What a scene makes of the physical groups of a mesh.
 
+use std::collections::BTreeSet;
+
+use kluft_keys::section_head;
 use kluft_mesh::{Defect, Draft, Group, SurfaceRole, nearest};
 
 use crate::scene::Scene;
+use crate::warning::Doubt;
 
 /// Name under which a section serves all groups without one of their own.
 pub(crate) const DEFAULT: &str = "default";
@@ -13,6 +17,8 @@ pub struct Roles {
     pub of_group: Vec<SurfaceRole>,
     /// What becomes of surfaces that the scene does not name.
     pub decisions: Vec<String>,
+    /// What of it is hardly meant.
+    pub warnings: Vec<String>,
 }
 
 /// Gives roles to the groups of a mesh; `inner` tells which of them are surfaces inside the rock.
@@ -20,23 +26,68 @@ pub struct Roles {
 /// # Errors
 /// Names of the scene that are no group of the mesh, or one of the wrong dimension.
 pub fn roles(scene: &Scene, draft: &Draft, inner: &[bool]) -> Result<Roles, Vec<Defect>> {
-    let of_group = surface_roles(scene, draft, |group| inner[group])?;
-    let unused = |inside: bool| -> Vec<&str> {
-        let groups = draft.groups.iter().zip(&of_group).zip(inner);
-        let chosen = groups.filter(|((group, role), inner)| {
-            group.dimension == 2 && **role == SurfaceRole::Unused && **inner == inside
+    let (without_name, shared) = (unnamed_by_mistake(draft), sharing(draft));
+    let is_taken = |group: usize| inner[group] && !without_name[group];
+    let of_group = surface_roles(scene, draft, is_taken)?;
+    let unused = |holds: &dyn Fn(usize) -> bool| -> Vec<&str> {
+        let groups = draft.groups.iter().enumerate();
+        let chosen = groups.filter(|(index, group)| {
+            group.dimension == 2 && of_group[*index] == SurfaceRole::Unused && holds(*index)
         });
-        chosen.map(|((group, _), _)| group.name.as_str()).collect()
+        chosen.map(|(_, group)| group.name.as_str()).collect()
     };
-    let decisions = unused_surfaces(&unused(true), &unused(false));
+    let moves = |group: usize| {
+        let mut others = shared.iter().filter(|(own, _)| *own == group);
+        others.any(|(_, other)| of_group[*other] == SurfaceRole::Fracture)
+    };
+    let has_default = scene.fractures.iter().any(|entry| entry.name == DEFAULT);
+    let skipped = |group: usize| has_default && inner[group] && without_name[group];
+    let decisions = unused_surfaces([
+        &unused(&|group| inner[group] && !moves(group)),
+        &unused(&|group| inner[group] && moves(group)),
+        &unused(&|group| !inner[group]),
+    ]);
+    let warnings = skipped_surfaces(&unused(&|group| skipped(group) && !moves(group)));
+    let warnings = warnings.and_then(|text| scene.warning(Doubt::UnnamedSurfaces, &text));
     Ok(Roles {
         of_group,
         decisions,
+        warnings: warnings.into_iter().collect(),
     })
 }
 
-/// Surfaces that the scene does not name, inside the rock and outside.
-fn unused_surfaces(inside: &[&str], outside: &[&str]) -> Vec<String> {
+/// Surfaces that have no name in a file that names others: interfaces of a partition, or what lost
+/// its name to another group.
+fn unnamed_by_mistake(draft: &Draft) -> Vec<bool> {
+    let is_surface = |group: &Group| group.dimension == 2;
+    let has_name = |group: &Group| group.name != group.tag.to_string();
+    let names = draft.groups.iter().any(|g| is_surface(g) && has_name(g));
+    let groups = draft.groups.iter();
+    groups
+        .map(|group| names && is_surface(group) && !has_name(group))
+        .collect()
+}
+
+/// Pairs of groups of which all that the first holds belongs to the second too.
+fn sharing(draft: &Draft) -> Vec<(usize, usize)> {
+    let used: BTreeSet<u32> = draft.facets.group_set.iter().copied().collect();
+    let sets: Vec<&Vec<usize>> = used
+        .iter()
+        .map(|&s| &draft.group_sets[s as usize])
+        .collect();
+    let of = |group: usize| sets.iter().filter(move |set| set.contains(&group));
+    let pairs = (0..draft.groups.len()).flat_map(|own| {
+        let first = of(own).next().into_iter().flat_map(|set| set.iter());
+        let others = first.filter(move |other| **other != own);
+        others
+            .filter(move |other| of(own).all(|set| set.contains(other)))
+            .map(move |other| (own, *other))
+    });
+    pairs.collect()
+}
+
+/// Surfaces that the scene does not name: inside the rock, inside on a fracture, and outside.
+fn unused_surfaces([inside, on_fractures, outside]: [&[&str]; 3]) -> Vec<String> {
     let line = |names: &[&str], what: &str| {
         (!names.is_empty()).then(|| format!("{}: not named in the scene, {what}", names.join(", ")))
     };
@@ -45,20 +96,36 @@ fn unused_surfaces(inside: &[&str], outside: &[&str]) -> Vec<String> {
             inside,
             "so welded (name it under [fracture] to let it move)",
         ),
+        line(
+            on_fractures,
+            "but part of a fracture that is, and moves with it",
+        ),
         line(outside, "so free"),
     ];
     lines.into_iter().flatten().collect()
 }
 
+/// Surfaces that `[fracture.default]` does not serve.
+fn skipped_surfaces(names: &[&str]) -> Option<String> {
+    let first = names.first()?;
+    let head = section_head("fracture", first);
+    Some(format!(
+        "surfaces inside the rock without a name, {}, stay welded: where other surfaces have names, \
+         [fracture.default] serves those only (interfaces of a partition are no joints); a section \
+         {head} makes one a fracture",
+        names.join(", ")
+    ))
+}
+
 /// What each group of the draft is, going by the scene. Surfaces that the scene does not name are
-/// fractures if there is a `[fracture.default]` and they lie inside the rock, and unused otherwise.
+/// fractures if there is a `[fracture.default]` that serves them, and unused otherwise.
 ///
 /// # Errors
 /// Names of the scene that are no group of the mesh, or one of the wrong dimension.
 fn surface_roles(
     scene: &Scene,
     draft: &Draft,
-    is_inside: impl Fn(usize) -> bool,
+    is_served: impl Fn(usize) -> bool,
 ) -> Result<Vec<SurfaceRole>, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut roles = vec![SurfaceRole::Unused; draft.groups.len()];
@@ -83,7 +150,7 @@ fn surface_roles(
     if scene.fractures.iter().any(|entry| entry.name == DEFAULT) {
         for (group, role) in roles.iter_mut().enumerate() {
             let unnamed = *role == SurfaceRole::Unused && draft.groups[group].dimension == 2;
-            if unnamed && is_inside(group) {
+            if unnamed && is_served(group) {
                 *role = SurfaceRole::Fracture;
             }
         }

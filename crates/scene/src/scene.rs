@@ -94,4 +94,6 @@ pub struct Scene {
     pub oracles: Vec<Named<Oracle>>,
     /// Values that are possible but hardly meant, each with its place.
     pub warnings: Vec<String>,
+    /// Names of the warnings that are not told.
+    pub silenced: Vec<&'static str>,
 }

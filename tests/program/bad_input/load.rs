@@ -157,7 +157,7 @@ pub(super) const CASES: &[Case] = &[
         )],
         says: &[
             "scene.toml:7: `steps` = 0 in [[load.phase]]",
-            "must lie between 1",
+            "must be from 1 to 100000",
         ],
         ..SOUND
     },

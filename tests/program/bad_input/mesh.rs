@@ -222,6 +222,39 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "condition on outer and inner faces",
+        scene: &[
+            (
+                "[fracture.joint]\naperture = 1e-4\nnormal_stiffness = 1e10\nshear_stiffness = 1e10\n",
+                "",
+            ),
+            ("[boundary.top]", "[boundary.joint]"),
+        ],
+        mesh: &[("2 0 0 0 1 1 1 1 2 0", "2 0 0 0 1 1 1 2 1 2 0")],
+        says: &[
+            "boundary `joint`, facet 201: the group mixes 3 facets of the outer surface with 1 inside",
+            "a physical group of their own",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "two fractures on one surface",
+        scene: &[(
+            "[boundary.top]",
+            "[fracture.twin]\naperture = 1e-4\nnormal_stiffness = 1e10\nshear_stiffness = 1e10\n[boundary.top]",
+        )],
+        mesh: &[
+            ("5\n1 5", "6\n2 6 \"twin\"\n1 5"),
+            ("1 0 0 0 1 1 0 1 1 0", "1 0 0 0 1 1 0 2 1 6 0"),
+        ],
+        says: &[
+            "all its facets belong to fracture `",
+            "several physical groups hold one surface",
+            "let one group hold the surface",
+        ],
+        ..SOUND
+    },
+    Case {
         name: "condition that no cell touches",
         mesh: &[("211 11 12 14", "211 11 14 15")],
         says: &[

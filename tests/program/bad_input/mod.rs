@@ -7,6 +7,7 @@ mod load;
 mod mesh;
 mod problem;
 mod scene;
+mod values;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -170,6 +171,7 @@ fn judge_all(cases: &[Case]) {
 fn there_are_many_cases() {
     let groups = [
         scene::CASES,
+        values::CASES,
         load::CASES,
         mesh::CASES,
         geometry::CASES,

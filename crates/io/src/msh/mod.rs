@@ -18,7 +18,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use kluft_mesh::{Defect, Draft};
+use kluft_mesh::{Defect, Draft, Group};
+use memchr::memmem;
 use rayon::prelude::*;
 
 use header::Format;
@@ -57,6 +58,18 @@ pub(crate) fn older_version(bytes: &[u8], name: &str) -> Result<Option<f64>, Def
         Format::Current(_) => None,
         Format::Older(version) => Some(version),
     })
+}
+
+/// The groups that an older file names; none if it names none, or nothing that can be read.
+pub(crate) fn older_names(bytes: &[u8], name: &str) -> Vec<Group> {
+    const HEAD: &[u8] = b"$PhysicalNames";
+    let source = MshSource { name, bytes };
+    let found = memmem::find(bytes, HEAD).map(|head| head + HEAD.len());
+    let named = found.and_then(|start| {
+        let length = memmem::find(&bytes[start..], b"\n$EndPhysicalNames")?;
+        names::read(source, &bytes[start..start + length], start).ok()
+    });
+    named.unwrap_or_default()
 }
 
 /// Whether an MSH 4.1 file holds elements of dimension 3.

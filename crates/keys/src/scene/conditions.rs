@@ -12,6 +12,10 @@ static GRAVITY: Plausible = Plausible {
     units: &["cm/s2", "mm/s2"],
 };
 
+/// Beyond this no rock is, and closure laws answer with numbers that overflow.
+const INITIAL: Range = Range::Within(-1e12, 1e12);
+const INITIAL_GRADIENT: Range = Range::Within(-1e9, 1e9);
+
 const GROWS_ONCE: Need = Need::Without("grows once");
 
 /// A part of the outer surface.
@@ -154,7 +158,7 @@ pub static INITIAL_STRESS: KeySection = KeySection {
 const fn stress(name: &'static str) -> Key {
     Key {
         name,
-        kind: Kind::NumberOr(quantity(Dimension::Stress, Range::Finite), &PROFILE),
+        kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &PROFILE),
         need: Need::Default("0"),
         example: "-10e6",
         says: "Component of the stress, tension positive: constant, or linear in the elevation",
@@ -168,14 +172,14 @@ pub static PROFILE: KeySection = KeySection {
     keys: &[
         Key {
             name: "value",
-            kind: number(Dimension::Stress, Range::Finite),
+            kind: number(Dimension::Stress, INITIAL),
             need: Need::Required,
             example: "-10e6",
             says: "Stress at the elevation `at`",
         },
         Key {
             name: "per_metre",
-            kind: number(Dimension::StressPerLength, Range::Finite),
+            kind: number(Dimension::StressPerLength, INITIAL_GRADIENT),
             need: Need::Default("0"),
             example: "27e3",
             says: "Increase with the elevation",

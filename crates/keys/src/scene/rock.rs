@@ -33,7 +33,7 @@ pub static ROCK: KeySection = KeySection {
     keys: &[
         Key {
             name: "young_modulus",
-            kind: watched(Dimension::Stress, Range::Positive, &YOUNG),
+            kind: watched(Dimension::Stress, Range::Within(1.0, 1e15), &YOUNG),
             need: Need::Required,
             example: "50e9",
             says: "Young's modulus E",

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use kluft_keys::{Key, Need, nearest};
+use kluft_keys::{Key, Need, nearest, section_head};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -197,7 +197,7 @@ impl<'a, 'i> Section<'a, 'i> {
         for (name, value) in parent.table.iter() {
             match value.get_ref().as_table() {
                 Some(table) => {
-                    let title = format!("[{key}.{}]", name.get_ref());
+                    let title = section_head(key, name.get_ref());
                     let child = self.child(key, title, (table, name.span()));
                     children.push((name.get_ref().to_string(), child));
                 }

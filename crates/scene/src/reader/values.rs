@@ -79,7 +79,7 @@ impl<'a, 'i> Section<'a, 'i> {
             other => {
                 let number = plain_number(other);
                 if number.is_none() {
-                    self.wrong_type(key, value, &wanted(quantity));
+                    self.no_number(key, value, quantity);
                 }
                 number?
             }
@@ -87,12 +87,22 @@ impl<'a, 'i> Section<'a, 'i> {
         if let Some(refusal) = quantity.range.refusal(number) {
             self.report(
                 &value.span(),
-                format!("`{key}` = {number} in {}", self.name()),
+                format!("`{key}` = {} in {}", readable(number), self.name()),
                 format!("{key} {refusal}"),
             );
             return None;
         }
         Some(number)
+    }
+
+    /// Reports a value that is no number, or a whole one of too many digits.
+    fn no_number(&self, key: &str, value: &Spanned<DeValue<'i>>, quantity: Quantity) {
+        if value.get_ref().as_integer().is_none() {
+            return self.wrong_type(key, value, &wanted(quantity));
+        }
+        let problem = format!("`{key}` in {} is too large a number", self.name());
+        let remedy = "write it with a decimal point or an exponent, e.g. 1e20";
+        self.report(&value.span(), problem, remedy.into());
     }
 
     /// Reads a number that is written with its unit.
@@ -202,6 +212,14 @@ fn wanted(quantity: Quantity) -> String {
         (unit, [.., last]) => {
             format!("a number (in {unit}), or with its unit as text, e.g. \"1.5 {last}\"")
         }
+    }
+}
+
+/// A number, with a power of ten where it would have many digits.
+fn readable(number: f64) -> String {
+    match number.abs() {
+        0.0 | 1e-6..1e17 => number.to_string(),
+        _ => format!("{number:e}"),
     }
 }
 
