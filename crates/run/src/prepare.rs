@@ -10,6 +10,9 @@ use kluft_scene::{MeshSource, Scene};
 use crate::observer::{Observer, Stage};
 use crate::output::Output;
 
+/// The mesh that gmsh makes.
+pub const MESH: &str = "mesh.msh";
+
 /// A mesh file, and how long gmsh took to make it, if it did.
 pub struct MeshFile {
     /// The file.
@@ -22,6 +25,16 @@ pub struct MeshFile {
 pub fn folder_for(file: &Path, asked: Option<&Path>) -> PathBuf {
     let beside = || file.parent().unwrap_or(Path::new(".")).join("out");
     asked.map_or_else(beside, Path::to_owned)
+}
+
+/// The files that the results of a scene are made from, as far as they are known: what a geometry
+/// includes is known to gmsh alone.
+pub fn inputs<'a>(file: &'a Path, scene: Option<&'a Scene>) -> Vec<&'a Path> {
+    let mesh = scene.map(|scene| match &scene.mesh {
+        MeshSource::Geometry { geometry, .. } => geometry.as_path(),
+        MeshSource::File(mesh) => mesh.as_path(),
+    });
+    [file].into_iter().chain(mesh).collect()
 }
 
 /// The mesh file of a scene; gmsh makes it if the scene names a geometry.
@@ -45,13 +58,13 @@ pub fn mesh_file(
             order,
             ..
         } => {
-            let path = output.path("mesh.msh");
+            let unfinished = output.unfinished(MESH);
             let meshing = Meshing {
                 geometry,
                 parameters,
                 order: *order,
                 sizes,
-                output: &path,
+                output: &unfinished,
             };
             observer.stage_begins(Stage::Mesh);
             let start = Instant::now();
@@ -61,8 +74,9 @@ pub fn mesh_file(
             for warning in warnings? {
                 observer.detail("gmsh", &warning);
             }
+            output.publish(MESH).map_err(|defect| vec![defect])?;
             Ok(MeshFile {
-                path,
+                path: output.path(MESH),
                 meshing: Some(took),
             })
         }

@@ -178,7 +178,7 @@ impl<'a> Run<'a> {
                 MeshInput::OfScene => Err(Vec::new()),
             };
         };
-        let draft = load_msh(&file.path, &self.output.path(""))?;
+        let draft = load_msh(&file.path, &self.output.unfinished(""))?;
         let fingerprint = checkpoint::fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {
@@ -208,7 +208,7 @@ impl<'a> Run<'a> {
         let is_kept = matches!(self.meshing, Remeshing::Kept);
         if is_kept || former.is_some_and(|former| former.mesh_is_kept) {
             return Ok(MeshFile {
-                path: self.output.path("mesh.msh"),
+                path: self.output.path(prepare::MESH),
                 meshing: None,
             });
         }
@@ -314,16 +314,22 @@ impl<'a> Run<'a> {
         if !self.output.is_kept() {
             return Ok(());
         }
-        self.summary.write(&self.output.path("summary.json"))
+        self.output.write("summary.json", |path| self.summary.write(path))
     }
 
     /// Ends the run.
     ///
     /// # Errors
-    /// If the summary cannot be written.
+    /// If the summary or the list of files cannot be written.
     pub fn finish(mut self, ending: Ending) -> Result<Outcome, Vec<Defect>> {
-        self.write_summary().map_err(|defect| vec![defect])?;
+        self.close().map_err(|defect| vec![defect])?;
         Ok(self.into_outcome(ending))
+    }
+
+    fn close(&mut self) -> Result<(), Defect> {
+        self.write_summary()?;
+        self.output.sync()?;
+        self.output.close()
     }
 
     /// What came out of it.
