@@ -182,7 +182,10 @@ mod tests {
         }
         write_atomically(&path, |out| out.write_all(b"new")).expect("written");
         let read = |path: &Path| fs::read_to_string(path).expect("a text");
-        assert_eq!((read(&path), read(&precious)), ("new".into(), "precious".into()));
+        assert_eq!(
+            (read(&path), read(&precious)),
+            ("new".into(), "precious".into())
+        );
         assert!(fs::symlink_metadata(&path).expect("a file").is_file());
     }
 

@@ -74,7 +74,10 @@ impl ClaimedFolder {
         let mut lines = list.lines();
         self.has_list = lines.next() == Some(HEAD);
         if self.has_list {
-            self.own = lines.filter(|name| is_plain(name)).map(str::to_owned).collect();
+            self.own = lines
+                .filter(|name| is_plain(name))
+                .map(str::to_owned)
+                .collect();
         }
         Ok(())
     }
@@ -130,7 +133,11 @@ impl ClaimedFolder {
                 return None;
             };
             let remedy = "name another folder with --out DIR, or move the file elsewhere";
-            Some(Defect::new(self.path.join(name).display().to_string(), problem, remedy))
+            Some(Defect::new(
+                self.path.join(name).display().to_string(),
+                problem,
+                remedy,
+            ))
         });
         let refused: Vec<Defect> = refused.collect();
         if refused.is_empty() {
@@ -149,7 +156,8 @@ impl ClaimedFolder {
     /// If the list cannot be written.
     pub fn list<'a>(&mut self, names: impl Iterator<Item = &'a str>) -> Result<(), Defect> {
         let before = self.own.len();
-        self.own.extend(names.filter(|name| is_plain(name)).map(str::to_owned));
+        self.own
+            .extend(names.filter(|name| is_plain(name)).map(str::to_owned));
         if self.has_list && self.own.len() == before {
             return Ok(());
         }

@@ -39,7 +39,10 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
 
 /// Says of files that could not be written what is kept nevertheless.
 pub fn with_what_is_kept(mut defects: Vec<Defect>, steps: usize) -> Vec<Defect> {
-    for defect in defects.iter_mut().filter(|defect| defect.code == Some(NOT_WRITTEN)) {
+    for defect in defects
+        .iter_mut()
+        .filter(|defect| defect.code == Some(NOT_WRITTEN))
+    {
         let kept = match steps {
             0 => "; no load step was finished",
             1 => "; the first load step is finished, and its results are kept",

@@ -25,10 +25,16 @@ pub fn named_files(folder: &Path) -> Vec<String> {
     };
     if let Some(summary) = json("summary.json", "steps") {
         names.push("summary.json".into());
-        if summary["seconds"]["mesh"].as_f64().is_some_and(|seconds| seconds > 0.0) {
+        if summary["seconds"]["mesh"]
+            .as_f64()
+            .is_some_and(|seconds| seconds > 0.0)
+        {
             names.push("mesh.msh".into());
         }
-        if summary["meshes"].as_array().is_some_and(|meshes| !meshes.is_empty()) {
+        if summary["meshes"]
+            .as_array()
+            .is_some_and(|meshes| !meshes.is_empty())
+        {
             names.push("sizes.pos".into());
         }
     }

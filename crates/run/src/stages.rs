@@ -314,7 +314,8 @@ impl<'a> Run<'a> {
         if !self.output.is_kept() {
             return Ok(());
         }
-        self.output.write("summary.json", |path| self.summary.write(path))
+        self.output
+            .write("summary.json", |path| self.summary.write(path))
     }
 
     /// Ends the run.

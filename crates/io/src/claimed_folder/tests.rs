@@ -36,7 +36,9 @@ fn names_are_listed_before_there_are_files_and_survive() {
     let scratch = scratch();
     let mut folder = claimed(scratch.path());
     assert!(!folder.has_list());
-    folder.list(["b", "a", "../c", "d\ne"].into_iter()).expect("listed");
+    folder
+        .list(["b", "a", "../c", "d\ne"].into_iter())
+        .expect("listed");
     // As after a sudden end: nothing is tidied up.
     fs::write(folder.unfinished("b"), "half").expect("written");
     let unfinished = folder.unfinished("b");
@@ -53,10 +55,9 @@ fn names_are_listed_before_there_are_files_and_survive() {
     let mut folder = claimed(scratch.path());
     assert!(folder.has_list() && !unfinished.exists());
     assert_eq!(folder.own().iter().collect::<Vec<_>>(), ["a", "b"]);
-    folder.write("a", |path| {
-        crate::write_atomically(path, |_| Ok(()))
-    })
-    .expect("written");
+    folder
+        .write("a", |path| crate::write_atomically(path, |_| Ok(())))
+        .expect("written");
     folder.forget_missing().expect("listed");
     assert_eq!(folder.own().iter().collect::<Vec<_>>(), ["a"]);
 }
