@@ -12,14 +12,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kluft_io::{NOT_WRITTEN, load_msh, write_atomically, write_vtu};
+use kluft_io::{NOT_WRITTEN, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::failure::Failure;
 use crate::print::print;
 use crate::threads::{pool, thread_count};
-use kluft_run::{MESH, Output, folder_for, inputs, mesh_file};
+use kluft_run::{MESH, Output, folder_for, inputs, mesh_file, read_mesh};
 use kluft_scene::{MeshSource, Scene, bind, in_terms_of_scene, roles};
 
 use findings::Inspection;
@@ -88,10 +88,10 @@ fn output(folder: &Path, input: &Path, scene: Option<&Scene>) -> Result<Output, 
 fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, Vec<Defect>> {
     let scratch = output.unfinished("");
     let Some(scene) = scene else {
-        return load_msh(input, &scratch);
+        return read_mesh(input, &scratch);
     };
     let file = mesh_file(scene, output, None, &mut ())?;
-    load_msh(&file.path, &scratch)
+    read_mesh(&file.path, &scratch)
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.

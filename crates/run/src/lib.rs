@@ -57,7 +57,7 @@ pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};
 pub use outcome::{Ending, Outcome, StepResult};
 pub use output::Output;
-pub use prepare::{MESH, folder_for, inputs, mesh_file};
+pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;
 pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary};

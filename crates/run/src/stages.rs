@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use kluft_io::load_msh;
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
@@ -178,7 +177,7 @@ impl<'a> Run<'a> {
                 MeshInput::OfScene => Err(Vec::new()),
             };
         };
-        let draft = load_msh(&file.path, &self.output.unfinished(""))?;
+        let draft = prepare::read_mesh(&file.path, &self.output.unfinished(""))?;
         let fingerprint = checkpoint::fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {
