@@ -22,9 +22,10 @@ pub enum Failure {
 impl From<Vec<Defect>> for Failure {
     fn from(defects: Vec<Defect>) -> Self {
         let failed = |defect: &Defect| defect.code == Some(NOT_WRITTEN);
-        match defects.iter().any(failed) {
-            true => Self::Machine(defects),
-            false => Self::BadInput(defects),
+        if defects.iter().any(failed) {
+            Self::Machine(defects)
+        } else {
+            Self::BadInput(defects)
         }
     }
 }

@@ -70,9 +70,10 @@ fn inspect_here(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
         .filter(|defect| defect.code != Some(NOT_WRITTEN));
     inspection.defects = of_input.map(Into::into).collect();
     let printed = keep_and_print(&inspection, options.json, &output, &mut defects);
-    match defects.is_empty() {
-        true => printed,
-        false => Err(defects.into()),
+    if defects.is_empty() {
+        printed
+    } else {
+        Err(defects.into())
     }
 }
 

@@ -189,8 +189,7 @@ fn what_looks_like_a_result_survives_if_no_run_has_written_it() {
 fn a_folder_without_a_list_is_known_by_what_it_names() {
     let folder = scratch();
     let path = |name: &str| folder.path().join(name);
-    let two = edited(SCENE, &[]);
-    fs::write(path("scene.toml"), two).expect("written");
+    fs::write(path("scene.toml"), SCENE).expect("written");
     fs::write(path("base.msh"), MESH).expect("written");
     assert_eq!(run_into(&path("scene.toml"), &path("out")).code, Some(0));
     fs::remove_dir_all(path("out/.kluft")).expect("removed");
