@@ -86,7 +86,7 @@ pub struct StudyArgs {
     /// Largest error wanted, 1% or 0.01; stops at the first setting that reaches it
     #[arg(long, value_name = "SHARE", value_parser = share)]
     tolerance: Option<f64>,
-    /// Number of threads of each run [default: all cores]
+    /// Number of threads of each run, at most 4 a core (or 16) [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Print nothing but errors and the answer to --tolerance
@@ -115,7 +115,7 @@ pub struct RunArgs {
     /// Folder for the results [default: `out` beside the scene]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of threads; results do not depend on it [default: all cores]
+    /// Number of threads, at most 4 a core (or 16); results do not depend on it [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Go on after the last load step that an interrupted run of the same scene finished

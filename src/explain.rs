@@ -1,11 +1,10 @@
 //! `kluft explain` and `kluft schema`: what the table of keys says.
 
-use std::io::Write;
-
 use kluft_keys::Document;
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
+use crate::print::print;
 
 /// Prints what a key or a section means; without one, all keys.
 ///
@@ -16,8 +15,7 @@ pub fn explain(key: Option<&str>) -> Result<(), Failure> {
         None => kluft_keys::overview(),
         Some(key) => kluft_keys::explain(key).map_err(|near| unknown(key, &near))?,
     };
-    print(&text);
-    Ok(())
+    print(&text)
 }
 
 fn unknown(key: &str, near: &[&str]) -> Defect {
@@ -30,12 +28,10 @@ fn unknown(key: &str, near: &[&str]) -> Defect {
 }
 
 /// Prints the JSON Schema of a document.
-pub fn print_schema(document: Document) {
+///
+/// # Errors
+/// If it cannot be written.
+pub fn print_schema(document: Document) -> Result<(), Failure> {
     let schema = kluft_keys::schema(document);
-    print(&format!("{schema:#}\n"));
-}
-
-/// Prints a text; a closed pipe (`| head`) ends it.
-fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    print(&format!("{schema:#}\n"))
 }

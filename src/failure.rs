@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use kluft_io::NOT_WRITTEN;
 use kluft_mesh::Defect;
 
 /// Why a command did not end well.
@@ -14,17 +15,24 @@ pub enum Failure {
     BadInput(Vec<Defect>),
     /// A study did not yield what was wanted of it: why, and what to try.
     NotReached(String),
+    /// The machine did not do what was asked of it: a file was not written, no thread was given.
+    Machine(Vec<Defect>),
 }
 
 impl From<Vec<Defect>> for Failure {
     fn from(defects: Vec<Defect>) -> Self {
-        Self::BadInput(defects)
+        let failed = |defect: &Defect| defect.code == Some(NOT_WRITTEN);
+        if defects.iter().any(failed) {
+            Self::Machine(defects)
+        } else {
+            Self::BadInput(defects)
+        }
     }
 }
 
 impl From<Defect> for Failure {
     fn from(defect: Defect) -> Self {
-        Self::BadInput(vec![defect])
+        vec![defect].into()
     }
 }
 
@@ -36,6 +44,10 @@ impl Failure {
         let _ = match self {
             Self::NotConverged(why) => writeln!(err, "not converged: {why}"),
             Self::NotReached(why) => writeln!(err, "not reached: {why}"),
+            Self::Machine(defects) => {
+                let lines: Vec<String> = defects.iter().map(ToString::to_string).collect();
+                writeln!(err, "failed: {}", lines.join("\n"))
+            }
             Self::BadInput(defects) => {
                 let count = defects.len();
                 let noun = if count == 1 { "defect" } else { "defects" };
@@ -48,7 +60,7 @@ impl Failure {
     /// The exit code of the program.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::NotConverged(_) | Self::NotReached(_) => ExitCode::from(1),
+            Self::NotConverged(_) | Self::NotReached(_) | Self::Machine(_) => ExitCode::from(1),
             Self::BadInput(_) => ExitCode::from(2),
         }
     }

@@ -7,9 +7,11 @@ mod explain;
 mod failure;
 mod inspect;
 mod network;
+mod print;
 mod report;
 mod run;
 mod study;
+mod threads;
 
 use std::process::ExitCode;
 
@@ -24,10 +26,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(&args.input.clone(), &args.into()),
         Command::Study(args) => study::study(&args.scene.clone(), &args.into()),
         Command::Explain { key } => explain::explain(key.as_deref()),
-        Command::Schema { document } => {
-            explain::print_schema(document.into());
-            Ok(())
-        }
+        Command::Schema { document } => explain::print_schema(document.into()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,16 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use kluft_mesh::Defect;
 use kluft_run::{Ending, MeshInput, Origin, Outcome, Request, folder_for};
 use kluft_scene::Scene;
-use rayon::ThreadPool;
 
 use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
-
-/// Stack of each thread (bytes): that of a main thread.
-const STACK: usize = 8 << 20;
+use crate::threads::{ThreadCount, pool, thread_count};
 
 /// How to run a scene.
 #[derive(Debug, Clone)]
@@ -31,8 +27,8 @@ pub struct RunOptions {
 /// Runs a scene.
 ///
 /// # Errors
-/// [`Failure::BadInput`] with every defect found, or [`Failure::NotConverged`] with where and why;
-/// the results of converged steps and `summary.json` are kept then.
+/// [`Failure::BadInput`] with every defect found, [`Failure::NotConverged`] with where and why, or
+/// [`Failure::Machine`]; the results of converged steps and `summary.json` are kept then.
 pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     if options.is_tied {
         end_with_standard_input();
@@ -40,8 +36,12 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     let text = Scene::text(scene_file)?;
     let scene = Scene::parse_file(scene_file, &text)?;
     let folder = folder_for(scene_file, options.out.as_deref());
-    let pool = threads(options.threads)?;
     let mut report = Report::new(options.verbosity);
+    let ThreadCount { count, word } = thread_count(options.threads);
+    if let Some(word) = word {
+        report.entry("warning", &word);
+    }
+    let pool = pool(count)?;
     let request = Request {
         scene: &scene,
         mesh: MeshInput::OfScene,
@@ -63,21 +63,6 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
         Ending::NotConverged(why) => Err(Failure::NotConverged(why)),
         Ending::Stopped => Err(Failure::NotConverged("the run was stopped".into())),
     }
-}
-
-/// Threads for a run; all cores if no number is given.
-fn threads(count: Option<usize>) -> Result<ThreadPool, Defect> {
-    let builder = rayon::ThreadPoolBuilder::new()
-        .num_threads(count.unwrap_or(0))
-        .stack_size(STACK);
-    builder.build().map_err(|error| {
-        let remedy = "ask for fewer, e.g. --threads 2";
-        Defect::new(
-            "--threads",
-            format!("no threads can be had: {error}"),
-            remedy,
-        )
-    })
 }
 
 /// Ends the process when whoever started it is gone.

@@ -13,16 +13,21 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kluft_io::{load_msh, write_atomically, write_vtu};
+use kluft_io::{NOT_WRITTEN, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::failure::Failure;
-use kluft_run::Output;
-use kluft_run::{folder_for, mesh_file};
-use kluft_scene::{Scene, bind, in_terms_of_scene, join, roles};
+use crate::print::print;
+use crate::threads::{pool, thread_count};
+use kluft_run::{MESH, Output, folder_for, inputs, mesh_file, read_mesh};
+use kluft_scene::{MeshSource, Scene, bind, in_terms_of_scene, join, roles};
 
 use findings::Inspection;
+
+/// The files that an inspection writes beside a mesh.
+const GRID: &str = "inspect.vtu";
+const REPORT: &str = "inspect.json";
 
 /// How to inspect.
 #[derive(Debug, Clone)]
@@ -37,9 +42,15 @@ pub struct InspectOptions {
 /// standard output stream and writes `inspect.vtu`.
 ///
 /// # Errors
-/// [`Failure::BadInput`] with every defect found; what could be inspected in spite of them is
-/// printed before.
+/// [`Failure::BadInput`] with every defect found, or [`Failure::Machine`]; what could be inspected
+/// in spite of them is printed before.
 pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
+    let pool = pool(thread_count(None).count)?;
+    pool.install(|| inspect_here(input, options))
+}
+
+/// Inspects on the present thread pool.
+fn inspect_here(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     let start = Instant::now();
     let is_mesh = input
         .extension()
@@ -50,26 +61,39 @@ pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
         Some(Scene::read(input)?)
     };
     let folder = folder_for(input, options.out.as_deref());
-    let output = Output::prepare(&folder).map_err(|defect| vec![defect])?;
+    let output = output(&folder, input, scene.as_ref())?;
     let draft = read(input, scene.as_ref(), &output)?;
     let mut inspection = Inspection::of(input, scene.as_ref(), &draft);
     let mut defects = look(draft, scene.as_ref(), &output, &mut inspection);
     inspection.seconds = start.elapsed().as_secs_f64();
-    inspection.defects = defects.iter().map(Into::into).collect();
-    defects.extend(print(&inspection, options.json, &output));
-    match defects.is_empty() {
-        true => Ok(()),
-        false => Err(Failure::BadInput(defects)),
+    let of_input = defects
+        .iter()
+        .filter(|defect| defect.code != Some(NOT_WRITTEN));
+    inspection.defects = of_input.map(Into::into).collect();
+    let printed = keep_and_print(&inspection, options.json, &output, &mut defects);
+    if defects.is_empty() {
+        printed
+    } else {
+        Err(defects.into())
     }
 }
 
+/// The folder of an inspection, for the files that it will write.
+fn output(folder: &Path, input: &Path, scene: Option<&Scene>) -> Result<Output, Vec<Defect>> {
+    let mut names = vec![GRID, REPORT];
+    if scene.is_some_and(|scene| matches!(scene.mesh, MeshSource::Geometry { .. })) {
+        names.push(MESH);
+    }
+    Output::prepare(folder, &names, &inputs(input, scene))
+}
+
 fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, Vec<Defect>> {
-    let scratch = output.path("");
+    let scratch = output.unfinished("");
     let Some(scene) = scene else {
-        return load_msh(input, &scratch);
+        return read_mesh(input, &scratch);
     };
     let file = mesh_file(scene, output, None, &mut ())?;
-    load_msh(&file.path, &scratch)
+    read_mesh(&file.path, &scratch)
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.
@@ -107,7 +131,7 @@ fn look(
     gather::topology(&mesh, &survey, inspection);
     let mut defects = Vec::new();
     let grid = grid::of(&mesh, &survey);
-    defects.extend(write_vtu(&output.path("inspect.vtu"), grid).err());
+    defects.extend(output.write(GRID, |path| write_vtu(path, grid)).err());
     let Some(scene) = scene else {
         cost::predict(&mesh, None, Workload::one_step(&mesh, &[]), inspection);
         return defects;
@@ -154,15 +178,21 @@ fn weigh(problem: &Problem, survey: &Survey, inspection: &mut Inspection) -> Vec
 }
 
 /// Prints the report and keeps it as `inspect.json`.
-fn print(inspection: &Inspection, json: bool, output: &Output) -> Option<Defect> {
+fn keep_and_print(
+    inspection: &Inspection,
+    json: bool,
+    output: &Output,
+    defects: &mut Vec<Defect>,
+) -> Result<(), Failure> {
     let encoded = serde_json::to_string_pretty(inspection).unwrap_or_default() + "\n";
     let text = if json {
         encoded.clone()
     } else {
         text::of(inspection)
     };
-    // A closed pipe (`| head`) ends the report, not the inspection.
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
-    let path = output.path("inspect.json");
-    write_atomically(&path, |out| out.write_all(encoded.as_bytes())).err()
+    let kept = output.write(REPORT, |path| {
+        write_atomically(path, |out| out.write_all(encoded.as_bytes()))
+    });
+    defects.extend(kept.and_then(|()| output.sync()).err());
+    print(&text)
 }

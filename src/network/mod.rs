@@ -10,7 +10,7 @@ mod sets;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kluft_io::write_atomically;
+use kluft_io::{ClaimedFolder, sync_folder, write_atomically};
 use kluft_mesh::Defect;
 use kluft_network::{Domain, Grouping, Network, write_geo};
 
@@ -19,6 +19,12 @@ use crate::report::{Report, Verbosity};
 use input::{Input, Overrides};
 use record::NetworkRecord;
 use scene::MADE;
+
+/// The files that are made beside the geometry.
+const SCENE: &str = "scene.toml";
+const RECORD: &str = "network.json";
+/// By which a geometry is known.
+const BY: &str = "made by `kluft network` from";
 
 /// How to make a network.
 #[derive(Debug, Clone)]
@@ -64,8 +70,8 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
             "compare the domain with the centres of the fractures; -v lists why each was left out",
         )]));
     }
-    write(file, options, &input, &network, &record).map_err(|defect| vec![defect])?;
-    let scene = options.out.join("scene.toml");
+    write(file, options, &input, &network, &record)?;
+    let scene = options.out.join(SCENE);
     report.entry("next", &format!("kluft run {}", scene.display()));
     Ok(())
 }
@@ -76,33 +82,49 @@ fn write(
     input: &Input,
     network: &Network,
     record: &NetworkRecord,
-) -> Result<(), Defect> {
-    let folder = &options.out;
-    let path = |name: &str| folder.join(name);
-    std::fs::create_dir_all(folder).map_err(|error| {
-        let problem = format!("the folder cannot be made: {error}");
-        let remedy = "name a folder you may write to with -o DIR";
-        Defect::new(folder.display().to_string(), problem, remedy)
-    })?;
-    let scene = path("scene.toml");
-    protect(&scene)?;
-    let name = file.file_name().unwrap_or_default().display();
+) -> Result<(), Failure> {
     let geometry = format!("{}.geo", options.name);
-    let title = format!("{}: made by `kluft network` from {name}", input.title);
-    let write_text =
-        |path: &Path, text: &str| write_atomically(path, |out| out.write_all(text.as_bytes()));
-    write_text(
-        &path(&geometry),
-        &write_geo(network, options.grouping, &title),
-    )?;
-    write_text(
-        &scene,
-        &scene::text(input, network, options.grouping, &geometry),
-    )?;
-    write_atomically(&path("network.json"), |out| {
-        serde_json::to_writer_pretty(&mut *out, record)?;
-        out.write_all(b"\n")
-    })
+    let folder = claim(file, &options.out, &geometry)?;
+    let name = file.file_name().unwrap_or_default().display();
+    let title = format!("{}: {BY} {name}", input.title);
+    let write_text = |name: &str, text: &str| {
+        folder.write(name, |path| {
+            write_atomically(path, |out| out.write_all(text.as_bytes()))
+        })
+    };
+    write_text(&geometry, &write_geo(network, options.grouping, &title))?;
+    let scene = scene::text(input, network, options.grouping, &geometry);
+    write_text(SCENE, &scene)?;
+    let record = serde_json::to_string_pretty(record).unwrap_or_default();
+    write_text(RECORD, &(record + "\n"))?;
+    Ok(sync_folder(folder.path())?)
+}
+
+/// The folder for the files of a network; nothing is written over that this command has not made.
+fn claim(file: &Path, folder: &Path, geometry: &str) -> Result<ClaimedFolder, Failure> {
+    let mut folder = ClaimedFolder::claim(folder)?;
+    protect(&folder.path().join(SCENE))?;
+    let names = [geometry, SCENE, RECORD];
+    if !folder.has_list() {
+        let made = names.into_iter().filter(|name| is_made(&folder, name));
+        let made: Vec<&str> = made.collect();
+        folder.list(made.into_iter())?;
+    }
+    folder.protect(names.into_iter(), &[file])?;
+    folder.list(names.into_iter())?;
+    Ok(folder)
+}
+
+/// Whether a file in a folder without a list says that this command has made it.
+fn is_made(folder: &ClaimedFolder, name: &str) -> bool {
+    let Ok(text) = std::fs::read_to_string(folder.path().join(name)) else {
+        return false;
+    };
+    match name {
+        SCENE => text.starts_with(MADE),
+        RECORD => text.starts_with("{\n  \"kluft\": "),
+        _ => text.lines().next().is_some_and(|line| line.contains(BY)),
+    }
 }
 
 /// A scene that somebody wrote is not ours to replace.

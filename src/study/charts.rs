@@ -1,13 +1,16 @@
 //! The charts of a study.
 
 use super::assess::{Assessment, MeasuredSeries};
-use super::dimension::SweepKind;
+use super::dimension::{SweepDimension, SweepKind};
 use super::point::Numbers;
 use super::reference::slope;
+use super::settings::StudyPlan;
 use super::under_way::Study;
 use super::words::{or_the_scene, percent, unit};
 use kluft_chart::{Axis, Band, Chart, Series as Line};
 
+/// The files of errors against time and against unknowns.
+const ERRORS: [&str; 2] = ["error-time.svg", "error-unknowns.svg"];
 /// Most series on a chart; more cannot be told apart.
 const MOST_SERIES: usize = 10;
 /// Errors below the rounding of doubles are drawn there.
@@ -15,7 +18,6 @@ const SMALLEST: f64 = 1e-16;
 
 /// A chart and the name of its file.
 pub(super) struct NamedChart {
-    /// Without `.svg`.
     pub(super) file: String,
     /// The chart.
     pub(super) chart: Chart,
@@ -30,23 +32,27 @@ pub(super) fn charts(study: &Study, found: &Assessment) -> Vec<NamedChart> {
     if has_error {
         let seconds = |numbers: &Numbers| numbers.seconds;
         let unknowns = |numbers: &Numbers| numbers.unknowns as f64;
-        charts.push(errors(
-            study,
-            found,
-            ("error-time", "wall time (s)"),
-            &seconds,
-        ));
-        charts.push(errors(
-            study,
-            found,
-            ("error-unknowns", "unknowns"),
-            &unknowns,
-        ));
+        charts.push(errors(study, found, (ERRORS[0], "wall time (s)"), &seconds));
+        charts.push(errors(study, found, (ERRORS[1], "unknowns"), &unknowns));
     }
     let dimensions = study.plan.dimensions.iter().enumerate();
-    let swept = dimensions.filter(|(_, d)| d.kind == SweepKind::Value && d.choices.len() > 1);
+    let swept = dimensions.filter(|(_, dimension)| is_charted(dimension));
     charts.extend(swept.filter_map(|(dimension, _)| over_value(study, found, dimension)));
     charts
+}
+
+/// The files of all charts that a study may have.
+pub(super) fn file_names(plan: &StudyPlan) -> Vec<String> {
+    let swept = plan
+        .dimensions
+        .iter()
+        .filter(|dimension| is_charted(dimension));
+    let over = swept.map(|dimension| over(&dimension.name));
+    ERRORS.into_iter().map(String::from).chain(over).collect()
+}
+
+fn is_charted(dimension: &SweepDimension) -> bool {
+    dimension.kind == SweepKind::Value && dimension.choices.len() > 1
 }
 
 /// What is charted, in words.
@@ -168,12 +174,17 @@ fn over_value(study: &Study, found: &Assessment, dimension: usize) -> Option<Nam
         axis(across, points().map(|point| point.0)),
         axis(title, points().map(|point| point.1)),
     );
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     Some(NamedChart {
-        file: format!("over-{}", swept.name.chars().map(plain).collect::<String>()),
+        file: over(&swept.name),
         chart: Chart { series, ..chart },
         left_out,
     })
+}
+
+/// The file of a chart over what is swept.
+fn over(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    format!("over-{}.svg", name.chars().map(plain).collect::<String>())
 }
 
 /// Something of each setting over its value in a dimension, one line for each combination of the

@@ -8,6 +8,7 @@ mod assess;
 mod charts;
 mod dimension;
 mod edits;
+mod files;
 mod machine;
 mod page;
 mod point;
@@ -22,12 +23,15 @@ mod words;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kluft_io::write_atomically;
+use kluft_io::{sync_folder, write_atomically};
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
+use crate::print::print;
 use crate::report::{Report, Verbosity};
+use crate::threads::{ThreadCount, thread_count};
 use assess::{Assessment, assess};
+use files::{PAGE, TABLE};
 use kluft_run::fingerprint_of;
 use kluft_scene::Scene;
 use machine::Machine;
@@ -60,12 +64,16 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
     let mut report = Report::new(options.verbosity);
     let mut study = Study::begin(scene_file, options)?;
     report.entry("study", &study.title);
+    if let Some(word) = &study.thread_word {
+        report.entry("warning", word);
+    }
     let found = study.run(&mut report, options.tolerance)?;
     study.write(&found)?;
     for line in summary(&study, &found) {
         report.entry("result", &line);
     }
-    report.entry("open", &study.out.join("study.html").display().to_string());
+    let page = study.claimed.path().join(PAGE);
+    report.entry("open", &page.display().to_string());
     if answer::has_no_result(&study.records) {
         let why = study
             .records
@@ -85,10 +93,7 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
             &study, &found, tolerance,
         )));
     };
-    // With the output stream gone there is nobody left to tell.
-    let text = answer::fragment(&study, &found, best, tolerance);
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
-    Ok(())
+    print(&answer::fragment(&study, &found, best, tolerance))
 }
 
 impl Study {
@@ -99,11 +104,15 @@ impl Study {
         let out = options.out.clone().unwrap_or_else(beside);
         let out = std::path::absolute(&out).unwrap_or(out);
         let program = own_program()?;
+        let scene = Scene::parse_file(scene_file, &text)?;
+        let inputs = kluft_run::inputs(scene_file, Some(&scene));
+        let claimed = files::claim(&out, &charts::file_names(&plan), &inputs)?;
+        let ThreadCount { count, word } = thread_count(options.threads);
         let runner = Runner {
             folder: out.join("points"),
             build: fingerprint_of(&program)?,
             program,
-            threads: options.threads.unwrap_or_else(machine::cores),
+            threads: count,
         };
         std::fs::create_dir_all(&runner.folder).map_err(|error| {
             let place = runner.folder.display().to_string();
@@ -120,7 +129,8 @@ impl Study {
             folders,
             records,
             machine: Machine::this(),
-            out,
+            thread_word: word,
+            claimed,
         })
     }
 
@@ -228,15 +238,18 @@ impl Study {
             .iter()
             .map(|named| (named, named.chart.svg()))
             .collect();
+        let write_text = |name: &str, text: &str| {
+            self.claimed.write(name, |path| {
+                write_atomically(path, |out| out.write_all(text.as_bytes()))
+            })
+        };
         for (named, svg) in &drawn {
-            let path = self.out.join(format!("{}.svg", named.file));
-            write_atomically(&path, |out| out.write_all(svg.as_bytes()))?;
+            write_text(&named.file, svg)?;
         }
-        table::write(&self.out.join("study.csv"), self, found)?;
-        let page = page::page(self, found, &drawn);
-        let path = self.out.join("study.html");
-        write_atomically(&path, |out| out.write_all(page.as_bytes()))?;
-        Ok(())
+        let table = |path: &Path| table::write(path, self, found);
+        self.claimed.write(TABLE, table)?;
+        write_text(PAGE, &page::page(self, found, &drawn))?;
+        Ok(sync_folder(self.claimed.path())?)
     }
 }
 

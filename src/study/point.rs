@@ -11,11 +11,10 @@ use kluft_mesh::Defect;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
+use super::files::{RECORD, RESULTS, SCENE, remove_setting, unwritable};
 use kluft_run::Measure;
 use kluft_run::{Fingerprint, fingerprint, fingerprint_of};
 
-/// The record of a finished point, in its folder.
-const RECORD: &str = "point.json";
 /// Lines of a failed run's messages that are kept.
 const LINES: usize = 6;
 
@@ -129,28 +128,19 @@ impl Runner {
     /// If files cannot be written or the program cannot be started; a run that fails is a result.
     pub(super) fn run(&self, name: &str, scene: &Table) -> Result<PointRecord, Defect> {
         let folder = self.folder.join(name);
-        let unwritable = |error: std::io::Error| {
-            let problem = format!("cannot be written: {error}");
-            Defect::new(
-                folder.display().to_string(),
-                problem,
-                "check the permissions and the space, or name another folder with --out",
-            )
-        };
-        if folder.exists() {
-            fs::remove_dir_all(&folder).map_err(unwritable)?;
-        }
-        fs::create_dir_all(&folder).map_err(unwritable)?;
-        let scene_file = folder.join("scene.toml");
+        remove_setting(&folder)?;
+        fs::create_dir_all(&folder).map_err(|error| unwritable(&folder, &error))?;
+        let scene_file = folder.join(SCENE);
         write_atomically(&scene_file, |out| {
             out.write_all(scene.to_string().as_bytes())
         })?;
         let begin = Instant::now();
-        let output = self.start(&scene_file, &folder.join("out"))?;
+        let results = folder.join(RESULTS);
+        let output = self.start(&scene_file, &results)?;
         let seconds = begin.elapsed().as_secs_f64();
         let record = PointRecord {
             fingerprint: self.fingerprint(scene),
-            outcome: outcome(&output, &folder.join("out/summary.json"), seconds),
+            outcome: outcome(&output, &results.join("summary.json"), seconds),
         };
         // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory);
         // who was killed, by hand or for want of memory, may be luckier the next time.

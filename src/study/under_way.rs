@@ -1,6 +1,6 @@
 //! A study under way.
 
-use std::path::PathBuf;
+use kluft_io::ClaimedFolder;
 
 use super::machine::Machine;
 use super::point::{PointRecord, Runner};
@@ -18,5 +18,8 @@ pub(super) struct Study {
     /// What came out of each setting; none before it is run.
     pub(super) records: Vec<Option<PointRecord>>,
     pub(super) machine: Machine,
-    pub(super) out: PathBuf,
+    /// Why it runs on fewer threads than were asked for, if so.
+    pub(super) thread_word: Option<String>,
+    /// The folder of its results.
+    pub(super) claimed: ClaimedFolder,
 }

@@ -114,11 +114,12 @@ pub fn edited(text: &str, edits: &[(&str, &str)]) -> String {
     })
 }
 
-/// Names and contents of the files in a folder.
+/// Names and contents of the files in a folder, folders in it left out.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).expect("the folder");
     let entries = entries.map(|entry| entry.expect("an entry"));
     entries
+        .filter(|entry| entry.file_type().expect("a type").is_file())
         .map(|entry| {
             let name = entry.file_name().to_string_lossy().into_owned();
             (name, fs::read(entry.path()).expect("a file"))

@@ -259,9 +259,9 @@ fn without_a_checkpoint_a_run_begins() {
 fn a_new_run_removes_the_checkpoint() {
     let workshop = stuck();
     let checkpoint = workshop.path("out/resume.bin");
-    for unfinished in [".rock_0003.vtu.tmp", ".resume.bin.tmp", ".mesh.77.tmp.msh"] {
-        fs::write(workshop.path("out").join(unfinished), "half").expect("written");
-    }
+    let unfinished = workshop.path("out/.kluft/tmp");
+    fs::create_dir_all(&unfinished).expect("a folder");
+    fs::write(unfinished.join("rock_0003.vtu"), "half").expect("written");
     let text = fs::read_to_string(workshop.scene()).expect("the scene");
     let text = text.replace("steps = [1e-9, 1e-8, 1.0]", "steps = [1.0]");
     fs::write(workshop.scene(), text).expect("written");
@@ -269,6 +269,7 @@ fn a_new_run_removes_the_checkpoint() {
     assert_eq!(workshop.run("out", &[]).code, Some(1));
     let left: Vec<String> = files(&workshop.path("out")).into_keys().collect();
     assert_eq!(left, ["mesh.msh", "summary.json"]);
+    assert!(!unfinished.exists());
     assert_eq!(
         summary(&workshop.path("out"))["steps"][0]["converged"],
         false
@@ -399,5 +400,18 @@ fn results_that_are_gone_are_named() {
     let workshop = stuck();
     fs::remove_file(workshop.path("out/rock_0001.vtu")).expect("removed");
     let says = ["rock_0001.vtu: the results of a finished load step are gone"];
+    assert_refused(&workshop, &says);
+}
+
+/// Grids of another run of the same number, as they stand there when two runs were mixed.
+#[test]
+fn results_of_another_run_are_not_taken_for_its_own() {
+    let (workshop, other) = (
+        stuck(),
+        Workshop::new("inclined-joint", &[("h = 0.2", "h = 0.3")]),
+    );
+    let strange = other.solve("out", &[]).join("rock_0001.vtu");
+    fs::copy(strange, workshop.path("out/rock_0002.vtu")).expect("copied");
+    let says = ["rock_0002.vtu: the results of a finished load step are not those of this run"];
     assert_refused(&workshop, &says);
 }

@@ -1,13 +1,15 @@
 //! Files: gmsh's meshes in, ParaView's results out; no scene, no physics.
 
 mod atomic;
+mod claimed_folder;
 pub mod gmsh;
 mod load;
 pub mod msh;
 mod pvd;
 mod vtu;
 
-pub use atomic::write_atomically;
+pub use atomic::{NOT_WRITTEN, sync_folder, write_atomically};
+pub use claimed_folder::ClaimedFolder;
 pub use gmsh::{Meshing, mesh_geometry, write_size_field};
 pub use load::load_msh;
 pub use msh::{parse_msh, read_msh};

@@ -1,5 +1,7 @@
 //! Meshes a scene until the estimated error meets a tolerance.
 
+use std::path::Path;
+
 use kluft_io::write_size_field;
 use kluft_mesh::Mesh;
 use kluft_scene::{Adapt, MeshSource};
@@ -10,7 +12,7 @@ use crate::stages::{Interruption, Run};
 use crate::summary::MeshTrial;
 
 /// File of the sizes that the last mesh was made with.
-const SIZES: &str = "sizes.pos";
+pub const SIZES: &str = "sizes.pos";
 
 /// Leaves a mesh on which the estimated error meets the tolerance of the scene, or the budget is
 /// spent.
@@ -58,9 +60,9 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
         }
         let budget = adapt.max_unknowns / unknowns as f64;
         let sizes = next_sizes(&problem.mesh, &accuracy, aim, budget);
-        let path = run.output.path(SIZES);
-        write_size_field(&path, &problem.mesh, &sizes)?;
-        run.mesh_again_with(path);
+        let write = |path: &Path| write_size_field(path, &problem.mesh, &sizes);
+        run.output.write(SIZES, write)?;
+        run.mesh_again_with(run.output.path(SIZES));
     }
     Ok(())
 }

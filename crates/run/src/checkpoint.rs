@@ -20,7 +20,7 @@ use crate::summary::{FractureSummary, Seconds, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 3\n";
+const HEAD: &[u8] = b"kluft checkpoint 4\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -29,6 +29,9 @@ const AFRESH: &str = "run without --resume: it starts from the beginning";
 
 /// A sum over some bytes (XXH3, 128 bits): equal for equal bytes, and for others never in practice.
 pub type Fingerprint = u128;
+
+/// The sums of the two grids of a load step.
+pub type StepFiles = [Fingerprint; 2];
 
 /// What a run is made of; it can only be resumed with the same.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,6 +53,8 @@ pub struct Progress<'a> {
     pub choice: (String, String),
     /// The finished load steps.
     pub steps: Vec<StepMeasures>,
+    /// Their grids, by which they are known again.
+    pub files: Vec<StepFiles>,
     /// The fractures after the last of them.
     pub fractures: Vec<(String, FractureSummary)>,
     /// Estimated error of the stress after the last of them.
@@ -94,17 +99,26 @@ pub fn fingerprint(text: &str) -> Fingerprint {
     XxHash3_128::oneshot(text.as_bytes())
 }
 
-/// A writer that sums up what goes through it.
+/// A writer that sums up what goes through it, and keeps the error that postcard does not pass on.
 struct Summing<W> {
     inner: W,
     sum: XxHash3_128,
+    error: Option<io::Error>,
 }
 
 impl<W: Write> Write for Summing<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let count = self.inner.write(bytes)?;
-        self.sum.write(&bytes[..count]);
-        Ok(count)
+        match self.inner.write(bytes) {
+            Ok(count) => {
+                self.sum.write(&bytes[..count]);
+                Ok(count)
+            }
+            Err(error) => {
+                let kind = error.kind();
+                self.error = Some(error);
+                Err(kind.into())
+            }
+        }
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -121,13 +135,28 @@ pub fn write(path: &Path, identity: &Identity, progress: &Progress<'_>) -> Resul
         let mut out = Summing {
             inner: out,
             sum: XxHash3_128::new(),
+            error: None,
         };
         out.write_all(HEAD)?;
-        postcard::to_io(identity, &mut out).map_err(io::Error::other)?;
-        postcard::to_io(progress, &mut out).map_err(io::Error::other)?;
+        encode(identity, &mut out)?;
+        encode(progress, &mut out)?;
         let sum = out.sum.finish_128();
         out.inner.write_all(&sum.to_le_bytes())
     })
+}
+
+fn encode<W: Write>(value: &impl Serialize, out: &mut Summing<W>) -> io::Result<()> {
+    match postcard::to_io(value, &mut *out) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(out.error.take().unwrap_or_else(|| io::Error::other(error))),
+    }
+}
+
+/// Whether a file begins as checkpoints of any format do.
+pub fn is_checkpoint(path: &Path) -> bool {
+    let mut head = [0; KIND];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && head == HEAD[..KIND]
 }
 
 /// The bytes of a checkpoint that is whole.
@@ -258,6 +287,7 @@ mod tests {
         Progress {
             choice: ("direct".into(), "why".into()),
             steps: Vec::new(),
+            files: Vec::new(),
             fractures: Vec::new(),
             stress_error: 0.0,
             measures: Vec::new(),
@@ -310,6 +340,26 @@ mod tests {
         let defect = read(&path).err().expect("a defect");
         assert!(defect.problem.contains("another version"), "{defect}");
         assert!(defect.remedy.contains("without --resume"), "{defect}");
+    }
+
+    #[test]
+    fn a_disk_that_is_full_is_said_in_its_own_words() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut out = Summing {
+            inner: Full,
+            sum: XxHash3_128::new(),
+            error: None,
+        };
+        let error = encode(&identity(), &mut out).expect_err("full");
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
     }
 
     #[test]

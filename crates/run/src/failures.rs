@@ -1,5 +1,6 @@
 //! Why a run failed, and where, in words.
 
+use kluft_io::NOT_WRITTEN;
 use kluft_mesh::Defect;
 use kluft_scene::SolverEntry;
 use kluft_solver::{LinearFailure, Plan, Problem, StepOutcome, StepRecord, System};
@@ -34,6 +35,25 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
         ),
         remedy,
     )
+}
+
+/// Says of files that could not be written what is kept nevertheless.
+pub fn with_what_is_kept(mut defects: Vec<Defect>, steps: usize) -> Vec<Defect> {
+    for defect in defects
+        .iter_mut()
+        .filter(|defect| defect.code == Some(NOT_WRITTEN))
+    {
+        let kept = match steps {
+            0 => "; no load step was finished",
+            1 => "; the first load step is finished, and its results are kept",
+            _ => &format!("; {steps} load steps are finished, and their results are kept"),
+        };
+        defect.problem.push_str(kept);
+        if steps > 0 {
+            defect.remedy.push_str(", then go on with --resume");
+        }
+    }
+    defects
 }
 
 /// Why a load step did not converge, and where.

@@ -10,7 +10,7 @@
 //! | `stages`, `steps` | what is computed once, and what at each load step |
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
-//! | `output`, `grids`, `checkpoint`, `resume` | files |
+//! | `output`, `grids`, `checkpoint`, `resume`, `former` | files |
 //! | `decisions`, `failures` | what the program decided, and why a run failed, in words |
 //!
 //! ```
@@ -36,6 +36,7 @@ mod crack_front;
 mod decisions;
 mod doubts;
 mod failures;
+mod former;
 mod grids;
 mod measure;
 mod measures;
@@ -58,7 +59,7 @@ pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};
 pub use outcome::{Ending, Outcome, StepResult};
 pub use output::Output;
-pub use prepare::{folder_for, mesh_file};
+pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;
 pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary};

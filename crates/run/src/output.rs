@@ -2,11 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use kluft_io::{Grid, write_pvd, write_vtu};
+use kluft_io::{ClaimedFolder, Grid, sync_folder, write_pvd, write_vtu};
 use kluft_mesh::Defect;
+use rayon::prelude::*;
 use tempfile::TempDir;
 
-use crate::checkpoint;
+use crate::checkpoint::{self, StepFiles, fingerprint_of};
+use crate::former;
+
+/// The collections of the grids of all load steps.
+pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
 
 /// Writes the results of a run into one folder, step by step; the collections always list exactly
 /// the steps that are complete.
@@ -14,118 +19,211 @@ use crate::checkpoint;
 /// An output nowhere has a temporary folder for what gmsh needs, which goes with it, and keeps
 /// nothing.
 pub struct Output {
-    folder: PathBuf,
-    temporary: Option<TempDir>,
+    place: Place,
     rock: Vec<(f64, String)>,
     fractures: Vec<(f64, String)>,
+    /// The sums of the grids of each load step.
+    sums: Vec<StepFiles>,
+}
+
+enum Place {
+    Kept(ClaimedFolder),
+    Nowhere(TempDir),
 }
 
 impl Output {
-    /// Prepares the folder.
+    /// Prepares the folder for files of these names, made from `inputs`, and keeps every other
+    /// process out of it.
     ///
     /// # Errors
-    /// If it cannot be made or written to.
-    pub fn prepare(folder: &Path) -> Result<Self, Defect> {
-        let refused = |error: std::io::Error| {
-            Defect::new(
-                folder.display().to_string(),
-                format!("the results cannot be written here: {error}"),
-                "name a folder you may write to with --out DIR",
-            )
-        };
-        std::fs::create_dir_all(folder).map_err(refused)?;
-        let probe = folder.join(".kluft-probe");
-        std::fs::write(&probe, b"").map_err(refused)?;
-        std::fs::remove_file(&probe).map_err(refused)?;
-        Ok(Self {
-            folder: folder.to_owned(),
-            temporary: None,
-            rock: Vec::new(),
-            fractures: Vec::new(),
-        })
+    /// If it cannot be made or written to, if another run writes there, and if a file would be
+    /// written over that is an input or no result.
+    pub fn prepare(folder: &Path, names: &[&str], inputs: &[&Path]) -> Result<Self, Vec<Defect>> {
+        let mut folder = ClaimedFolder::claim(folder).map_err(|defect| vec![defect])?;
+        if !folder.has_list() {
+            let former = former::named_files(folder.path());
+            list(&mut folder, former.iter().map(String::as_str))?;
+        }
+        folder.protect(names.iter().copied(), inputs)?;
+        list(&mut folder, names.iter().copied())?;
+        Ok(Self::at(Place::Kept(folder)))
     }
 
     /// An output that keeps nothing.
     ///
     /// # Errors
     /// If there is no place for temporary files.
-    pub fn nowhere() -> Result<Self, Defect> {
+    pub fn nowhere() -> Result<Self, Vec<Defect>> {
         let temporary = tempfile::tempdir().map_err(|error| {
-            Defect::new(
+            vec![Defect::new(
                 std::env::temp_dir().display().to_string(),
                 format!("no temporary folder can be made: {error}"),
                 "name a folder you may write to in the environment variable TMPDIR",
-            )
+            )]
         })?;
-        Ok(Self {
-            folder: temporary.path().to_owned(),
-            temporary: Some(temporary),
+        Ok(Self::at(Place::Nowhere(temporary)))
+    }
+
+    fn at(place: Place) -> Self {
+        Self {
+            place,
             rock: Vec::new(),
             fractures: Vec::new(),
-        })
+            sums: Vec::new(),
+        }
     }
 
     /// Whether results are kept.
     pub fn is_kept(&self) -> bool {
-        self.temporary.is_none()
+        matches!(self.place, Place::Kept(_))
+    }
+
+    /// Whether another process could write into the folder, because its file system has no locks.
+    pub fn is_unguarded(&self) -> bool {
+        matches!(&self.place, Place::Kept(folder) if !folder.is_locked())
     }
 
     /// A path in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
+        match &self.place {
+            Place::Kept(folder) => folder.path().join(name),
+            Place::Nowhere(folder) => folder.path().join(name),
+        }
+    }
+
+    /// Where a file stands until [`Self::publish`] gives it its place.
+    pub fn unfinished(&self, name: &str) -> PathBuf {
+        match &self.place {
+            Place::Kept(folder) => folder.unfinished(name),
+            Place::Nowhere(folder) => folder.path().join(name),
+        }
+    }
+
+    /// Gives a finished file its place.
+    ///
+    /// # Errors
+    /// If it cannot be renamed.
+    pub fn publish(&self, name: &str) -> Result<(), Defect> {
+        match &self.place {
+            Place::Kept(folder) => folder.publish(name),
+            Place::Nowhere(_) => Ok(()),
+        }
+    }
+
+    /// Lets `write` write a file, whole or not at all, and gives it its place.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(
+        &self,
+        name: &str,
+        write: impl FnOnce(&Path) -> Result<(), Defect>,
+    ) -> Result<(), Defect> {
+        match &self.place {
+            Place::Kept(folder) => folder.write(name, write),
+            Place::Nowhere(folder) => write(&folder.path().join(name)),
+        }
+    }
+
+    /// Makes what was written outlast a loss of power.
+    ///
+    /// # Errors
+    /// If the disk refuses.
+    pub fn sync(&self) -> Result<(), Defect> {
+        match &self.place {
+            Place::Kept(folder) => sync_folder(folder.path()),
+            Place::Nowhere(_) => Ok(()),
+        }
+    }
+
+    /// Takes what was not written off the list of the folder's files.
+    ///
+    /// # Errors
+    /// If the list cannot be written.
+    pub fn close(&mut self) -> Result<(), Defect> {
+        match &mut self.place {
+            Place::Kept(folder) => folder.forget_missing(),
+            Place::Nowhere(_) => Ok(()),
+        }
     }
 
     /// Goes on after load steps that a former run has written, which end at `times`.
-    pub fn go_on_after(&mut self, times: impl Iterator<Item = f64>) {
+    pub fn go_on_after(&mut self, times: impl Iterator<Item = f64>, sums: Vec<StepFiles>) {
         for (index, time) in times.enumerate() {
             let [rock, fractures] = names(index + 1);
             self.rock.push((time, rock));
             self.fractures.push((time, fractures));
         }
+        self.sums = sums;
     }
 
-    /// Checks that the results of the first `count` load steps are there.
+    /// The sums of the grids of each load step.
+    pub fn sums(&self) -> &[StepFiles] {
+        &self.sums
+    }
+
+    /// Checks that the results of load steps are there, and have these sums.
     ///
     /// # Errors
     /// Those that are not.
-    pub fn check_steps(&self, count: usize) -> Result<(), Vec<Defect>> {
-        let files = (1..=count).flat_map(|number| names(number).map(|name| self.path(&name)));
-        let missing = files.filter(|file| !file.is_file()).map(|file| {
-            let problem = "the results of a finished load step are gone";
+    pub fn check_steps(&self, sums: &[StepFiles]) -> Result<(), Vec<Defect>> {
+        let files = sums.iter().enumerate();
+        let files = files.flat_map(|(index, sums)| names(index + 1).into_iter().zip(*sums));
+        let files: Vec<(String, u128)> = files.collect();
+        let check = |(name, sum): &(String, u128)| -> Option<Defect> {
+            let file = self.path(name);
+            let problem = match fingerprint_of(&file) {
+                Ok(found) if found == *sum => return None,
+                Ok(_) => "the results of a finished load step are not those of this run",
+                Err(_) => "the results of a finished load step are gone",
+            };
             let remedy = "put the file back, or run without --resume: it starts from the beginning";
-            Defect::new(file.display().to_string(), problem, remedy)
-        });
-        let missing: Vec<Defect> = missing.collect();
-        if missing.is_empty() {
+            Some(Defect::new(file.display().to_string(), problem, remedy))
+        };
+        let spoilt: Vec<Defect> = files.par_iter().filter_map(check).collect();
+        if spoilt.is_empty() {
             return Ok(());
         }
-        Err(missing)
+        Err(spoilt)
+    }
+
+    /// Prepares for the grids of `count` load steps, after those that [`Self::go_on_after`] names.
+    /// Nothing is touched upon an error.
+    ///
+    /// # Errors
+    /// Each file of such a name that no run has written.
+    pub fn expect_steps(&mut self, count: usize) -> Result<(), Vec<Defect>> {
+        let Place::Kept(folder) = &mut self.place else {
+            return Ok(());
+        };
+        let names: Vec<String> = (1..=count).flat_map(names).collect();
+        folder.protect(names.iter().map(String::as_str), &[])?;
+        list(folder, names.iter().map(String::as_str))
     }
 
     /// Removes what another run has written: its load steps, so that the folder never holds steps
-    /// of two runs, its checkpoint, and what it left unfinished.
+    /// of two runs, and its checkpoint. Files that no list names are those of somebody else.
     ///
     /// # Errors
     /// If a file cannot be removed.
     pub fn remove_former(&self) -> Result<(), Defect> {
-        let remove = || -> std::io::Result<()> {
-            let entries = std::fs::read_dir(&self.folder)?;
-            let names = entries.map(|entry| entry.map(|entry| entry.file_name()));
-            let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
-            names.retain(|name| name.to_str().is_some_and(is_result));
-            // The checkpoint first, so that none ever continues steps that are gone, then the
-            // collections, so that none ever lists a grid that is gone.
-            names.sort_by_key(|name| {
-                let is_collection = name.as_encoded_bytes().ends_with(b".pvd");
-                (name != checkpoint::NAME, !is_collection)
-            });
-            names
-                .iter()
-                .try_for_each(|name| std::fs::remove_file(self.folder.join(name)))
+        let Place::Kept(folder) = &self.place else {
+            return Ok(());
         };
-        remove().map_err(|error| {
+        let mut names: Vec<&String> = folder.own().iter().collect();
+        names.retain(|name| *name == checkpoint::NAME || former::is_step(name));
+        // The checkpoint first, so that none ever continues steps that are gone, then the
+        // collections, so that none ever lists a grid that is gone.
+        names.sort_by_key(|name| (*name != checkpoint::NAME, !name.ends_with(".pvd")));
+        let removed = names.iter().try_for_each(|name| {
+            match std::fs::remove_file(folder.path().join(name)) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+                _ => Ok(()),
+            }
+        });
+        removed.map_err(|error| {
             Defect::new(
-                self.folder.display().to_string(),
+                folder.path().display().to_string(),
                 format!("the results of a former run cannot be removed: {error}"),
                 "remove them, or name another folder with --out DIR",
             )
@@ -146,16 +244,37 @@ impl Output {
             return Ok(());
         }
         let [rock, fractures] = names(self.rock.len() + 1);
-        let of_rock = || write_vtu(&self.path(&rock), rock_grid());
-        let of_fractures = || write_vtu(&self.path(&fractures), fracture_grid());
-        let (rock_written, fractures_written) = rayon::join(of_rock, of_fractures);
-        rock_written?;
-        fractures_written?;
+        let of_rock = || self.write_grid(&rock, rock_grid);
+        let of_fractures = || self.write_grid(&fractures, fracture_grid);
+        let (rock_sum, fracture_sum) = rayon::join(of_rock, of_fractures);
+        let sums = [rock_sum?, fracture_sum?];
+        self.publish(&rock)?;
+        self.publish(&fractures)?;
+        self.sums.push(sums);
         self.rock.push((time, rock));
         self.fractures.push((time, fractures));
-        write_pvd(&self.path("rock.pvd"), &self.rock)?;
-        write_pvd(&self.path("fractures.pvd"), &self.fractures)
+        for (name, entries) in COLLECTIONS.into_iter().zip([&self.rock, &self.fractures]) {
+            self.write(name, |path| write_pvd(path, entries))?;
+        }
+        Ok(())
     }
+
+    /// Writes a grid that is not yet published, and sums up its bytes.
+    fn write_grid(&self, name: &str, grid: impl FnOnce() -> Grid) -> Result<u128, Defect> {
+        let unfinished = self.unfinished(name);
+        let written = write_vtu(&unfinished, grid()).and_then(|()| fingerprint_of(&unfinished));
+        written.map_err(|defect| Defect {
+            place: self.path(name).display().to_string(),
+            ..defect
+        })
+    }
+}
+
+fn list<'a>(
+    folder: &mut ClaimedFolder,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<(), Vec<Defect>> {
+    folder.list(names).map_err(|defect| vec![defect])
 }
 
 /// Names of the grids of a load step.
@@ -164,33 +283,4 @@ fn names(number: usize) -> [String; 2] {
         format!("rock_{number:04}.vtu"),
         format!("fractures_{number:04}.vtu"),
     ]
-}
-
-/// Whether a run writes files of this name beside its mesh and its summary, or leaves them if it is
-/// killed.
-fn is_result(name: &str) -> bool {
-    let unfinished = name
-        .strip_prefix('.')
-        .and_then(|name| name.strip_suffix(".tmp"));
-    let of_gmsh = [".tmp.msh", ".tmp.geo", ".msh41.msh"].iter();
-    let is_mesh = name.starts_with('.') && of_gmsh.into_iter().any(|end| name.ends_with(end));
-    let name = unfinished.unwrap_or(name);
-    let is_summary = unfinished.is_some() && ["summary.json", "sizes.pos"].contains(&name);
-    is_mesh || is_summary || name == checkpoint::NAME || is_step(name)
-}
-
-/// Whether [`Output::write_step`] writes files of this name.
-fn is_step(name: &str) -> bool {
-    let of_kind = |kind: &str| {
-        let Some(rest) = name.strip_prefix(kind) else {
-            return false;
-        };
-        let number = rest
-            .strip_prefix('_')
-            .and_then(|rest| rest.strip_suffix(".vtu"));
-        let is_number =
-            |text: &str| text.len() >= 4 && text.bytes().all(|byte| byte.is_ascii_digit());
-        rest == ".pvd" || number.is_some_and(is_number)
-    };
-    of_kind("rock") || of_kind("fractures")
 }

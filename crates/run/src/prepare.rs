@@ -3,12 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use kluft_io::{Meshing, mesh_geometry};
-use kluft_mesh::Defect;
+use kluft_io::{Meshing, load_msh, mesh_geometry};
+use kluft_mesh::{Defect, Draft};
 use kluft_scene::{MeshSource, Scene};
 
+use crate::decisions::gigabytes;
+use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::output::Output;
+
+/// The mesh that gmsh makes.
+pub const MESH: &str = "mesh.msh";
 
 /// A mesh file, and how long gmsh took to make it, if it did.
 pub struct MeshFile {
@@ -22,6 +27,60 @@ pub struct MeshFile {
 pub fn folder_for(file: &Path, asked: Option<&Path>) -> PathBuf {
     let beside = || file.parent().unwrap_or(Path::new(".")).join("out");
     asked.map_or_else(beside, Path::to_owned)
+}
+
+/// The files that the results of a scene are made from, as far as they are known: what a geometry
+/// includes is known to gmsh alone.
+pub fn inputs<'a>(file: &'a Path, scene: Option<&'a Scene>) -> Vec<&'a Path> {
+    let mesh = scene.map(|scene| match &scene.mesh {
+        MeshSource::Geometry { geometry, .. } => geometry.as_path(),
+        MeshSource::File(mesh) => mesh.as_path(),
+    });
+    [file].into_iter().chain(mesh).collect()
+}
+
+/// Least memory that topology, unknowns and stiffness take for each cell (bytes): linear tetrahedra
+/// take that, others more.
+const LEAST_OF_CELL: usize = 400;
+
+/// Reads a mesh, unless it is certain that there is no memory for it; what gmsh has to convert goes
+/// through the folder `scratch`.
+///
+/// # Errors
+/// As [`load_msh`], and a mesh that is too large for this process.
+pub fn read_mesh(path: &Path, scratch: &Path) -> Result<Draft, Vec<Defect>> {
+    let available = memory::available_bytes().unwrap_or(usize::MAX);
+    // A file that is not there is refused by who reads it.
+    let length = std::fs::metadata(path).map_or(0, |file| file.len() as usize);
+    check_memory(path, "to be read", length, available)?;
+    let draft = load_msh(path, scratch)?;
+    let cells = draft.cells.elements.len();
+    let available = memory::available_bytes().unwrap_or(usize::MAX);
+    let what = format!("for its {cells} cells");
+    check_memory(path, &what, LEAST_OF_CELL * cells, available)?;
+    Ok(draft)
+}
+
+fn check_memory(
+    path: &Path,
+    what: &str,
+    needed: usize,
+    available: usize,
+) -> Result<(), Vec<Defect>> {
+    if needed <= available {
+        return Ok(());
+    }
+    let problem = format!(
+        "the mesh needs at least {} of memory {what}, and this process may take {}",
+        gigabytes(needed),
+        gigabytes(available)
+    );
+    let remedy = "mesh coarser (a larger h), or raise the limit of memory (ulimit -v, container)";
+    Err(vec![Defect::new(
+        path.display().to_string(),
+        problem,
+        remedy,
+    )])
 }
 
 /// The mesh file of a scene; gmsh makes it if the scene names a geometry.
@@ -45,13 +104,13 @@ pub fn mesh_file(
             order,
             ..
         } => {
-            let path = output.path("mesh.msh");
+            let unfinished = output.unfinished(MESH);
             let meshing = Meshing {
                 geometry,
                 parameters,
                 order: *order,
                 sizes,
-                output: &path,
+                output: &unfinished,
             };
             observer.stage_begins(Stage::Mesh);
             let start = Instant::now();
@@ -61,10 +120,27 @@ pub fn mesh_file(
             for warning in warnings? {
                 observer.detail("gmsh", &warning);
             }
+            output.publish(MESH).map_err(|defect| vec![defect])?;
             Ok(MeshFile {
-                path,
+                path: output.path(MESH),
                 meshing: Some(took),
             })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_without_room_is_refused_by_name() {
+        let path = Path::new("a/b.msh");
+        check_memory(path, "to be read", 5, 5).expect("it fits");
+        let defects = check_memory(path, "for its 9 cells", 3 << 30, 1 << 30).expect_err("large");
+        let said = defects[0].to_string();
+        for part in ["a/b.msh: ", "for its 9 cells", "may take 1", "coarser"] {
+            assert!(said.contains(part), "{part}: {said}");
         }
     }
 }

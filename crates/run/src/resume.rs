@@ -69,7 +69,10 @@ pub fn find(
         return Err(defects);
     }
     let progress = stored.progress(&path).map_err(|defect| vec![defect])?;
-    output.check_steps(progress.steps.len())?;
+    if progress.files.len() != progress.steps.len() {
+        return Err(vec![checkpoint::other_build(&path)]);
+    }
+    output.check_steps(&progress.files)?;
     Ok(Some(FormerRun {
         progress,
         mesh: stored.identity.mesh,

@@ -1,13 +1,16 @@
 //! A run, told as a story.
 
 use kluft_mesh::Defect;
+use kluft_scene::MeshSource;
 
-use crate::adapt;
+use crate::adapt::{self, SIZES};
 use crate::checkpoint;
+use crate::failures;
 use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
-use crate::output::Output;
-use crate::request::Request;
+use crate::output::{COLLECTIONS, Output};
+use crate::prepare::{MESH, inputs};
+use crate::request::{MeshInput, Request};
 use crate::resume::{self, FormerRun};
 use crate::stages::{Interruption, Run};
 
@@ -23,11 +26,7 @@ pub fn run(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome,
 
 /// Runs a scene on the present thread pool.
 fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome, Vec<Defect>> {
-    let output = match request.folder {
-        Some(folder) => Output::prepare(folder),
-        None => Output::nowhere(),
-    };
-    let output = output.map_err(|defect| vec![defect])?;
+    let output = output(&request)?;
     let version = env!("CARGO_PKG_VERSION");
     observer.note("kluft", &format!("{version}  {}", request.scene.title));
     let identity = resume::identity(request.scene, request.origin);
@@ -35,6 +34,10 @@ fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome
     if let Some(origin) = request.origin.filter(|_| request.resume) {
         former = resume::find(origin.file, request.scene, &identity, &output)?;
         observer.note("resume", &what_is_left(former.as_ref(), &output));
+    }
+    if output.is_unguarded() {
+        let text = "its file system knows no locks: let no other run write to this folder";
+        observer.note("warning", text);
     }
     let is_finished = former.as_ref().is_some_and(FormerRun::is_finished);
     let mesh_is_kept = former.as_ref().is_some_and(|former| former.mesh_is_kept);
@@ -46,8 +49,32 @@ fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome
         Ok(()) => run.finish(Ending::Solved),
         Err(Interruption::NotConverged(why)) => run.finish(Ending::NotConverged(why)),
         Err(Interruption::Stopped) => run.finish(Ending::Stopped),
-        Err(Interruption::Defects(defects)) => Err(defects),
+        Err(Interruption::Defects(defects)) => {
+            let kept = run.output.sums().len();
+            Err(failures::with_what_is_kept(defects, kept))
+        }
     }
+}
+
+/// The folder of a request, for the files that its run will write; the grids of the load steps are
+/// known later.
+fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
+    let Some(folder) = request.folder else {
+        return Output::nowhere();
+    };
+    let mut names = vec!["summary.json", checkpoint::NAME];
+    names.extend(COLLECTIONS);
+    if let (MeshSource::Geometry { adapt, .. }, MeshInput::OfScene) =
+        (&request.scene.mesh, &request.mesh)
+    {
+        names.push(MESH);
+        names.extend(adapt.map(|_| SIZES));
+    }
+    let inputs = match request.origin {
+        Some(origin) => inputs(origin.file, Some(request.scene)),
+        None => Vec::new(),
+    };
+    Output::prepare(folder, &names, &inputs)
 }
 
 fn solve(

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use kluft_io::load_msh;
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
@@ -181,7 +180,7 @@ impl<'a> Run<'a> {
                 MeshInput::OfScene => Err(Vec::new()),
             };
         };
-        let draft = load_msh(&file.path, &self.output.path(""))?;
+        let draft = prepare::read_mesh(&file.path, &self.output.unfinished(""))?;
         let fingerprint = checkpoint::fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {
@@ -212,7 +211,7 @@ impl<'a> Run<'a> {
         let is_kept = matches!(self.meshing, Remeshing::Kept);
         if is_kept || former.is_some_and(|former| former.mesh_is_kept) {
             return Ok(MeshFile {
-                path: self.output.path("mesh.msh"),
+                path: self.output.path(prepare::MESH),
                 meshing: None,
             });
         }
@@ -318,16 +317,23 @@ impl<'a> Run<'a> {
         if !self.output.is_kept() {
             return Ok(());
         }
-        self.summary.write(&self.output.path("summary.json"))
+        self.output
+            .write("summary.json", |path| self.summary.write(path))
     }
 
     /// Ends the run.
     ///
     /// # Errors
-    /// If the summary cannot be written.
+    /// If the summary or the list of files cannot be written.
     pub fn finish(mut self, ending: Ending) -> Result<Outcome, Vec<Defect>> {
-        self.write_summary().map_err(|defect| vec![defect])?;
+        self.close().map_err(|defect| vec![defect])?;
         Ok(self.into_outcome(ending))
+    }
+
+    fn close(&mut self) -> Result<(), Defect> {
+        self.write_summary()?;
+        self.output.sync()?;
+        self.output.close()
     }
 
     /// What came out of it.

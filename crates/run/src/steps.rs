@@ -1,5 +1,6 @@
 //! The load steps of a run: each is solved, estimated, written, and can be resumed from.
 
+use std::path::Path;
 use std::time::Instant;
 
 use kluft_io::Grid;
@@ -102,9 +103,9 @@ impl Run<'_> {
         system: &'s System<'p>,
         plan: Plan,
     ) -> Result<Prepared<'s, 'p>, Interruption> {
-        if self.output.is_kept() {
-            self.output.remove_former()?;
-        }
+        let steps = system.problem().schedule.steps.len();
+        self.output.expect_steps(steps)?;
+        self.output.remove_former()?;
         self.write_summary()?;
         Ok(Prepared {
             newton: self.set_up(system, plan)?,
@@ -124,7 +125,8 @@ impl Run<'_> {
         let steps = &system.problem().schedule.steps;
         let done = &steps[..former.steps.len().min(steps.len())];
         let times = done.iter().map(|step| step.load.time);
-        self.output.go_on_after(times);
+        self.output.expect_steps(steps.len())?;
+        self.output.go_on_after(times, former.files);
         let summaries = done.iter().zip(&former.steps);
         let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
         self.summary.steps = summaries.collect();
@@ -266,6 +268,7 @@ impl Run<'_> {
         let progress = Progress {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
+            files: self.output.sums().to_vec(),
             fractures: self.summary.fractures.clone(),
             measures: self.summary.measures.clone(),
             stress_error: self.summary.stress_error,
@@ -273,8 +276,11 @@ impl Run<'_> {
             peak_memory_bytes: self.summary.peak_memory_bytes,
             restart: is_left.then(|| newton.restart_state(state)),
         };
-        let path = self.output.path(checkpoint::NAME);
-        let written = checkpoint::write(&path, &self.identity, &progress);
+        // What a checkpoint speaks of lasts before it does.
+        self.output.sync()?;
+        let write = |path: &Path| checkpoint::write(path, &self.identity, &progress);
+        let written = self.output.write(checkpoint::NAME, write);
+        let written = written.and_then(|()| self.output.sync());
         self.summary.seconds.write += start.elapsed().as_secs_f64();
         Ok(written?)
     }

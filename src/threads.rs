@@ -1,0 +1,73 @@
+//! The threads that a command works on.
+
+use kluft_mesh::Defect;
+use rayon::ThreadPool;
+
+use crate::failure::Failure;
+
+/// Stack of each thread (bytes): that of a main thread.
+const STACK: usize = 8 << 20;
+/// Most threads for each core: more of them only take memory and time.
+const PER_CORE: usize = 4;
+/// As many threads may always be had.
+const ALWAYS: usize = 16;
+
+/// A number of threads, and a word if fewer are taken than were asked for.
+pub struct ThreadCount {
+    /// The number.
+    pub count: usize,
+    /// Why it is not the one that was asked for.
+    pub word: Option<String>,
+}
+
+/// The number of threads that is asked for, or that `RAYON_NUM_THREADS` says, or of cores; at most
+/// four for each core.
+pub fn thread_count(asked: Option<usize>) -> ThreadCount {
+    let variable = std::env::var("RAYON_NUM_THREADS").ok();
+    let variable = variable.and_then(|text| text.parse::<usize>().ok());
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    capped(asked.or(variable).filter(|&count| count > 0), cores)
+}
+
+fn capped(asked: Option<usize>, cores: usize) -> ThreadCount {
+    let most = (PER_CORE * cores).max(ALWAYS);
+    let asked = asked.unwrap_or(cores);
+    let word = (asked > most).then(|| {
+        format!("{most} threads are taken instead of {asked}: more do not help {cores} cores")
+    });
+    ThreadCount {
+        count: asked.min(most),
+        word,
+    }
+}
+
+/// So many threads.
+///
+/// # Errors
+/// [`Failure::Machine`] if the system does not give them.
+pub fn pool(count: usize) -> Result<ThreadPool, Failure> {
+    let builder = rayon::ThreadPoolBuilder::new()
+        .num_threads(count)
+        .stack_size(STACK);
+    builder.build().map_err(|error| {
+        let problem = format!("the system does not give {count} threads: {error}");
+        let remedy =
+            "ask for fewer, e.g. --threads 1, or raise the limit of processes or of memory";
+        Failure::Machine(vec![Defect::new("threads", problem, remedy)])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_threads_for_each_core_are_too_many() {
+        let count = |asked, cores| capped(asked, cores).count;
+        assert_eq!((count(None, 3), count(Some(7), 1)), (3, 7));
+        assert_eq!((count(Some(40_000), 2), count(Some(40_000), 64)), (16, 256));
+        assert_eq!(capped(Some(16), 2).word, None);
+        let word = capped(Some(1000), 2).word.expect("a word");
+        assert!(word.contains("1000") && word.contains("16"), "{word}");
+    }
+}
