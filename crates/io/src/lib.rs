@@ -6,6 +6,7 @@ mod load;
 pub mod msh;
 mod pvd;
 mod vtu;
+mod vtu_array;
 
 pub use atomic::write_atomically;
 pub use gmsh::{Meshing, mesh_geometry, write_size_field};
