@@ -248,7 +248,9 @@ mod tests {
     use super::*;
     use crate::atomic::scratch_folder;
     use std::fs;
-    use vtkio::model::{Attribute, CellType, DataSet, IOBuffer, UnstructuredGridPiece, VertexNumbers, Vtk};
+    use vtkio::model::{
+        Attribute, CellType, DataSet, IOBuffer, UnstructuredGridPiece, VertexNumbers, Vtk,
+    };
 
     /// Bit patterns that a detour through text or `f32` would lose.
     const AWKWARD: [f64; 4] = [0.1, f64::MIN_POSITIVE / 8.0, -0.0, 1.0 + f64::EPSILON];

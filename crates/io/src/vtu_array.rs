@@ -118,7 +118,9 @@ fn compressed<T: Number>(values: &[T]) -> io::Result<Vec<u8>> {
 /// (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>).
 fn text(bytes: usize, blocks: &[Vec<u8>]) -> String {
     let sizes = blocks.iter().map(Vec::len);
-    let header = [blocks.len(), BLOCK, bytes % BLOCK].into_iter().chain(sizes);
+    let header = [blocks.len(), BLOCK, bytes % BLOCK]
+        .into_iter()
+        .chain(sizes);
     let header: Vec<u8> = header.flat_map(|n| (n as u64).to_le_bytes()).collect();
     BASE64_STANDARD.encode(header) + &BASE64_STANDARD.encode(blocks.concat())
 }
