@@ -1,5 +1,6 @@
 //! The keys of a scene.
 
+mod closure;
 mod conditions;
 mod fracture;
 mod load;
@@ -9,6 +10,7 @@ mod rock;
 mod solver;
 mod study;
 
+pub use closure::{ClosureLaw, LAWS};
 pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
 pub use fracture::{CLOSURES, FRACTURE};
 pub use load::{LOAD, PHASE};

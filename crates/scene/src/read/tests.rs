@@ -205,3 +205,39 @@ fn slips_in_closed_forms_of_joints_are_named() {
         assert!(text.join("\n").contains(named), "{keys}: {text:?}");
     }
 }
+
+/// The table of closure laws says of each what the reader needs: nothing less, and every key that
+/// it may have.
+#[test]
+fn the_closure_laws_need_what_the_table_says() {
+    let scene = |law: &str, keys: &[&str]| {
+        let keys: String = keys
+            .iter()
+            .map(|key| {
+                let known = kluft_keys::scene::FRACTURE.key(key).expect(key);
+                format!("{}\n", known.shown())
+            })
+            .collect();
+        let text = format!(
+            "mesh = {{ file = 'a.msh' }}\n[rock.default]\nyoung_modulus = 5e10\n\
+             poisson_ratio = 0.2\n[fracture.f]\nclosure = '{law}'\n{keys}"
+        );
+        Scene::parse(&text, "scene.toml", Path::new(""))
+    };
+    for law in &kluft_keys::scene::LAWS {
+        let all = [law.needs, law.may].concat();
+        assert_eq!(scene(law.name, law.needs).err(), None, "{}", law.name);
+        assert_eq!(scene(law.name, &all).err(), None, "{}", law.name);
+        for left_out in law.needs {
+            let others = law.needs.iter().copied().filter(|key| key != left_out);
+            let others: Vec<&str> = others.collect();
+            assert!(
+                scene(law.name, &others).is_err(),
+                "{}, {left_out}",
+                law.name
+            );
+        }
+    }
+    let named = kluft_keys::scene::LAWS.map(|law| law.name);
+    assert_eq!(named, kluft_keys::scene::CLOSURES);
+}
