@@ -8,6 +8,7 @@ use kluft_scene::Scene;
 use rayon::ThreadPool;
 
 use crate::failure::Failure;
+use crate::input::expect_scene;
 use crate::report::{Report, Verbosity};
 
 /// Stack of each thread (bytes): that of a main thread.
@@ -37,6 +38,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     if options.is_tied {
         end_with_standard_input();
     }
+    expect_scene(scene_file)?;
     let text = Scene::text(scene_file)?;
     let scene = Scene::parse_file(scene_file, &text)?;
     let folder = folder_for(scene_file, options.out.as_deref());

@@ -17,6 +17,8 @@ use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::failure::Failure;
+use crate::input::{expect_scene, is_mesh};
+use crate::printing;
 use kluft_run::Output;
 use kluft_run::{folder_for, mesh_file};
 use kluft_scene::{Scene, bind, in_terms_of_scene, roles};
@@ -40,12 +42,10 @@ pub struct InspectOptions {
 /// printed before.
 pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     let start = Instant::now();
-    let is_mesh = input
-        .extension()
-        .is_some_and(|extension| extension == "msh");
-    let scene = if is_mesh {
+    let scene = if is_mesh(input) {
         None
     } else {
+        expect_scene(input)?;
         Some(Scene::read(input)?)
     };
     let folder = folder_for(input, options.out.as_deref());
@@ -78,6 +78,7 @@ fn look(
     output: &Output,
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
+    inspection.warnings.extend(groups::missing(&draft));
     let faces = Faces::of(&draft);
     let inner = faces.inner_surfaces(&draft);
     inspection.groups = groups::list(&draft, &inner, None, scene);
@@ -130,6 +131,7 @@ fn weigh(problem: &Problem, survey: &Survey, inspection: &mut Inspection) -> Vec
 /// Prints the report and keeps it as `inspect.json`.
 fn print(inspection: &Inspection, json: bool, output: &Output) -> Option<Defect> {
     let encoded = serde_json::to_string_pretty(inspection).unwrap_or_default() + "\n";
+    let encoded = printing::json(&encoded);
     let text = if json {
         encoded.clone()
     } else {

@@ -26,6 +26,8 @@ use kluft_io::write_atomically;
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
+use crate::input::expect_scene;
+use crate::printing::{lines, one_line};
 use crate::report::{Report, Verbosity};
 use assess::{Assessment, assess};
 use kluft_run::fingerprint_of;
@@ -87,12 +89,13 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
     };
     // With the output stream gone there is nobody left to tell.
     let text = answer::fragment(&study, &found, best, tolerance);
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let _ = std::io::stdout().lock().write_all(lines(&text).as_bytes());
     Ok(())
 }
 
 impl Study {
     fn begin(scene_file: &Path, options: &StudyOptions) -> Result<Self, Failure> {
+        expect_scene(scene_file)?;
         let text = Scene::text(scene_file)?;
         let plan = StudyPlan::read(scene_file, &text)?;
         let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
@@ -165,7 +168,7 @@ impl Study {
             return;
         };
         let text = match &record.outcome {
-            PointOutcome::Failed(why) => format!("failed: {}", why.replace('\n', "\n           ")),
+            PointOutcome::Failed(why) => format!("failed: {}", why.replace('\n', "; ")),
             PointOutcome::Solved(numbers) => {
                 let error = found.verdicts[index].error;
                 // A reference that is extrapolated moves with each mesh.
@@ -195,7 +198,8 @@ impl Study {
 
     /// What a setting is called.
     fn name(&self, index: usize) -> String {
-        or_the_scene(self.plan.name(&self.plan.settings[index], |_| true))
+        let name = self.plan.name(&self.plan.settings[index], |_| true);
+        or_the_scene(one_line(&name).into_owned())
     }
 
     /// Wall-clock time of a setting (s); infinite if it was not solved.

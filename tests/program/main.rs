@@ -9,6 +9,7 @@ mod fuzz_scene;
 mod harness;
 mod inspect;
 mod load_paths;
+mod manners;
 mod network;
 mod network_seeds;
 mod read_back;
