@@ -1,7 +1,7 @@
 //! Laws by simulation: the table of the logarithmic one, and the single joint of OpenGeoSys.
 
 use glam::{DMat3, DVec3};
-use kluft_mesh::Patch;
+use kluft_mesh::structured::Patch;
 use kluft_solver::{FacetState, Fracture, Problem, Solution, Support};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 

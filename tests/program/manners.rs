@@ -1,6 +1,7 @@
 //! What the program prints, whatever names, titles and files hold: nothing that commands a terminal
 //! or a spreadsheet, lines that fit, and few of them.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -25,8 +26,8 @@ fn two_cells(scene: &[(&str, &str)], mesh: &[(&str, &str)]) -> (TempDir, PathBuf
 }
 
 fn on(command: &str, file: &Path, flags: &[&str]) -> Run {
-    let mut arguments = vec![command.as_ref(), file.as_os_str()];
-    arguments.extend(flags.iter().map(AsRef::as_ref));
+    let mut arguments = vec![OsStr::new(command), file.as_os_str()];
+    arguments.extend(flags.iter().map(OsStr::new));
     kluft(&arguments)
 }
 
