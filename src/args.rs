@@ -8,17 +8,18 @@ use kluft_network::{Domain, Grouping};
 
 use crate::inspect::InspectOptions;
 use crate::network::NetworkOptions;
+use crate::printing::WIDTH;
 use crate::report::Verbosity;
 use crate::run::RunOptions;
 use crate::study::StudyOptions;
 
 /// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
 ///
-/// The fractures are physical surfaces of the geometry. Their walls may open, slide and close, and
-/// under the exact logarithmic law they never overlap. Intersections, tips and cut boundaries need
-/// no help.
+/// The fractures are physical surfaces of the geometry. Their walls may open, slide
+/// and close, and under the exact logarithmic law they never overlap. Intersections,
+/// tips and cut boundaries need no help.
 #[derive(Parser)]
-#[command(version, arg_required_else_help = true, after_help = include_str!("help/examples.txt").trim_end())]
+#[command(version, term_width = WIDTH, arg_required_else_help = true, after_help = include_str!("help/examples.txt").trim_end())]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]

@@ -4,7 +4,8 @@ use kluft_keys::Document;
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::printing::wrapped;
+use crate::stdout::print;
 
 /// Prints what a key or a section means; without one, all keys.
 ///
@@ -15,7 +16,16 @@ pub fn explain(key: Option<&str>) -> Result<(), Failure> {
         None => kluft_keys::overview(),
         Some(key) => kluft_keys::explain(key).map_err(|near| unknown(key, &near))?,
     };
-    print(&text)
+    let lines = text.lines().map(|line| wrapped(line, hanging(line)) + "\n");
+    print(&lines.collect::<String>())
+}
+
+/// Where a line goes on: below the text that follows its name, or four columns in.
+fn hanging(line: &str) -> usize {
+    let lead = line.len() - line.trim_start().len();
+    let name = line[lead..].find("  ").filter(|_| lead == 2);
+    let gap = name.map(|at| line[lead + at..].len() - line[lead + at..].trim_start().len());
+    name.zip(gap).map_or(4, |(at, gap)| lead + at + gap)
 }
 
 fn unknown(key: &str, near: &[&str]) -> Defect {

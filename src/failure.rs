@@ -6,6 +6,9 @@ use std::process::ExitCode;
 use kluft_io::NOT_WRITTEN;
 use kluft_mesh::Defect;
 
+use crate::defects::listed;
+use crate::printing::lines;
+
 /// Why a command did not end well.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Failure {
@@ -42,18 +45,13 @@ impl Failure {
         let mut err = std::io::stderr().lock();
         // With the error stream gone there is nobody left to tell.
         let _ = match self {
-            Self::NotConverged(why) => writeln!(err, "not converged: {why}"),
-            Self::NotReached(why) => writeln!(err, "not reached: {why}"),
+            Self::NotConverged(why) => writeln!(err, "not converged: {}", lines(why)),
+            Self::NotReached(why) => writeln!(err, "not reached: {}", lines(why)),
             Self::Machine(defects) => {
-                let lines: Vec<String> = defects.iter().map(ToString::to_string).collect();
-                writeln!(err, "failed: {}", lines.join("\n"))
+                let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
+                writeln!(err, "failed: {}", lines(&text.join("\n")))
             }
-            Self::BadInput(defects) => {
-                let count = defects.len();
-                let noun = if count == 1 { "defect" } else { "defects" };
-                let lines: Vec<String> = defects.iter().map(ToString::to_string).collect();
-                writeln!(err, "{count} {noun} in the input\n{}", lines.join("\n"))
-            }
+            Self::BadInput(defects) => write!(err, "{}", listed(defects)),
         };
     }
 

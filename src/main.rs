@@ -3,13 +3,16 @@
 //! Arguments come in, an exit code goes out. Only here anything is printed.
 
 mod args;
+mod defects;
 mod explain;
 mod failure;
+mod input;
 mod inspect;
 mod network;
-mod print;
+mod printing;
 mod report;
 mod run;
+mod stdout;
 mod study;
 mod threads;
 
@@ -20,7 +23,7 @@ use clap::Parser;
 use args::{Cli, Command};
 
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let done = match arguments().command {
         Command::Run(args) => run::run(&args.scene.clone(), &args.into()),
         Command::Network(args) => network::make_network(&args.input.clone(), &args.into()),
         Command::Inspect(args) => inspect::inspect(&args.input.clone(), &args.into()),
@@ -35,4 +38,14 @@ fn main() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// The arguments; what is wrong with them ends the program, after the usage.
+fn arguments() -> Cli {
+    Cli::try_parse().unwrap_or_else(|error| {
+        // The message repeats what was given, which may hold what commands a terminal.
+        let given = std::env::args_os();
+        let shown = given.map(|one| printing::one_line(&one.to_string_lossy()).into_owned());
+        Cli::try_parse_from(shown).err().unwrap_or(error).exit()
+    })
 }

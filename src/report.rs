@@ -8,6 +8,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use kluft_run::{FractureSummary, Measure, Observer, Stage, StepStart};
 use kluft_solver::Iteration;
 
+use crate::printing::{one_line, shortened, wrapped};
+
 /// How much a run tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verbosity {
@@ -19,10 +21,19 @@ pub enum Verbosity {
     Verbose,
 }
 
+/// Column in which what an entry says begins, less one.
+const INDENT: usize = 10;
+/// Rows of the closing table.
+const ROWS: usize = 30;
+/// Characters of a name in it.
+const NAME: usize = 16;
+
 /// Where the report goes.
 pub struct Report {
     speaks: bool,
     verbose: bool,
+    /// Whether long lines are broken; those of a log are searched.
+    wraps: bool,
     spinner: Option<ProgressBar>,
 }
 
@@ -38,12 +49,17 @@ impl Report {
         Self {
             speaks,
             verbose: verbosity == Verbosity::Verbose,
+            wraps: terminal,
             spinner: None,
         }
     }
 
-    /// Prints one line.
+    /// Prints one line, of which nothing commands the terminal.
     pub fn line(&self, text: &str) {
+        self.print(&one_line(text));
+    }
+
+    fn print(&self, text: &str) {
         if self.speaks {
             let print = || {
                 // A closed pipe (`| head`) ends the report, not the run.
@@ -58,7 +74,11 @@ impl Report {
 
     /// Prints one line of a named kind.
     pub fn entry(&self, kind: &str, text: &str) {
-        self.line(&format!("{kind:<10} {text}"));
+        let line = format!("{kind:<INDENT$} {}", one_line(text));
+        match self.wraps {
+            true => self.print(&wrapped(&line, INDENT + 1)),
+            false => self.print(&line),
+        }
     }
 
     /// Shows on a terminal that work is under way.
@@ -82,40 +102,22 @@ impl Report {
         }
     }
 
-    /// Prints the closing table, one line a fracture.
+    /// Prints the closing table, one line a fracture; `summary.json` has all of them.
     pub fn fractures(&self, fractures: &[(String, FractureSummary)]) {
         if fractures.is_empty() {
             return;
         }
-        let width = fractures
-            .iter()
-            .map(|(name, _)| name.len())
-            .max()
-            .unwrap_or(0)
-            .max(8);
-        self.line(&format!(
-            "\n{:<width$}  {:>7}  {:>33}  {:>12}  {:>10}  {:>9}",
-            "fracture",
-            "facets",
-            "aperture min / mean / max [m]",
-            "below cutoff",
-            "open [m2]",
-            "of [m2]"
-        ));
-        for (name, summary) in fractures {
-            let aperture = &summary.aperture;
-            self.line(&format!(
-                "{name:<width$}  {:>7}  {:>9.3e} / {:>9.3e} / {:>9.3e}  {:>12}  {:>10.4}  {:>9.4}",
-                summary.facets,
-                aperture.min,
-                aperture.mean,
-                aperture.max,
-                summary.below_cutoff_facets,
-                summary.open_area,
-                summary.area
-            ));
+        self.line("");
+        for line in table(fractures) {
+            self.line(&line);
         }
         self.line("");
+        for (name, summary) in fractures.iter().take(ROWS) {
+            let count = summary.below_cutoff_facets;
+            if count > 0 {
+                self.entry("cutoff", &format!("{name}: {count} facets are below it"));
+            }
+        }
     }
 
     /// Prints the errors against closed forms, one line a fracture and kind.
@@ -130,6 +132,46 @@ impl Report {
                 &format!("{fracture}: {what} {:.3} % off", 100.0 * error),
             );
         }
+    }
+}
+
+/// The lines of the closing table, none longer than a terminal is wide.
+fn table(fractures: &[(String, FractureSummary)]) -> Vec<String> {
+    let shown = &fractures[..fractures.len().min(ROWS)];
+    let names: Vec<String> = shown
+        .iter()
+        .map(|(name, _)| shortened(name, NAME))
+        .collect();
+    let widths = names.iter().map(|name| name.chars().count());
+    let width = widths.max().unwrap_or(0).max(8);
+    let mut lines = vec![format!(
+        "{:<width$}  {:>7}  {:>29}  {:>9}  {:>9}",
+        "fracture", "facets", "aperture min / mean / max [m]", "open [m2]", "of [m2]"
+    )];
+    for (name, (_, summary)) in names.iter().zip(shown) {
+        let aperture = &summary.aperture;
+        lines.push(format!(
+            "{name:<width$}  {:>7}  {:>9.3e} {:>9.3e} {:>9.3e}  {:>9}  {:>9}",
+            summary.facets,
+            aperture.min,
+            aperture.mean,
+            aperture.max,
+            area(summary.open_area),
+            area(summary.area)
+        ));
+    }
+    let more = fractures.len() - shown.len();
+    if more > 0 {
+        lines.push(format!("... and {more} more, see summary.json"));
+    }
+    lines
+}
+
+/// An area in at most nine characters.
+fn area(value: f64) -> String {
+    match value.abs() {
+        size if size == 0.0 || (1e-3..1e4).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.3e}"),
     }
 }
 
@@ -158,7 +200,8 @@ impl Observer for Report {
             count,
             what,
         } = step;
-        self.line(&format!("\nstep {number} of {count}, {what}"));
+        self.line("");
+        self.line(&format!("step {number} of {count}, {what}"));
         self.line(
             "  iteration  force balance      increment  closure error  smallest aperture [m]",
         );
@@ -175,5 +218,53 @@ impl Observer for Report {
             iteration.force_residual, iteration.increment, iteration.closure_error
         ));
         ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::printing::WIDTH;
+    use kluft_run::Spread;
+
+    fn summary(value: f64) -> FractureSummary {
+        let spread = Spread {
+            min: -value,
+            mean: value,
+            max: value,
+        };
+        FractureSummary {
+            facets: 1_000_000,
+            area: value,
+            aperture: spread,
+            normal_traction: spread,
+            slip_max: 0.0,
+            open_area: value,
+            below_cutoff_area: 0.0,
+            below_cutoff_facets: 0,
+            overlap_area: 0.0,
+            undetermined: Default::default(),
+            aperture_uncertainty: None,
+            slip_uncertainty: None,
+        }
+    }
+
+    #[test]
+    fn the_table_of_a_thousand_fractures_is_short_and_narrow() {
+        let values = [0.0, 1.5e-7, 0.5, 9_999.5, 3.25e8];
+        let rows: Vec<(String, FractureSummary)> = (0..1000)
+            .map(|i| {
+                let name = format!("FRACTURE_OF_THE_SECOND_SET_{i:04}");
+                (name, summary(values[i % values.len()]))
+            })
+            .collect();
+        let lines = table(&rows);
+        assert_eq!(lines.len(), 1 + ROWS + 1);
+        for line in &lines {
+            assert!(line.chars().count() <= WIDTH, "{line}");
+        }
+        assert!(lines[ROWS + 1].contains("970 more, see summary.json"));
+        assert!(lines[1].starts_with("FRACTURE…ET_0000  "), "{}", lines[1]);
+        assert_eq!(table(&rows[..3]).len(), 4);
     }
 }

@@ -6,6 +6,7 @@ use kluft_run::{Ending, MeshInput, Origin, Outcome, Request, folder_for};
 use kluft_scene::Scene;
 
 use crate::failure::Failure;
+use crate::input::expect_scene;
 use crate::report::{Report, Verbosity};
 use crate::threads::{ThreadCount, pool, thread_count};
 
@@ -33,6 +34,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     if options.is_tied {
         end_with_standard_input();
     }
+    expect_scene(scene_file)?;
     let text = Scene::text(scene_file)?;
     let scene = Scene::parse_file(scene_file, &text)?;
     let folder = folder_for(scene_file, options.out.as_deref());

@@ -23,6 +23,28 @@ pub fn guess(draft: &Draft, inner: &[bool]) -> Vec<SurfaceRole> {
         .collect()
 }
 
+/// What is said of a mesh that names no volumes or no surfaces, and how names are made.
+pub fn missing(draft: &Draft) -> Option<String> {
+    let has = |dimension| {
+        draft
+            .groups
+            .iter()
+            .any(|group| group.dimension == dimension)
+    };
+    let surfaces = "`Physical Surface(\"NAME\") = {...};` for each fracture, support and load";
+    match (has(3), has(2)) {
+        (_, true) => None,
+        (true, false) => Some(format!(
+            "the mesh has no physical surfaces, so a scene can name no fracture and no boundary: \
+             add to the geometry {surfaces}"
+        )),
+        (false, false) => Some(format!(
+            "the mesh has no physical groups, so a scene can name no rock, fracture or boundary: \
+             add to the geometry `Physical Volume(\"rock\") = {{...}};` and {surfaces}"
+        )),
+    }
+}
+
 /// All groups; without roles (the scene names groups that are not there) the surfaces' are unknown.
 pub fn list(
     draft: &Draft,

@@ -18,7 +18,9 @@ use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::input::{expect_scene, is_mesh};
+use crate::printing;
+use crate::stdout::print;
 use crate::threads::{pool, thread_count};
 use kluft_run::{MESH, Output, folder_for, inputs, mesh_file, read_mesh};
 use kluft_scene::{MeshSource, Scene, bind, in_terms_of_scene, join, roles};
@@ -52,12 +54,10 @@ pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
 /// Inspects on the present thread pool.
 fn inspect_here(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     let start = Instant::now();
-    let is_mesh = input
-        .extension()
-        .is_some_and(|extension| extension == "msh");
-    let scene = if is_mesh {
+    let scene = if is_mesh(input) {
         None
     } else {
+        expect_scene(input)?;
         Some(Scene::read(input)?)
     };
     let folder = folder_for(input, options.out.as_deref());
@@ -103,6 +103,7 @@ fn look(
     output: &Output,
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
+    inspection.warnings.extend(groups::missing(&draft));
     let faces = Faces::of(&draft);
     inspection.groups = groups::list(&draft, &faces.inner_surfaces(&draft), None, scene);
     let (draft, faces) = match joined(draft, faces, scene, inspection) {
@@ -185,6 +186,7 @@ fn keep_and_print(
     defects: &mut Vec<Defect>,
 ) -> Result<(), Failure> {
     let encoded = serde_json::to_string_pretty(inspection).unwrap_or_default() + "\n";
+    let encoded = printing::json(&encoded);
     let text = if json {
         encoded.clone()
     } else {

@@ -2,12 +2,22 @@
 
 use std::fmt::Write;
 
+use crate::defects::SHOWN as SHOWN_DEFECTS;
+use crate::printing::{one_line, shortened, wrapped};
+
 use super::findings::{
-    BlockFinding, CellFinding, FractureFinding, Inspection, Place, SectorCounts, SolverFinding,
+    BlockFinding, CellFinding, FractureFinding, GroupFinding, Inspection, Place, SectorCounts,
+    SolverFinding,
 };
 
 /// Lists longer than this are cut; `--json` has all of them.
 const SHOWN: usize = 12;
+/// Groups that are listed.
+const GROUPS: usize = 60;
+/// Fractures that are described.
+const FRACTURES: usize = 30;
+/// Characters of a name in the table of groups.
+const NAME: usize = 24;
 
 /// The whole report.
 pub fn of(inspection: &Inspection) -> String {
@@ -26,18 +36,37 @@ pub fn of(inspection: &Inspection) -> String {
         cost(out, solver);
     }
     walls(out, inspection);
+    let defects = inspection.defects.len();
+    if defects > SHOWN_DEFECTS {
+        head_line(
+            out,
+            &format!("defects    {defects}, all of them in inspect.json"),
+        );
+    }
     if !inspection.warnings.is_empty() {
-        line(out, "\nwarnings");
-        for warning in &inspection.warnings {
-            line(out, &format!("  {warning}"));
-        }
+        head_line(out, "warnings");
+        list(out, &inspection.warnings, |warning| format!("  {warning}"));
     }
     text
 }
 
+/// Adds one line, broken where it is too long, below its own beginning or a head of eleven columns.
 fn line(out: &mut String, text: &str) {
+    let text = one_line(text.trim_end());
+    let indent = if text.starts_with("  ") { 4 } else { 11 };
     // Writing to a string does not fail.
-    let _ = writeln!(out, "{}", text.trim_end());
+    let _ = writeln!(out, "{}", wrapped(&text, indent));
+}
+
+/// The same after an empty line.
+fn head_line(out: &mut String, text: &str) {
+    out.push('\n');
+    line(out, text);
+}
+
+/// A name that leaves room beside it on a line.
+fn short(name: &str) -> String {
+    shortened(name, 50)
 }
 
 fn at(place: Place) -> String {
@@ -80,23 +109,36 @@ fn head(out: &mut String, inspection: &Inspection) {
 }
 
 fn groups(out: &mut String, inspection: &Inspection) {
-    let width = inspection.groups.iter().map(|group| group.name.len());
-    let width = width.max().unwrap_or(0).max(5);
-    line(
+    if inspection.groups.is_empty() {
+        return head_line(out, "no physical groups");
+    }
+    let name = |group: &GroupFinding| shortened(&group.name, NAME);
+    let widths = inspection
+        .groups
+        .iter()
+        .map(|group| name(group).chars().count());
+    let width = widths.max().unwrap_or(0).max(5);
+    head_line(
         out,
-        &format!("\n{:<width$}  dimension  elements  role", "group"),
+        &format!("{:<width$}  dimension  elements  role", "group"),
     );
-    for group in &inspection.groups {
+    for group in inspection.groups.iter().take(GROUPS) {
         let elements = group
             .elements
             .map_or("-".to_owned(), |count| count.to_string());
-        line(
-            out,
-            &format!(
-                "{:<width$}  {:>9}  {elements:>8}  {:<8}  {}",
-                group.name, group.dimension, group.role, group.detail
-            ),
+        let start = format!(
+            "{:<width$}  {:>9}  {elements:>8}  {:<8}  ",
+            name(group),
+            group.dimension,
+            group.role
         );
+        let indent = start.chars().count();
+        let row = wrapped(&one_line(&(start + &group.detail)), indent);
+        let _ = writeln!(out, "{row}");
+    }
+    let more = inspection.groups.len().saturating_sub(GROUPS);
+    if more > 0 {
+        line(out, &format!("... and {more} more (--json lists them)"));
     }
 }
 
@@ -104,7 +146,7 @@ fn doubled(out: &mut String, inspection: &Inspection) {
     if inspection.doubled_surfaces.is_empty() {
         return;
     }
-    line(out, "\nouter faces that lie on one another");
+    head_line(out, "outer faces that lie on one another");
     list(out, &inspection.doubled_surfaces, |surface| {
         let kind = match surface.kind {
             "doubled nodes" => "nodes are doubled",
@@ -122,9 +164,16 @@ fn doubled(out: &mut String, inspection: &Inspection) {
 }
 
 fn fractures(out: &mut String, inspection: &Inspection) {
-    for fracture in &inspection.fractures {
-        line(out, &format!("\nfracture   {}", fracture.name));
+    for fracture in inspection.fractures.iter().take(FRACTURES) {
+        head_line(out, &format!("fracture   {}", short(&fracture.name)));
         fracture_lines(out, fracture);
+    }
+    let more = inspection.fractures.len().saturating_sub(FRACTURES);
+    if more > 0 {
+        head_line(
+            out,
+            &format!("... and {more} more fractures (--json lists them)"),
+        );
     }
 }
 
@@ -204,9 +253,9 @@ fn contacts(out: &mut String, inspection: &Inspection) {
     if inspection.contacts.is_empty() {
         return;
     }
-    line(out, "\nfractures that meet");
+    head_line(out, "fractures that meet");
     list(out, &inspection.contacts, |contact| {
-        let [first, second] = &contact.fractures;
+        let [first, second] = contact.fractures.each_ref().map(|name| short(name));
         let kind = match contact.kind {
             "first ends on second" => format!("{first} ends on {second}"),
             "second ends on first" => format!("{second} ends on {first}"),
@@ -235,7 +284,7 @@ fn patches(out: &mut String, inspection: &Inspection) {
     if inspection.unresolved_patches.is_empty() {
         return;
     }
-    line(out, "\npatches with no jump of their own");
+    head_line(out, "patches with no jump of their own");
     list(out, &inspection.unresolved_patches, |patch| {
         let what = if patch.whole {
             "a whole component"
@@ -244,7 +293,7 @@ fn patches(out: &mut String, inspection: &Inspection) {
         };
         format!(
             "  {}: {} facets, {:.4e} m2 at {}, {what}",
-            patch.fracture,
+            short(&patch.fracture),
             patch.facets,
             patch.area,
             at(patch.at)
@@ -268,7 +317,7 @@ fn blocks(out: &mut String, inspection: &Inspection) {
         true => "parts of rock that share no faces",
         false => "blocks that fractures cut free",
     };
-    line(out, &format!("\n{} {what}{loose}", blocks.len()));
+    head_line(out, &format!("{} {what}{loose}", blocks.len()));
     list(out, blocks, block_text);
 }
 
@@ -298,10 +347,10 @@ fn cells(out: &mut String, inspection: &Inspection) {
     let Some(cells) = &inspection.cells else {
         return;
     };
-    line(
+    head_line(
         out,
         &format!(
-            "\ncells      mean quality {:.3} (1 is regular, 0 is flat)",
+            "cells      mean quality {:.3} (1 is regular, 0 is flat)",
             cells.mean_quality
         ),
     );
@@ -320,7 +369,10 @@ fn cells(out: &mut String, inspection: &Inspection) {
 fn cell_text(cell: &CellFinding) -> String {
     let fractures = match cell.fractures.is_empty() {
         true => String::new(),
-        false => format!(", at {}", cell.fractures.join(", ")),
+        false => {
+            let names: Vec<String> = cell.fractures.iter().map(|name| short(name)).collect();
+            format!(", at {}", names.join(", "))
+        }
     };
     format!(
         "{}: quality {:.3}, dihedral angles {:.1} to {:.1} degrees, at {}{fractures}",
@@ -340,10 +392,10 @@ fn unknowns(out: &mut String, inspection: &Inspection) {
         true => "held ones left out",
         false => "without any supports",
     };
-    line(
+    head_line(
         out,
         &format!(
-            "\nunknowns   {} ({held}), {} of them jumps",
+            "unknowns   {} ({held}), {} of them jumps",
             unknowns.total, unknowns.jumps
         ),
     );
@@ -388,9 +440,9 @@ fn walls(out: &mut String, inspection: &Inspection) {
     if inspection.walls.is_empty() {
         return;
     }
-    line(
+    head_line(
         out,
-        "\nwalls      do they pass through each other? (an estimate from the loads)",
+        "walls      do they pass through each other? (an estimate from the loads)",
     );
     list(out, &inspection.walls, |wall| {
         let limit = wall.limit.map_or("they never meet".to_owned(), |limit| {
@@ -404,7 +456,8 @@ fn walls(out: &mut String, inspection: &Inspection) {
         let verdict = wall.overlap;
         format!(
             "  {}: {verdict} ({}; {limit}, {expected})",
-            wall.fracture, wall.law
+            short(&wall.fracture),
+            wall.law
         )
     });
 }

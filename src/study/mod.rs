@@ -27,8 +27,10 @@ use kluft_io::{sync_folder, write_atomically};
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::input::expect_scene;
+use crate::printing::{lines, one_line};
 use crate::report::{Report, Verbosity};
+use crate::stdout::print;
 use crate::threads::{ThreadCount, thread_count};
 use assess::{Assessment, assess};
 use files::{PAGE, TABLE};
@@ -93,11 +95,13 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
             &study, &found, tolerance,
         )));
     };
-    print(&answer::fragment(&study, &found, best, tolerance))
+    let text = answer::fragment(&study, &found, best, tolerance);
+    print(&lines(&text))
 }
 
 impl Study {
     fn begin(scene_file: &Path, options: &StudyOptions) -> Result<Self, Failure> {
+        expect_scene(scene_file)?;
         let text = Scene::text(scene_file)?;
         let plan = StudyPlan::read(scene_file, &text)?;
         let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
@@ -175,7 +179,7 @@ impl Study {
             return;
         };
         let text = match &record.outcome {
-            PointOutcome::Failed(why) => format!("failed: {}", why.replace('\n', "\n           ")),
+            PointOutcome::Failed(why) => format!("failed: {}", why.replace('\n', "; ")),
             PointOutcome::Solved(numbers) => {
                 let error = found.verdicts[index].error;
                 // A reference that is extrapolated moves with each mesh.
@@ -205,7 +209,8 @@ impl Study {
 
     /// What a setting is called.
     fn name(&self, index: usize) -> String {
-        or_the_scene(self.plan.name(&self.plan.settings[index], |_| true))
+        let name = self.plan.name(&self.plan.settings[index], |_| true);
+        or_the_scene(one_line(&name).into_owned())
     }
 
     /// Wall-clock time of a setting (s); infinite if it was not solved.

@@ -8,6 +8,7 @@ use super::charts::{NamedChart, subject};
 use super::point::{Numbers, PointRecord};
 use super::under_way::Study;
 use super::words::{duration, memory, percent};
+use crate::printing::lines;
 
 const STYLE: &str = include_str!("page.css");
 
@@ -41,10 +42,10 @@ pub(super) fn page(study: &Study, found: &Assessment, charts: &[(&NamedChart, St
     page + "</body>\n</html>\n"
 }
 
-/// Text in which nothing is markup.
+/// Text in which nothing is markup, and nothing commands who prints the page.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in lines(text).chars() {
         match c {
             '&' => out += "&amp;",
             '<' => out += "&lt;",

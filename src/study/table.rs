@@ -8,6 +8,7 @@ use kluft_mesh::Defect;
 use super::assess::Assessment;
 use super::point::{Numbers, PointOutcome, PointRecord};
 use super::under_way::Study;
+use crate::printing::cell;
 
 /// Writes the table.
 ///
@@ -18,7 +19,7 @@ pub(super) fn write(path: &Path, study: &Study, found: &Assessment) -> Result<()
     write_atomically(path, |out| {
         let mut table = csv::Writer::from_writer(out);
         for row in rows {
-            table.write_record(row)?;
+            table.write_record(row.iter().map(|text| cell(text)))?;
         }
         table.flush()
     })

@@ -1,7 +1,8 @@
 //! Laws by simulation: the table of the logarithmic one, and the single joint of OpenGeoSys.
 
-use glam::DVec3;
-use kluft_solver::{Fracture, Solution, Support};
+use glam::{DMat3, DVec3};
+use kluft_mesh::structured::Patch;
+use kluft_solver::{FacetState, Fracture, Solution, Support};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 
 use kluft_verification::oracles::{LOG_LAW_TABLE, closed_aperture};
@@ -99,5 +100,41 @@ fn single_joint_negative_aperture() {
     let linear = single_joint(50.0, [1e8, 1e12], ClosureKind::Linear);
     for point in &linear.facet_points {
         close(point.aperture, -1.892e-5, 1e-3);
+    }
+}
+
+/// Two joints under a uniaxial stress in their planes, with `across` (Pa) on the faces that they
+/// are parallel to. The exact traction of the joints is `across`, whatever the law.
+fn beside_the_stress(closure: Closure, across: f64) -> Vec<FacetState> {
+    let contains = |[x, _, _]: [f64; 3]| x == 0.25 || x == 0.75;
+    let patch = Patch::new("joints", &contains);
+    let draft = scenes::box_draft([4, 3, 3], [1.0, 1.0, 1.0], &[patch]);
+    let fracture = Fracture {
+        law: FractureLaw::elastic(closure, 20e9),
+        fluid_pressure: 0.0,
+    };
+    let mut problem = scenes::problem(scenes::build(draft), fracture);
+    let stress = DMat3::from_diagonal(DVec3::new(across, 0.0, -1e7));
+    scenes::load_with_stress(&mut problem, stress);
+    scenes::fix_rigid_motions(&mut problem, [DVec3::ZERO, DVec3::X, DVec3::Y]);
+    let points = scenes::solve(&problem).facet_points;
+    points.iter().map(|point| point.state).collect()
+}
+
+/// Which way rounding moves the walls of a joint without load says nothing of the joint; a tension
+/// of a millionth of the stress beside it does, however stiff the joint is.
+#[test]
+fn rounding_parts_no_walls() {
+    for stiffness in [20e9, 1e18] {
+        let law = Closure::new(1e-3, stiffness, EXACT);
+        for (across, expected) in [
+            (0.0, FacetState::Stuck),
+            (-10.0, FacetState::Stuck),
+            (10.0, FacetState::Open),
+        ] {
+            let states = beside_the_stress(law, across);
+            let others = states.iter().filter(|state| **state != expected).count();
+            assert_eq!(others, 0, "{stiffness:e} Pa/m, {across} Pa: {states:?}");
+        }
     }
 }

@@ -12,6 +12,7 @@ mod inspect;
 mod kept_files;
 mod load_paths;
 mod machine;
+mod manners;
 mod network;
 mod network_seeds;
 mod one_answer;

@@ -7,6 +7,7 @@ mod load;
 pub mod msh;
 mod pvd;
 mod vtu;
+mod vtu_array;
 
 pub use atomic::{NOT_WRITTEN, sync_folder, write_atomically};
 pub use claimed_folder::ClaimedFolder;

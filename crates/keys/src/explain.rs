@@ -5,7 +5,8 @@ use std::fmt::Write;
 use crate::document::Document;
 use crate::names::some_near;
 use crate::page::{holds, need};
-use crate::table::{Key, KeySection};
+use crate::scene::{CLOSURES, LAWS};
+use crate::table::{Key, KeySection, Kind};
 
 /// A section, and the documents that have it.
 struct KeyPlace {
@@ -50,6 +51,7 @@ pub fn overview() -> String {
         let keys: Vec<&str> = place.section.keys.iter().map(|key| key.name).collect();
         let _ = writeln!(out, "{}\n    {}", head(&place), keys.join(", "));
     }
+    let _ = write!(out, "\n{}", laws());
     out + "\n`kluft explain KEY` or SECTION.KEY says what a key means.\n"
 }
 
@@ -130,7 +132,25 @@ fn of_key(place: &KeyPlace, key: &Key) -> String {
     }
     line("default", &need(key.need));
     line("example", &key.shown());
+    if matches!(key.kind, Kind::Choice(_, names) if names == CLOSURES) {
+        out += &laws();
+    }
     format!("{}: {}\n{out}", key.name, key.says.replace('`', ""))
+}
+
+/// The closure laws, and which keys each takes.
+fn laws() -> String {
+    let mut out = "closure laws, and the keys of [fracture.NAME] that each takes\n".to_owned();
+    for law in &LAWS {
+        let _ = writeln!(out, "  {:<11}  {}", law.name, law.says);
+        let may = match law.may {
+            [] => String::new(),
+            keys => format!("; may have {}", keys.join(", ")),
+        };
+        let _ = writeln!(out, "  {:<11}  needs {}{may}", "", law.needs.join(", "));
+    }
+    out + "  with friction_angle (and cohesion, dilation_angle) shear_stiffness may be left out;\n  \
+           all but contact may have tensile_strength with fracture_energy\n"
 }
 
 fn units(dimension: crate::Dimension) -> String {

@@ -1,5 +1,6 @@
 //! The keys of a scene.
 
+mod closure;
 mod conditions;
 mod fracture;
 mod load;
@@ -10,6 +11,7 @@ mod solver;
 mod study;
 mod warnings;
 
+pub use closure::{ClosureLaw, LAWS};
 pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
 pub use fracture::{CLOSURES, FRACTURE};
 pub use load::{LOAD, PHASE};

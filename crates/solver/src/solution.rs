@@ -3,19 +3,20 @@
 use glam::{DMat3, DVec3};
 use kluft_mesh::Shape;
 use lie_core::kernel;
-use lie_core::{FacetQuadrature, SymmetricStress, bezier_function};
+use lie_core::{Closure, FacetQuadrature, SymmetricStress, bezier_function};
 use rayon::prelude::*;
 
 use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::interface::Interface;
 use crate::problem::Problem;
 use crate::space::cell::{Cell, components};
-use crate::system::{FacetPointState, State, System};
+use crate::system::{FacetPointState, State, StateScales, System};
 
 /// What a facet point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FacetState {
-    /// Its aperture is at least the initial one.
+    /// Its aperture is at least the initial one, in contact greater than 0, by more than what the
+    /// tests of convergence leave; or it carries tension.
     Open = 0,
     /// It is closed and does not slide.
     Stuck = 1,
@@ -24,6 +25,11 @@ pub enum FacetState {
     /// Its aperture is below the cutoff of its law.
     BelowCutoff = 3,
 }
+
+/// Share of the largest displacement, and of the largest traction, on the way to a state below
+/// which walls have not parted: forces balance to no smaller share of the largest force, so which
+/// way the walls of a joint without load are off is rounding.
+const PARTED: f64 = 1e-9;
 
 /// Results at one facet point.
 #[derive(Debug, Clone, Copy)]
@@ -112,10 +118,10 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
         .into_par_iter()
         .map(|i| {
             facet_result(
-                system,
-                &interface.points[i],
-                jumps[i],
+                system.law(&interface.points[i]).closure,
+                [jumps[i], interface.points[i].normal],
                 &state.facet_points[i],
+                state.reached,
             )
         })
         .collect();
@@ -138,33 +144,41 @@ fn cell_stress(system: &System<'_>, displacements: &[DVec3], cell: usize) -> Sym
 }
 
 fn facet_result(
-    system: &System<'_>,
-    point: &FacetPoint,
-    jump: DVec3,
+    closure: Closure,
+    [jump, normal]: [DVec3; 2],
     state: &FacetPointState,
+    reached: StateScales,
 ) -> FacetResult {
-    let closure = &system.law(point).closure;
     let aperture = state.joint.separation.aperture;
-    let opening = jump.dot(point.normal);
-    let traction = state.joint.traction(point.normal);
-    let below = closure.cutoff().is_some_and(|cutoff| aperture < cutoff);
-    let parted = closure.gap(state.joint.separation) > 0.0;
-    let kind = if below && !closure.is_linear() {
-        FacetState::BelowCutoff
-    } else if state.joint.sliding && state.joint.normal_traction < 0.0 {
-        FacetState::Slipping
-    } else if parted || closure.normal_stiffness == 0.0 && aperture >= closure.aperture {
-        FacetState::Open
-    } else {
-        FacetState::Stuck
-    };
+    let opening = jump.dot(normal);
+    let traction = state.joint.traction(normal);
     FacetResult {
         jump,
         opening,
-        slip: jump - opening * point.normal,
+        slip: jump - opening * normal,
         aperture,
         traction,
-        normal_traction: traction.dot(point.normal),
-        state: kind,
+        normal_traction: traction.dot(normal),
+        state: kind(&closure, state, reached),
+    }
+}
+
+fn kind(closure: &Closure, state: &FacetPointState, reached: StateScales) -> FacetState {
+    let joint = &state.joint;
+    let aperture = joint.separation.aperture;
+    let small = PARTED * reached.displacement;
+    let below = closure.cutoff().is_some_and(|cutoff| aperture < cutoff);
+    let gap = closure.gap(joint.separation);
+    // Walls of a stiff joint carry tension long before they have moved.
+    let in_tension = gap > 0.0 && joint.normal_traction > PARTED * reached.traction;
+    let is_free = closure.normal_stiffness == 0.0;
+    if below && !closure.is_linear() {
+        FacetState::BelowCutoff
+    } else if joint.sliding && joint.normal_traction < 0.0 {
+        FacetState::Slipping
+    } else if gap > small || in_tension || is_free && aperture >= closure.aperture - small {
+        FacetState::Open
+    } else {
+        FacetState::Stuck
     }
 }

@@ -227,3 +227,39 @@ fn load_steps_beyond_any_use_are_refused_with_their_number() {
         assert!(defect.contains("at most 100000"), "{defect}");
     }
 }
+
+/// The table of closure laws says of each what the reader needs: nothing less, and every key that
+/// it may have.
+#[test]
+fn the_closure_laws_need_what_the_table_says() {
+    let scene = |law: &str, keys: &[&str]| {
+        let keys: String = keys
+            .iter()
+            .map(|key| {
+                let known = kluft_keys::scene::FRACTURE.key(key).expect(key);
+                format!("{}\n", known.shown())
+            })
+            .collect();
+        let text = format!(
+            "mesh = {{ file = 'a.msh' }}\n[rock.default]\nyoung_modulus = 5e10\n\
+             poisson_ratio = 0.2\n[fracture.f]\nclosure = '{law}'\n{keys}"
+        );
+        Scene::parse(&text, "scene.toml", Path::new(""))
+    };
+    for law in &kluft_keys::scene::LAWS {
+        let all = [law.needs, law.may].concat();
+        assert_eq!(scene(law.name, law.needs).err(), None, "{}", law.name);
+        assert_eq!(scene(law.name, &all).err(), None, "{}", law.name);
+        for left_out in law.needs {
+            let others = law.needs.iter().copied().filter(|key| key != left_out);
+            let others: Vec<&str> = others.collect();
+            assert!(
+                scene(law.name, &others).is_err(),
+                "{}, {left_out}",
+                law.name
+            );
+        }
+    }
+    let named = kluft_keys::scene::LAWS.map(|law| law.name);
+    assert_eq!(named, kluft_keys::scene::CLOSURES);
+}

@@ -1,0 +1,169 @@
+//! What a file is that somebody gives as a scene.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use kluft_mesh::Defect;
+
+/// Bytes that tell what a file is.
+const HEAD: u64 = 4096;
+
+/// Files by the ends of their names, small letters: what they are.
+const KINDS: [(&[&str], FileKind); 6] = [
+    (&["msh"], FileKind::Mesh),
+    (
+        &[
+            "geo",
+            "geo_unrolled",
+            "geo_opt",
+            "step",
+            "stp",
+            "brep",
+            "iges",
+            "igs",
+        ],
+        FileKind::Geometry,
+    ),
+    (
+        &["vtu", "vtk", "vtp", "vts", "vtr", "pvtu", "pvd"],
+        FileKind::Vtk,
+    ),
+    (
+        &["inp", "exo", "e", "med", "unv", "stl", "bdf", "obj", "ply"],
+        FileKind::OtherMesh,
+    ),
+    (&["csv"], FileKind::List),
+    (&["json"], FileKind::Json),
+];
+
+/// What a file is, where it is no scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FileKind {
+    Folder,
+    Mesh,
+    Geometry,
+    Vtk,
+    OtherMesh,
+    List,
+    Json,
+    Binary,
+}
+
+/// Refuses in one sentence a file that is no scene, before it is read as one. What cannot be looked
+/// at twice, such as a pipe, passes.
+///
+/// # Errors
+/// What the file is, and what can be done with it.
+pub fn expect_scene(path: &Path) -> Result<(), Defect> {
+    match kind_of(path) {
+        None => Ok(()),
+        Some(kind) => Err(refusal(kind, path)),
+    }
+}
+
+/// Whether a file is a mesh of gmsh, by its name or by its first line.
+pub fn is_mesh(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end == "msh") || kind_of(path) == Some(FileKind::Mesh)
+}
+
+fn kind_of(path: &Path) -> Option<FileKind> {
+    let metadata = std::fs::metadata(path).ok()?;
+    if metadata.is_dir() {
+        return Some(FileKind::Folder);
+    }
+    if !metadata.is_file() {
+        return None;
+    }
+    let mut head = Vec::new();
+    File::open(path)
+        .ok()?
+        .take(HEAD)
+        .read_to_end(&mut head)
+        .ok()?;
+    of_content(&head).or_else(|| of_name(path))
+}
+
+fn of_content(head: &[u8]) -> Option<FileKind> {
+    let text = head.trim_ascii_start();
+    let begins = |words: &[&str]| words.iter().any(|word| text.starts_with(word.as_bytes()));
+    if begins(&["$MeshFormat", "$NOD", "$Comments"]) {
+        Some(FileKind::Mesh)
+    } else if begins(&["<?xml", "<VTKFile", "# vtk DataFile"]) {
+        Some(FileKind::Vtk)
+    } else if head.contains(&0) {
+        Some(FileKind::Binary)
+    } else {
+        None
+    }
+}
+
+fn of_name(path: &Path) -> Option<FileKind> {
+    let end = path.extension()?.to_str()?.to_lowercase();
+    let kinds = KINDS.iter();
+    let mut kinds = kinds.filter(|(ends, _)| ends.contains(&end.as_str()));
+    kinds.next().map(|(_, kind)| *kind)
+}
+
+fn refusal(kind: FileKind, path: &Path) -> Defect {
+    let shown = path.display();
+    let name = path.file_name().unwrap_or_default().display();
+    let convert = "convert a mesh for gmsh first (`meshio convert FILE mesh.msh`), and name it in a \
+                   scene: `[mesh] file = \"mesh.msh\"`";
+    let (what, remedy) = match kind {
+        FileKind::Folder => (
+            "a folder",
+            format!(
+                "give the scene file in it, e.g. {}",
+                path.join("scene.toml").display()
+            ),
+        ),
+        FileKind::Mesh => (
+            "a mesh of gmsh",
+            format!(
+                "`kluft inspect {shown}` looks at it; to run, write a scene with `[mesh] file = \"{name}\"`"
+            ),
+        ),
+        FileKind::Geometry => (
+            "a geometry",
+            format!("write a scene with `[mesh] geometry = \"{name}\"`, rock, fractures and loads"),
+        ),
+        FileKind::Vtk => (
+            "a file of VTK",
+            format!("ParaView opens results; {convert}"),
+        ),
+        FileKind::OtherMesh => ("a mesh of another program", convert.to_owned()),
+        FileKind::List => (
+            "a table (CSV)",
+            format!(
+                "`kluft network {shown} -o DIR` makes a geometry and a scene from a list of fractures"
+            ),
+        ),
+        FileKind::Json => ("JSON", "give the scene (TOML) that it came from".to_owned()),
+        FileKind::Binary => (
+            "binary data",
+            "give a scene: TOML, saved as UTF-8 text".to_owned(),
+        ),
+    };
+    Defect::new(
+        shown.to_string(),
+        format!("this is {what}, not a scene"),
+        remedy,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_tells_more_than_names() {
+        assert_eq!(of_content(b"\n$MeshFormat\n4.1"), Some(FileKind::Mesh));
+        assert_eq!(of_content(b"<VTKFile type="), Some(FileKind::Vtk));
+        assert_eq!(of_content(b"\x7fELF\0\0"), Some(FileKind::Binary));
+        assert_eq!(of_content(b"[mesh]\nfile = 'a.msh'\n"), None);
+        assert_eq!(of_name(Path::new("a.GEO")), Some(FileKind::Geometry));
+        assert_eq!(of_name(Path::new("scene.toml")), None);
+        assert_eq!(of_name(Path::new("scene")), None);
+    }
+}
