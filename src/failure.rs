@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use kluft_io::gmsh::NOT_MESHED;
 use kluft_mesh::Defect;
 
 /// Why a command did not end well.
@@ -10,6 +11,8 @@ use kluft_mesh::Defect;
 pub enum Failure {
     /// A load step did not converge: where and why.
     NotConverged(String),
+    /// gmsh got no further for want of time or space.
+    NotMeshed(Defect),
     /// The input is wrong.
     BadInput(Vec<Defect>),
     /// A study did not yield what was wanted of it: why, and what to try.
@@ -18,7 +21,11 @@ pub enum Failure {
 
 impl From<Vec<Defect>> for Failure {
     fn from(defects: Vec<Defect>) -> Self {
-        Self::BadInput(defects)
+        let of_machine = |defect: &&Defect| defect.code == Some(NOT_MESHED);
+        match defects.iter().find(of_machine) {
+            Some(defect) => Self::NotMeshed(defect.clone()),
+            None => Self::BadInput(defects),
+        }
     }
 }
 
@@ -35,6 +42,7 @@ impl Failure {
         // With the error stream gone there is nobody left to tell.
         let _ = match self {
             Self::NotConverged(why) => writeln!(err, "not converged: {why}"),
+            Self::NotMeshed(defect) => writeln!(err, "{NOT_MESHED}: {defect}"),
             Self::NotReached(why) => writeln!(err, "not reached: {why}"),
             Self::BadInput(defects) => {
                 let count = defects.len();
@@ -48,7 +56,7 @@ impl Failure {
     /// The exit code of the program.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::NotConverged(_) | Self::NotReached(_) => ExitCode::from(1),
+            Self::NotConverged(_) | Self::NotReached(_) | Self::NotMeshed(_) => ExitCode::from(1),
             Self::BadInput(_) => ExitCode::from(2),
         }
     }

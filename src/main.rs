@@ -5,10 +5,13 @@
 mod args;
 mod explain;
 mod failure;
+mod gmsh;
 mod inspect;
 mod network;
 mod report;
 mod run;
+#[cfg(target_os = "linux")]
+mod start_gmsh;
 mod study;
 
 use std::process::ExitCode;
@@ -28,6 +31,8 @@ fn main() -> ExitCode {
             explain::print_schema(document.into());
             Ok(())
         }
+        #[cfg(target_os = "linux")]
+        Command::StartGmsh(args) => return start_gmsh::start(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -12,7 +12,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kluft_io::{load_msh, write_atomically, write_vtu};
+use kluft_io::{GmshOptions, load_msh, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
@@ -30,6 +30,8 @@ pub struct InspectOptions {
     pub out: Option<PathBuf>,
     /// Whether the report is JSON instead of text.
     pub json: bool,
+    /// How gmsh is started, and what a geometry may do.
+    pub gmsh: GmshOptions,
 }
 
 /// Inspects a scene (`.toml`) or a mesh alone (`.msh`) without solving: prints the report to the
@@ -50,7 +52,7 @@ pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     };
     let folder = folder_for(input, options.out.as_deref());
     let output = Output::prepare(&folder).map_err(|defect| vec![defect])?;
-    let draft = read(input, scene.as_ref(), &output)?;
+    let draft = read(input, scene.as_ref(), &output, &options.gmsh)?;
     let mut inspection = Inspection::of(input, scene.as_ref(), &draft);
     let mut defects = look(draft, scene.as_ref(), &output, &mut inspection);
     inspection.seconds = start.elapsed().as_secs_f64();
@@ -62,13 +64,18 @@ pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     }
 }
 
-fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, Vec<Defect>> {
+fn read(
+    input: &Path,
+    scene: Option<&Scene>,
+    output: &Output,
+    gmsh: &GmshOptions,
+) -> Result<Draft, Vec<Defect>> {
     let scratch = output.path("");
     let Some(scene) = scene else {
-        return load_msh(input, &scratch);
+        return load_msh(input, &scratch, gmsh);
     };
-    let file = mesh_file(scene, output, None, &mut ())?;
-    load_msh(&file.path, &scratch)
+    let file = mesh_file(scene, output, None, gmsh, &mut ())?;
+    load_msh(&file.path, &scratch, gmsh)
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.

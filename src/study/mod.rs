@@ -26,6 +26,7 @@ use kluft_io::write_atomically;
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
+use crate::gmsh::GmshArgs;
 use crate::report::{Report, Verbosity};
 use assess::{Assessment, assess};
 use kluft_run::fingerprint_of;
@@ -47,6 +48,8 @@ pub struct StudyOptions {
     pub threads: Option<usize>,
     /// How much to tell.
     pub verbosity: Verbosity,
+    /// How each run starts gmsh.
+    pub gmsh: GmshArgs,
 }
 
 /// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings
@@ -104,6 +107,7 @@ impl Study {
             build: fingerprint_of(&program)?,
             program,
             threads: options.threads.unwrap_or_else(machine::cores),
+            gmsh: options.gmsh,
         };
         std::fs::create_dir_all(&runner.folder).map_err(|error| {
             let place = runner.folder.display().to_string();
@@ -119,7 +123,7 @@ impl Study {
             runner,
             folders,
             records,
-            machine: Machine::this(),
+            machine: Machine::this(options.gmsh),
             out,
         })
     }

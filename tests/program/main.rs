@@ -15,6 +15,7 @@ mod read_back;
 mod renumbered;
 mod results;
 mod resume;
+mod strangers;
 mod study;
 mod talk;
 mod usage;

@@ -8,7 +8,7 @@ mod pvd;
 mod vtu;
 
 pub use atomic::write_atomically;
-pub use gmsh::{Meshing, mesh_geometry, write_size_field};
+pub use gmsh::{GmshOptions, Meshing, mesh_geometry, write_size_field};
 pub use load::load_msh;
 pub use msh::{parse_msh, read_msh};
 pub use pvd::write_pvd;

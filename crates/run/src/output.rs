@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kluft_io::gmsh::is_workspace;
 use kluft_io::{Grid, write_pvd, write_vtu};
 use kluft_mesh::Defect;
 use tempfile::TempDir;
@@ -119,9 +120,13 @@ impl Output {
                 let is_collection = name.as_encoded_bytes().ends_with(b".pvd");
                 (name != checkpoint::NAME, !is_collection)
             });
-            names
-                .iter()
-                .try_for_each(|name| std::fs::remove_file(self.folder.join(name)))
+            names.iter().try_for_each(|name| {
+                let path = self.folder.join(name);
+                match name.to_str().is_some_and(is_workspace) {
+                    true => std::fs::remove_dir_all(path),
+                    false => std::fs::remove_file(path),
+                }
+            })
         };
         remove().map_err(|error| {
             Defect::new(
@@ -172,11 +177,10 @@ fn is_result(name: &str) -> bool {
     let unfinished = name
         .strip_prefix('.')
         .and_then(|name| name.strip_suffix(".tmp"));
-    let of_gmsh = [".tmp.msh", ".tmp.geo", ".msh41.msh"].iter();
-    let is_mesh = name.starts_with('.') && of_gmsh.into_iter().any(|end| name.ends_with(end));
+    let is_left = is_workspace(name);
     let name = unfinished.unwrap_or(name);
     let is_summary = unfinished.is_some() && ["summary.json", "sizes.pos"].contains(&name);
-    is_mesh || is_summary || name == checkpoint::NAME || is_step(name)
+    is_left || is_summary || name == checkpoint::NAME || is_step(name)
 }
 
 /// Whether [`Output::write_step`] writes files of this name.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use kluft_io::{Meshing, mesh_geometry};
+use kluft_io::{GmshOptions, Meshing, mesh_geometry};
 use kluft_mesh::Defect;
 use kluft_scene::{MeshSource, Scene};
 
@@ -32,6 +32,7 @@ pub fn mesh_file(
     scene: &Scene,
     output: &Output,
     sizes: Option<&Path>,
+    gmsh: &GmshOptions,
     observer: &mut dyn Observer,
 ) -> Result<MeshFile, Vec<Defect>> {
     match &scene.mesh {
@@ -52,6 +53,7 @@ pub fn mesh_file(
                 order: *order,
                 sizes,
                 output: &path,
+                gmsh,
             };
             observer.stage_begins(Stage::Mesh);
             let start = Instant::now();
