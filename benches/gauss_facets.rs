@@ -36,7 +36,7 @@ fn problem(scene_file: &Path) -> Result<Problem, Vec<Defect>> {
         let remedy = "name a mesh file";
         return Err(vec![Defect::new("[mesh]", "no `file`", remedy)]);
     };
-    let draft = kluft_io::load_msh(mesh_file, &env::temp_dir())?;
+    let draft = kluft_io::load_msh(mesh_file, &env::temp_dir(), &Default::default())?;
     let mut problem = scene.problem(draft)?.problem;
     problem.facet_quadrature = FacetQuadrature::Gauss;
     Ok(problem)

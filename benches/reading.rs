@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn read(file: &Path) -> Result<(), Vec<Defect>> {
     let start = Instant::now();
-    let draft = load_msh(file, &std::env::temp_dir())?;
+    let draft = load_msh(file, &std::env::temp_dir(), &Default::default())?;
     let read = start.elapsed();
     let faces = Faces::of(&draft);
     let paired = start.elapsed();

@@ -6,11 +6,16 @@ use clap::{Args, Parser, Subcommand};
 use kluft_keys::Document;
 use kluft_network::{Domain, Grouping};
 
+use crate::gmsh::GmshArgs;
+#[cfg(target_os = "linux")]
+use crate::gmsh::START;
 use crate::inspect::InspectOptions;
 use crate::network::NetworkOptions;
 use crate::printing::WIDTH;
 use crate::report::Verbosity;
 use crate::run::RunOptions;
+#[cfg(target_os = "linux")]
+use crate::start_gmsh::StartArgs;
 use crate::study::StudyOptions;
 
 /// Fractured rock in 3D: from a gmsh geometry to apertures, jumps and stresses in ParaView.
@@ -53,6 +58,10 @@ pub enum Command {
         #[arg(value_enum, default_value = "scene")]
         document: SchemaOf,
     },
+    /// Become gmsh
+    #[cfg(target_os = "linux")]
+    #[command(name = START, hide = true)]
+    StartGmsh(StartArgs),
 }
 
 /// A document that has a schema.
@@ -90,6 +99,8 @@ pub struct StudyArgs {
     /// Number of threads of each run, at most 4 a core (or 16) [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    #[command(flatten)]
+    gmsh: GmshArgs,
     /// Print nothing but errors and the answer to --tolerance
     #[arg(long, short, conflicts_with = "verbose")]
     quiet: bool,
@@ -122,6 +133,8 @@ pub struct RunArgs {
     /// Go on after the last load step that an interrupted run of the same scene finished
     #[arg(long)]
     resume: bool,
+    #[command(flatten)]
+    gmsh: GmshArgs,
     /// End when the standard input is closed, as it is when a study dies that runs this
     #[arg(long, hide = true)]
     tied: bool,
@@ -223,6 +236,8 @@ pub struct InspectArgs {
     /// Folder for inspect.vtu and inspect.json [default: `out` beside the input]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    gmsh: GmshArgs,
 }
 
 impl From<RunArgs> for RunOptions {
@@ -233,6 +248,7 @@ impl From<RunArgs> for RunOptions {
             verbosity: verbosity(args.quiet, args.verbose),
             resume: args.resume,
             is_tied: args.tied,
+            gmsh: args.gmsh.into(),
         }
     }
 }
@@ -261,6 +277,7 @@ impl From<StudyArgs> for StudyOptions {
             tolerance: args.tolerance,
             threads: args.threads.map(usize::from),
             verbosity: verbosity(args.quiet, args.verbose),
+            gmsh: args.gmsh,
         }
     }
 }
@@ -270,6 +287,7 @@ impl From<InspectArgs> for InspectOptions {
         Self {
             out: args.out,
             json: args.json,
+            gmsh: args.gmsh.into(),
         }
     }
 }

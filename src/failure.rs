@@ -4,6 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use kluft_io::NOT_WRITTEN;
+use kluft_io::gmsh::NOT_MESHED;
 use kluft_mesh::Defect;
 
 use crate::defects::listed;
@@ -14,6 +15,8 @@ use crate::printing::lines;
 pub enum Failure {
     /// A load step did not converge: where and why.
     NotConverged(String),
+    /// gmsh got no further for want of time or space.
+    NotMeshed(Defect),
     /// The input is wrong.
     BadInput(Vec<Defect>),
     /// A study did not yield what was wanted of it: why, and what to try.
@@ -24,11 +27,16 @@ pub enum Failure {
 
 impl From<Vec<Defect>> for Failure {
     fn from(defects: Vec<Defect>) -> Self {
-        let failed = |defect: &Defect| defect.code == Some(NOT_WRITTEN);
-        if defects.iter().any(failed) {
-            Self::Machine(defects)
-        } else {
-            Self::BadInput(defects)
+        if defects
+            .iter()
+            .any(|defect| defect.code == Some(NOT_WRITTEN))
+        {
+            return Self::Machine(defects);
+        }
+        let of_machine = |defect: &&Defect| defect.code == Some(NOT_MESHED);
+        match defects.iter().find(of_machine) {
+            Some(defect) => Self::NotMeshed(defect.clone()),
+            None => Self::BadInput(defects),
         }
     }
 }
@@ -46,6 +54,10 @@ impl Failure {
         // With the error stream gone there is nobody left to tell.
         let _ = match self {
             Self::NotConverged(why) => writeln!(err, "not converged: {}", lines(why)),
+            Self::NotMeshed(defect) => {
+                let text = defect.to_string();
+                writeln!(err, "{NOT_MESHED}: {}", lines(&text))
+            }
             Self::NotReached(why) => writeln!(err, "not reached: {}", lines(why)),
             Self::Machine(defects) => {
                 let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
@@ -58,7 +70,9 @@ impl Failure {
     /// The exit code of the program.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::NotConverged(_) | Self::NotReached(_) | Self::Machine(_) => ExitCode::from(1),
+            Self::NotConverged(_) | Self::NotReached(_) | Self::NotMeshed(_) | Self::Machine(_) => {
+                ExitCode::from(1)
+            }
             Self::BadInput(_) => ExitCode::from(2),
         }
     }

@@ -6,12 +6,15 @@ mod args;
 mod defects;
 mod explain;
 mod failure;
+mod gmsh;
 mod input;
 mod inspect;
 mod network;
 mod printing;
 mod report;
 mod run;
+#[cfg(target_os = "linux")]
+mod start_gmsh;
 mod stdout;
 mod study;
 mod threads;
@@ -30,6 +33,8 @@ fn main() -> ExitCode {
         Command::Study(args) => study::study(&args.scene.clone(), &args.into()),
         Command::Explain { key } => explain::explain(key.as_deref()),
         Command::Schema { document } => explain::print_schema(document.into()),
+        #[cfg(target_os = "linux")]
+        Command::StartGmsh(args) => return start_gmsh::start(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kluft_io::GmshOptions;
 use kluft_run::{Ending, MeshInput, Origin, Outcome, Request, folder_for};
 use kluft_scene::Scene;
 
@@ -23,6 +24,8 @@ pub struct RunOptions {
     pub resume: bool,
     /// Whether to end when the standard input is closed.
     pub is_tied: bool,
+    /// How gmsh is started, and what a geometry may do.
+    pub gmsh: GmshOptions,
 }
 
 /// Runs a scene.
@@ -55,6 +58,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
         }),
         resume: options.resume,
         keep_results: false,
+        gmsh: options.gmsh.clone(),
     };
     let outcome = kluft_run::run(request, &mut report)?;
     if outcome.ending != Ending::NothingLeft {

@@ -13,7 +13,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kluft_io::{NOT_WRITTEN, write_atomically, write_vtu};
+use kluft_io::{GmshOptions, NOT_WRITTEN, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
 use kluft_solver::{Discretisation, Problem, Workload};
 
@@ -38,6 +38,8 @@ pub struct InspectOptions {
     pub out: Option<PathBuf>,
     /// Whether the report is JSON instead of text.
     pub json: bool,
+    /// How gmsh is started, and what a geometry may do.
+    pub gmsh: GmshOptions,
 }
 
 /// Inspects a scene (`.toml`) or a mesh alone (`.msh`) without solving: prints the report to the
@@ -62,7 +64,7 @@ fn inspect_here(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     };
     let folder = folder_for(input, options.out.as_deref());
     let output = output(&folder, input, scene.as_ref())?;
-    let draft = read(input, scene.as_ref(), &output)?;
+    let draft = read(input, scene.as_ref(), &output, &options.gmsh)?;
     let mut inspection = Inspection::of(input, scene.as_ref(), &draft);
     let mut defects = look(draft, scene.as_ref(), &output, &mut inspection);
     inspection.seconds = start.elapsed().as_secs_f64();
@@ -87,13 +89,18 @@ fn output(folder: &Path, input: &Path, scene: Option<&Scene>) -> Result<Output, 
     Output::prepare(folder, &names, &inputs(input, scene))
 }
 
-fn read(input: &Path, scene: Option<&Scene>, output: &Output) -> Result<Draft, Vec<Defect>> {
+fn read(
+    input: &Path,
+    scene: Option<&Scene>,
+    output: &Output,
+    gmsh: &GmshOptions,
+) -> Result<Draft, Vec<Defect>> {
     let scratch = output.unfinished("");
     let Some(scene) = scene else {
-        return read_mesh(input, &scratch);
+        return read_mesh(input, &scratch, gmsh);
     };
-    let file = mesh_file(scene, output, None, &mut ())?;
-    read_mesh(&file.path, &scratch)
+    let file = mesh_file(scene, output, None, gmsh, &mut ())?;
+    read_mesh(&file.path, &scratch, gmsh)
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.

@@ -2,6 +2,8 @@
 
 use kluft_run::memory;
 
+use crate::gmsh::GmshArgs;
+
 /// The machine and the programs, as far as they tell.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Machine {
@@ -17,13 +19,13 @@ pub(super) struct Machine {
 
 impl Machine {
     /// This machine.
-    pub(super) fn this() -> Self {
+    pub(super) fn this(gmsh: GmshArgs) -> Self {
         let unknown = || "unknown".to_owned();
         Self {
             processor: processor().unwrap_or_else(unknown),
             cores: cores(),
             memory_bytes: memory::total_bytes(),
-            gmsh: kluft_io::gmsh::version().unwrap_or_else(unknown),
+            gmsh: kluft_io::gmsh::version(&gmsh.into()).unwrap_or_else(unknown),
         }
     }
 }

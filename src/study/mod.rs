@@ -27,6 +27,7 @@ use kluft_io::{sync_folder, write_atomically};
 use kluft_mesh::Defect;
 
 use crate::failure::Failure;
+use crate::gmsh::GmshArgs;
 use crate::input::expect_scene;
 use crate::printing::{lines, one_line};
 use crate::report::{Report, Verbosity};
@@ -53,6 +54,8 @@ pub struct StudyOptions {
     pub threads: Option<usize>,
     /// How much to tell.
     pub verbosity: Verbosity,
+    /// How each run starts gmsh.
+    pub gmsh: GmshArgs,
 }
 
 /// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings
@@ -117,6 +120,7 @@ impl Study {
             build: fingerprint_of(&program)?,
             program,
             threads: count,
+            gmsh: options.gmsh,
         };
         std::fs::create_dir_all(&runner.folder).map_err(|error| {
             let place = runner.folder.display().to_string();
@@ -132,7 +136,7 @@ impl Study {
             runner,
             folders,
             records,
-            machine: Machine::this(),
+            machine: Machine::this(options.gmsh),
             thread_word: word,
             claimed,
         })

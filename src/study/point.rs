@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::files::{RECORD, RESULTS, SCENE, remove_setting, unwritable};
+use crate::gmsh::GmshArgs;
+use kluft_io::gmsh::NOT_MESHED;
 use kluft_run::Measure;
 use kluft_run::{Fingerprint, fingerprint, fingerprint_of};
 
@@ -92,6 +94,8 @@ pub(super) struct Runner {
     pub(super) build: Fingerprint,
     /// Number of threads of each run.
     pub(super) threads: usize,
+    /// How each run starts gmsh.
+    pub(super) gmsh: GmshArgs,
 }
 
 impl Runner {
@@ -143,8 +147,10 @@ impl Runner {
             outcome: outcome(&output, &results.join("summary.json"), seconds),
         };
         // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory);
-        // who was killed, by hand or for want of memory, may be luckier the next time.
-        if matches!(output.status.code(), Some(0 | 1)) {
+        // who was killed, by hand or for want of memory, or got no mesh for want of time or space,
+        // may be luckier the next time.
+        let is_meshed = !output.stderr.starts_with(NOT_MESHED.as_bytes());
+        if is_meshed && matches!(output.status.code(), Some(0 | 1)) {
             write_atomically(&folder.join(RECORD), |out| {
                 serde_json::to_writer_pretty(&mut *out, &record)?;
                 out.write_all(b"\n")
@@ -164,6 +170,7 @@ impl Runner {
                     "--threads",
                     &self.threads.to_string(),
                 ])
+                .args(self.gmsh.arguments())
                 .arg(scene)
                 .arg("--out")
                 .arg(out)
@@ -346,6 +353,7 @@ mod tests {
             program: "kluft".into(),
             build: 7,
             threads: 1,
+            gmsh: GmshArgs::default(),
         };
         let first = runner.fingerprint(&scene(1));
         assert_eq!(first, runner.fingerprint(&scene(1)));

@@ -21,6 +21,7 @@ mod read_back;
 mod renumbered;
 mod results;
 mod resume;
+mod strangers;
 mod studies;
 mod study;
 mod talk;

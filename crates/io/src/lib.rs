@@ -11,7 +11,7 @@ mod vtu_array;
 
 pub use atomic::{NOT_WRITTEN, sync_folder, write_atomically};
 pub use claimed_folder::ClaimedFolder;
-pub use gmsh::{Meshing, mesh_geometry, write_size_field};
+pub use gmsh::{GmshOptions, Meshing, mesh_geometry, write_size_field};
 pub use load::load_msh;
 pub use msh::{parse_msh, read_msh};
 pub use pvd::write_pvd;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use kluft_io::{load_msh, parse_msh, read_msh};
+use kluft_io::{GmshOptions, load_msh, parse_msh, read_msh};
 use kluft_mesh::{Draft, Shape, TaggedElements};
 use rewrite::{retag, swap_byte_order};
 
@@ -214,7 +214,7 @@ fn older_versions_are_converted() {
                 .problem
                 .contains("version")
         );
-        let converted = load_msh(&path, &scratch.0).expect(arguments);
+        let converted = load_msh(&path, &scratch.0, &GmshOptions::default()).expect(arguments);
         assert_same_geometry(&converted, &current);
         assert_eq!(converted.source, path.display().to_string());
     }
@@ -230,7 +230,7 @@ fn names_with_quotes_survive_the_conversion() {
     let quoted = text.replace("\"joint one\"", "\"he said \"hi\" there\"");
     assert!(quoted != text);
     fs::write(&path, quoted).expect("written");
-    let names = load_msh(&path, &scratch.0).expect("a draft").groups;
+    let names = load_msh(&path, &scratch.0, &GmshOptions::default()).expect("a draft").groups;
     let names: Vec<&str> = names.iter().map(|group| group.name.as_str()).collect();
     for name in [
         "he said \"hi\" there",
@@ -248,12 +248,28 @@ fn what_gmsh_cannot_convert_is_a_defect() {
     let bytes = fs::read(&path).expect("there");
     for length in [40, bytes.len() / 4, bytes.len() / 2] {
         fs::write(&path, &bytes[..length]).expect("written");
-        assert!(load_msh(&path, &scratch.0).is_err(), "{length} bytes");
+        assert!(
+            load_msh(&path, &scratch.0, &GmshOptions::default()).is_err(),
+            "{length} bytes"
+        );
     }
-    assert!(load_msh(&scratch.0, &scratch.0).is_err(), "a folder");
-    assert!(load_msh(&scratch.0.join("nix.msh"), &scratch.0).is_err());
+    assert!(
+        load_msh(&scratch.0, &scratch.0, &GmshOptions::default()).is_err(),
+        "a folder"
+    );
+    assert!(
+        load_msh(
+            &scratch.0.join("nix.msh"),
+            &scratch.0,
+            &GmshOptions::default()
+        )
+        .is_err()
+    );
     fs::write(&path, "").expect("written");
-    assert!(load_msh(&path, &scratch.0).is_err(), "an empty file");
+    assert!(
+        load_msh(&path, &scratch.0, &GmshOptions::default()).is_err(),
+        "an empty file"
+    );
 }
 
 #[test]

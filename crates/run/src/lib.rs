@@ -19,7 +19,7 @@
 //!
 //! let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../geometries/closing-blocks");
 //! let scene = Scene::read(&std::path::Path::new(folder).join("scene.toml")).expect("a scene");
-//! # let is_meshed = kluft_io::gmsh::version().is_some();
+//! # let is_meshed = kluft_io::gmsh::version(&Default::default()).is_some();
 //! # if !is_meshed { return; }
 //! let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
 //! let request = Request::in_memory(&scene, MeshInput::OfScene, &pool);

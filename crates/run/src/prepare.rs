@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use kluft_io::{Meshing, load_msh, mesh_geometry};
+use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{MeshSource, Scene};
 
@@ -48,12 +48,12 @@ const LEAST_OF_CELL: usize = 400;
 ///
 /// # Errors
 /// As [`load_msh`], and a mesh that is too large for this process.
-pub fn read_mesh(path: &Path, scratch: &Path) -> Result<Draft, Vec<Defect>> {
+pub fn read_mesh(path: &Path, scratch: &Path, gmsh: &GmshOptions) -> Result<Draft, Vec<Defect>> {
     let available = memory::available_bytes().unwrap_or(usize::MAX);
     // A file that is not there is refused by who reads it.
     let length = std::fs::metadata(path).map_or(0, |file| file.len() as usize);
     check_memory(path, "to be read", length, available)?;
-    let draft = load_msh(path, scratch)?;
+    let draft = load_msh(path, scratch, gmsh)?;
     let cells = draft.cells.elements.len();
     let available = memory::available_bytes().unwrap_or(usize::MAX);
     let what = format!("for its {cells} cells");
@@ -91,6 +91,7 @@ pub fn mesh_file(
     scene: &Scene,
     output: &Output,
     sizes: Option<&Path>,
+    gmsh: &GmshOptions,
     observer: &mut dyn Observer,
 ) -> Result<MeshFile, Vec<Defect>> {
     match &scene.mesh {
@@ -111,6 +112,7 @@ pub fn mesh_file(
                 order: *order,
                 sizes,
                 output: &unfinished,
+                gmsh,
             };
             observer.stage_begins(Stage::Mesh);
             let start = Instant::now();

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kluft_io::GmshOptions;
 use kluft_mesh::Draft;
 use kluft_scene::Scene;
 use rayon::ThreadPool;
@@ -41,6 +42,8 @@ pub struct Request<'a> {
     pub resume: bool,
     /// Whether the outcome holds the grids of all load steps.
     pub keep_results: bool,
+    /// How gmsh is started, and what a geometry may do.
+    pub gmsh: GmshOptions,
 }
 
 impl<'a> Request<'a> {
@@ -54,6 +57,7 @@ impl<'a> Request<'a> {
             origin: None,
             resume: false,
             keep_results: true,
+            gmsh: GmshOptions::default(),
         }
     }
 }

@@ -180,7 +180,8 @@ impl<'a> Run<'a> {
                 MeshInput::OfScene => Err(Vec::new()),
             };
         };
-        let draft = prepare::read_mesh(&file.path, &self.output.unfinished(""))?;
+        let scratch = self.output.unfinished("");
+        let draft = prepare::read_mesh(&file.path, &scratch, &self.request.gmsh)?;
         let fingerprint = checkpoint::fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {
@@ -220,7 +221,13 @@ impl<'a> Run<'a> {
             _ => None,
         };
         let scene = self.request.scene;
-        let file = prepare::mesh_file(scene, &self.output, sizes, self.observer)?;
+        let file = prepare::mesh_file(
+            scene,
+            &self.output,
+            sizes,
+            &self.request.gmsh,
+            self.observer,
+        )?;
         if let (Some(took), MeshSource::Geometry { geometry, .. }) = (file.meshing, &scene.mesh) {
             self.summary.seconds.mesh += took.as_secs_f64();
             self.took = took;

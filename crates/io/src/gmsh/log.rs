@@ -3,6 +3,8 @@
 use kluft_mesh::Defect;
 
 const SHOWN: usize = 10;
+/// Most lines that are told apart.
+const MOST: usize = 1000;
 const REMEDY: &str = "correct the geometry; `gmsh FILE` shows it";
 
 /// The lines of a run that matter, each once.
@@ -14,14 +16,10 @@ pub(super) struct Log {
 
 impl Log {
     /// gmsh prints errors and warnings to either stream.
-    pub(super) fn parse(stdout: &[u8], stderr: &[u8]) -> Self {
+    pub(super) fn parse(output: &str, errors: &str) -> Self {
         let mut log = Self::default();
-        for text in [
-            String::from_utf8_lossy(stdout),
-            String::from_utf8_lossy(stderr),
-        ] {
-            text.lines().for_each(|line| log.take(line));
-        }
+        let lines = output.lines().chain(errors.lines());
+        lines.for_each(|line| log.take(line));
         log
     }
 
@@ -35,7 +33,8 @@ impl Log {
             _ => return,
         };
         let message = message.trim();
-        if !is_summary(message) && !lines.iter().any(|known| known == message) {
+        let is_new = lines.len() < MOST && !lines.iter().any(|known| known == message);
+        if is_new && !is_summary(message) {
             lines.push(message.to_owned());
         }
     }
@@ -86,7 +85,7 @@ mod tests {
 
     #[test]
     fn errors_keep_their_lines_and_lose_the_summary() {
-        let stderr = b"Error   : 'a.geo', line 3: syntax error ({)\n\
+        let stderr = "Error   : 'a.geo', line 3: syntax error ({)\n\
             Error   : No elements in volume 1 \n\
             Error   : ------------------------------\n\
             Error   : Mesh generation error summary\n\
@@ -95,7 +94,7 @@ mod tests {
             Error   : Check the full log for details\n\
             Error   : No elements in volume 1 \n\
             Warning : careful: x\n";
-        let log = Log::parse(b"Info    : Error   : no\n", stderr);
+        let log = Log::parse("Info    : Error   : no\n", stderr);
         let defects = log.defects("in.geo");
         let places: Vec<&str> = defects.iter().map(|defect| defect.place.as_str()).collect();
         assert_eq!(places, ["a.geo, line 3", "in.geo"]);

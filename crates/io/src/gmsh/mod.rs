@@ -2,20 +2,42 @@
 //!
 //! The environment variable `KLUFT_GMSH` names another program to run instead of `gmsh`.
 
+mod capture;
+mod commands;
+mod ending;
+mod files;
 mod log;
+mod options;
 mod parameters;
+mod review;
 mod run;
+mod script;
 mod size_field;
+mod workspace;
 
 use std::ffi::OsString;
-use std::fs;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use kluft_mesh::Defect;
 
-use crate::msh::holds_cells;
-use run::{Gmsh, path_argument};
+use crate::msh::{bytes_of, holds_cells};
+use ending::{cannot_start, judge};
+pub use options::{GmshOptions, Launcher, NOT_MESHED, NOT_STARTED};
+use review::review;
+use run::{Gmsh, Scope, path_argument};
 pub use size_field::write_size_field;
+use workspace::Workspace;
+pub use workspace::is_workspace;
+
+/// Name of what gmsh writes in its workspace.
+const MADE: &str = "made.msh";
+/// Without a window, with errors and warnings only.
+const QUIETLY: [&str; 3] = ["-nopopup", "-v", "2"];
+/// How long gmsh may take to say its version.
+const VERSION_LIMIT: Duration = Duration::from_secs(20);
 
 /// A mesh to be made.
 #[derive(Debug, Clone, Copy)]
@@ -31,52 +53,82 @@ pub struct Meshing<'a> {
     pub sizes: Option<&'a Path>,
     /// The `.msh` file to write; it is written whole or not at all.
     pub output: &'a Path,
+    /// How gmsh is started, and what the geometry may do.
+    pub gmsh: &'a GmshOptions,
 }
 
 /// The version of gmsh, if it can be started.
-pub fn version() -> Option<String> {
-    Gmsh::from_environment().version()
+pub fn version(options: &GmshOptions) -> Option<String> {
+    let options = GmshOptions {
+        time_limit: Some(VERSION_LIMIT),
+        ..options.clone()
+    };
+    let gmsh = Gmsh::from_environment(&options);
+    let ended = gmsh.run(&["--version".into()], &Scope::default()).ok()?;
+    // gmsh prints its version on the error stream.
+    let said = ended.output + &ended.errors;
+    let said = said.trim();
+    (ended.status.success() && !said.is_empty()).then(|| said.to_owned())
 }
 
 /// Runs gmsh and answers with its warnings.
 ///
 /// # Errors
-/// A geometry that is missing, parameters that gmsh would silently ignore, gmsh not installed, and
-/// everything that gmsh reports as an error: it writes a mesh even then.
+/// A geometry that is missing or would do more than describe a body, parameters that gmsh would
+/// silently ignore, gmsh not installed, everything that gmsh reports as an error (it writes a mesh
+/// even then), and, with the code [`NOT_MESHED`], time or space that ran out.
 pub fn mesh_geometry(meshing: &Meshing) -> Result<Vec<String>, Vec<Defect>> {
-    mesh_with(&Gmsh::from_environment(), meshing)
+    mesh_with(&Gmsh::from_environment(meshing.gmsh), meshing)
 }
 
 fn mesh_with(gmsh: &Gmsh, meshing: &Meshing) -> Result<Vec<String>, Vec<Defect>> {
     check(meshing)?;
-    let temporary = temporary_name(meshing.output);
-    let script = meshing.sizes.map(|_| temporary.with_extension("geo"));
-    if let (Some(script), Some(sizes)) = (&script, meshing.sizes) {
-        size_field::write_script(script, meshing.geometry, sizes).map_err(|defect| vec![defect])?;
+    let mut reads = reviewed(meshing.geometry, meshing.gmsh)?;
+    let one = |defect| vec![defect];
+    let workspace = Workspace::beside(meshing.output).map_err(one)?;
+    let mut input = meshing.geometry.to_owned();
+    if let Some(sizes) = meshing.sizes {
+        input = workspace.path("sized.geo");
+        size_field::write_script(&input, meshing.geometry, sizes).map_err(one)?;
+        reads.push(sizes.to_owned());
     }
-    let input = script.as_deref().unwrap_or(meshing.geometry);
-    let made = gmsh
-        .run(meshing.geometry, &arguments(meshing, input, &temporary))
-        .and_then(|warnings| publish(meshing, &temporary).map(|()| warnings));
-    if made.is_err() {
-        // gmsh may not have written it, and its own errors are the ones to report.
-        let _ = fs::remove_file(&temporary);
+    let scope = Scope {
+        folder: Some(workspace.folder().to_owned()),
+        reads,
+    };
+    let ended = gmsh.run(&arguments(meshing, &input, &workspace.path(MADE)), &scope);
+    let ended = ended.map_err(|error| vec![cannot_start(gmsh, &error)])?;
+    let warnings = judge(gmsh, meshing.geometry, &ended)?;
+    inspect_made(meshing, &workspace.path(MADE)).map_err(one)?;
+    workspace.publish(MADE, meshing.output).map_err(one)?;
+    Ok(warnings)
+}
+
+/// What gmsh must be able to read to open a file; what nobody may do behind the user's back is
+/// refused, unless the user trusts the file.
+fn reviewed(file: &Path, options: &GmshOptions) -> Result<Vec<PathBuf>, Vec<Defect>> {
+    let folder = file.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new(".")).to_owned();
+    if options.trust {
+        return Ok(vec![folder]);
     }
-    if let Some(script) = script {
-        let _ = fs::remove_file(script);
+    let review = review(file, options.confines());
+    if !review.defects.is_empty() {
+        return Err(review.defects);
     }
-    made
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.clone());
+    let outside = review
+        .opened
+        .into_iter()
+        .filter(|file| !file.starts_with(&whole));
+    Ok(std::iter::once(folder).chain(outside).collect())
 }
 
 fn check(meshing: &Meshing) -> Result<(), Vec<Defect>> {
     let place = meshing.geometry.display().to_string();
-    let bytes = fs::read(meshing.geometry).map_err(|error| {
-        let problem = format!("the geometry cannot be read: {error}");
-        vec![Defect::new(
-            &place,
-            problem,
-            "check the path and the permissions",
-        )]
+    let bytes = bytes_of(meshing.geometry).map_err(|defect| {
+        let problem = format!("the geometry {}", defect.problem);
+        vec![Defect { problem, ..defect }]
     })?;
     let script = String::from_utf8_lossy(&bytes);
     let mut defects = parameters::check(&place, &script, meshing.parameters);
@@ -91,7 +143,7 @@ fn check(meshing: &Meshing) -> Result<(), Vec<Defect>> {
     }
 }
 
-fn arguments(meshing: &Meshing, input: &Path, temporary: &Path) -> Vec<OsString> {
+fn arguments(meshing: &Meshing, input: &Path, made: &Path) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = vec![
         path_argument(input),
         "-3".into(),
@@ -108,49 +160,79 @@ fn arguments(meshing: &Meshing, input: &Path, temporary: &Path) -> Vec<OsString>
             format!("{value:e}").into(),
         ]);
     }
-    arguments.extend(["-o".into(), path_argument(temporary)]);
+    arguments.extend(QUIETLY.map(OsString::from));
+    arguments.extend(["-o".into(), path_argument(made)]);
     arguments
 }
 
-/// gmsh answers with success and a file also when it has found nothing to mesh.
-fn publish(meshing: &Meshing, temporary: &Path) -> Result<(), Vec<Defect>> {
+/// gmsh answers with success and a file also when it has found nothing to mesh, or when the disk is
+/// full.
+fn inspect_made(meshing: &Meshing, made: &Path) -> Result<(), Defect> {
     let place = meshing.geometry.display().to_string();
-    let one = |problem: String, remedy: &str| vec![Defect::new(&place, problem, remedy)];
-    if !temporary.exists() {
+    if !made.exists() {
         let remedy = "remove `Exit` and `Abort` from the geometry";
-        return Err(one("gmsh wrote no mesh".to_owned(), remedy));
+        return Err(Defect::new(place, "gmsh wrote no mesh", remedy));
     }
-    if !holds_cells(temporary).unwrap_or(false) {
+    let end = end_of(made).map_err(|error| {
+        let problem = format!("the mesh that gmsh made cannot be read: {error}");
+        Defect::new(&place, problem, "check the permissions")
+    })?;
+    if is_cut_off(&end) {
+        let problem = "the mesh file that gmsh wrote is cut off, as it is when a disk is full";
+        let output = meshing.output.display();
+        let remedy = format!("free some space where {output} goes, or write to another disk");
+        return Err(Defect::new(place, problem, remedy).with_code(NOT_MESHED));
+    }
+    if !holds_cells(made).unwrap_or(false) {
+        let problem = "the mesh that gmsh made holds no volume elements";
         let remedy = "define a volume, and a `Physical Volume` if there are other physical groups";
-        return Err(one(
-            "the mesh that gmsh made holds no volume elements".to_owned(),
-            remedy,
-        ));
+        return Err(Defect::new(place, problem, remedy));
     }
-    fs::rename(temporary, meshing.output).map_err(|error| {
-        let problem = format!("cannot be written: {error}");
-        let output = meshing.output.display().to_string();
-        vec![Defect::new(
-            output,
-            problem,
-            "check that the folder may be written to",
-        )]
-    })
+    Ok(())
 }
 
-/// The same folder, because a rename is atomic only within one file system.
-fn temporary_name(output: &Path) -> PathBuf {
-    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-    output.with_file_name(format!(".{stem}.{}.tmp.msh", std::process::id()))
+/// The last bytes of a file.
+fn end_of(path: &Path) -> io::Result<Vec<u8>> {
+    const LENGTH: u64 = 64;
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(LENGTH)))?;
+    let mut end = Vec::new();
+    file.read_to_end(&mut end).map(|_| end)
 }
 
-/// Rewrites a mesh file as MSH 4.1 (binary); physical groups and node tags stay.
-pub(crate) fn convert_mesh(input: &Path, output: &Path) -> Result<(), Vec<Defect>> {
+/// Whether the last section of a file is not closed.
+fn is_cut_off(bytes: &[u8]) -> bool {
+    let last_line = bytes.trim_ascii_end().rsplit(|&byte| byte == b'\n').next();
+    !last_line.is_some_and(|line| line.starts_with(b"$End"))
+}
+
+/// Lets gmsh rewrite a mesh file as MSH 4.1 (binary), and hands on the bytes; physical groups and
+/// node tags stay. `scratch_dir` is where it may write meanwhile.
+pub(crate) fn convert_mesh(
+    input: &Path,
+    scratch_dir: &Path,
+    options: &GmshOptions,
+) -> Result<Vec<u8>, Vec<Defect>> {
+    let one = |defect| vec![defect];
+    let mut reads = reviewed(input, options)?;
+    reads.push(input.to_owned());
+    let name = input.file_name().unwrap_or_default();
+    let workspace = Workspace::beside(&scratch_dir.join(name)).map_err(one)?;
     let mut arguments = vec![path_argument(input)];
     // Without -save_all, elements outside all physical groups would be lost.
-    arguments.extend(["-save", "-save_all", "-format", "msh41", "-bin", "-o"].map(OsString::from));
-    arguments.push(path_argument(output));
-    Gmsh::from_environment().run(input, &arguments).map(drop)
+    arguments.extend(["-save", "-save_all", "-format", "msh41", "-bin"].map(OsString::from));
+    arguments.extend(QUIETLY.map(OsString::from));
+    arguments.extend(["-o".into(), path_argument(&workspace.path(MADE))]);
+    let scope = Scope {
+        folder: Some(workspace.folder().to_owned()),
+        reads,
+    };
+    let gmsh = Gmsh::from_environment(options);
+    let ended = gmsh.run(&arguments, &scope);
+    let ended = ended.map_err(|error| vec![cannot_start(&gmsh, &error)])?;
+    judge(&gmsh, input, &ended)?;
+    bytes_of(&workspace.path(MADE)).map_err(one)
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 
 use kluft_mesh::Defect;
 
+use super::script::{comment_length, string_length};
+
 /// One defect for each parameter that would have no effect. Names with a dot are gmsh's own
 /// options.
 pub(super) fn check(place: &str, script: &str, parameters: &[(String, f64)]) -> Vec<Defect> {
@@ -101,40 +103,36 @@ fn assigned_value<'s>(statement: &'s str, name: &str) -> Option<&'s str> {
     (!value.starts_with('=')).then_some(value)
 }
 
-/// Blanks `//` and `/* */` comments; line breaks stay.
+/// Blanks comments; line breaks stay.
 fn without_comments(script: &str) -> String {
-    let mut kept = String::with_capacity(script.len());
-    let mut rest = script;
-    while let Some(at) = rest.find(['/', '"']) {
-        kept.push_str(&rest[..at]);
+    let mut kept = Vec::with_capacity(script.len());
+    let mut rest = script.as_bytes();
+    while let Some(at) = rest
+        .iter()
+        .position(|byte| matches!(byte, b'/' | b'"' | b'\''))
+    {
+        kept.extend_from_slice(&rest[..at]);
         rest = &rest[at..];
-        let length = token_length(rest);
-        if rest.starts_with("//") || rest.starts_with("/*") {
-            kept.extend(rest[..length].chars().filter(|&c| c == '\n'));
-            kept.push(' ');
-        } else {
-            kept.push_str(&rest[..length]);
-        }
+        let length = match comment_length(rest) {
+            Some(length) => {
+                kept.extend(rest[..length].iter().filter(|&&byte| byte == b'\n'));
+                kept.push(b' ');
+                length
+            }
+            None => {
+                let length = if rest[0] == b'/' {
+                    1
+                } else {
+                    string_length(rest)
+                };
+                kept.extend_from_slice(&rest[..length]);
+                length
+            }
+        };
         rest = &rest[length..];
     }
-    kept + rest
-}
-
-/// Length of the comment, string or single character that `rest` begins with.
-fn token_length(rest: &str) -> usize {
-    let up_to = |end: &str, from: usize| {
-        let found = rest[from..].find(end);
-        found.map_or(rest.len(), |at| from + at + end.len())
-    };
-    if rest.starts_with("//") {
-        rest.find('\n').unwrap_or(rest.len())
-    } else if rest.starts_with("/*") {
-        up_to("*/", 2)
-    } else if rest.starts_with('"') {
-        up_to("\"", 1)
-    } else {
-        1
-    }
+    kept.extend_from_slice(rest);
+    String::from_utf8_lossy(&kept).into_owned()
 }
 
 /// Cuts the bodies of `DefineConstant[...]` out of a script.

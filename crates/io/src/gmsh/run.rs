@@ -1,83 +1,156 @@
-//! One run of gmsh.
+//! One run of gmsh: how it is started, waited for and ended.
 
 use std::ffi::{OsStr, OsString};
 use std::io;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::time::{Duration, Instant};
 
-use kluft_mesh::Defect;
-
-use super::log::Log;
+use super::capture::Capture;
+use super::options::GmshOptions;
 
 const VARIABLE: &str = "KLUFT_GMSH";
+/// Between two looks whether gmsh has ended.
+const FIRST_PAUSE: Duration = Duration::from_micros(500);
+const LONGEST_PAUSE: Duration = Duration::from_millis(20);
+/// How long to wait for the last words of a program that has ended; others may hold its streams.
+const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// The program to run.
-pub(super) struct Gmsh {
+pub(super) struct Gmsh<'a> {
     pub(super) program: OsString,
+    pub(super) options: &'a GmshOptions,
 }
 
-impl Gmsh {
+/// What a run may use.
+#[derive(Debug, Default)]
+pub(super) struct Scope {
+    /// The folder that it may write to.
+    pub(super) folder: Option<PathBuf>,
+    /// What it may read besides: files, and folders with all that is in them.
+    pub(super) reads: Vec<PathBuf>,
+}
+
+/// How a run ended, and what it printed.
+pub(super) struct Ended {
+    pub(super) status: ExitStatus,
+    pub(super) output: String,
+    pub(super) errors: String,
+    /// Whether it was ended because its time was over.
+    pub(super) is_out_of_time: bool,
+}
+
+impl<'a> Gmsh<'a> {
     /// What `KLUFT_GMSH` names, else `gmsh`.
-    pub(super) fn from_environment() -> Self {
+    pub(super) fn from_environment(options: &'a GmshOptions) -> Self {
         let named = std::env::var_os(VARIABLE).filter(|program| !program.is_empty());
         Self {
             program: named.unwrap_or_else(|| "gmsh".into()),
+            options,
         }
     }
 
-    /// Its version, if it can be started.
-    pub(super) fn version(&self) -> Option<String> {
-        let output = Command::new(&self.program)
-            .arg("--version")
-            .stdin(Stdio::null())
-            .output()
-            .ok()?;
-        // gmsh prints its version on the error stream.
-        let said = [output.stdout, output.stderr].concat();
-        let said = String::from_utf8_lossy(&said).trim().to_owned();
-        (output.status.success() && !said.is_empty()).then_some(said)
-    }
-
-    /// Runs it and answers with its warnings; any error it reports is a failure.
-    pub(super) fn run(&self, input: &Path, args: &[OsString]) -> Result<Vec<String>, Vec<Defect>> {
-        let output = Command::new(&self.program)
-            .args(args)
-            .args(["-nopopup", "-v", "2"])
-            .stdin(Stdio::null())
-            .output()
-            .map_err(|error| vec![self.cannot_start(&error)])?;
-        let log = Log::parse(&output.stdout, &output.stderr);
-        let defects = failures(input, &output, &log);
-        if defects.is_empty() {
-            Ok(log.warnings)
-        } else {
-            Err(defects)
+    /// Runs it to its end, or to that of the time that it may take.
+    pub(super) fn run(&self, arguments: &[OsString], scope: &Scope) -> io::Result<Ended> {
+        let mut command = self.command(scope)?;
+        command.args(arguments);
+        // Options of the user must not change a mesh, and gmsh has no other switch for that.
+        let home = scope.folder.as_deref().unwrap_or(Path::new("/dev/null"));
+        let home = std::path::absolute(home)?;
+        command.env("GMSH_HOME", &home);
+        if scope.folder.is_some() {
+            command.env("TMPDIR", &home);
         }
+        let child = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()?;
+        watch(child, self.options.time_limit)
     }
 
-    fn cannot_start(&self, error: &io::Error) -> Defect {
-        let remedy = format!(
-            "install it (`sudo apt-get install gmsh`), or let the environment variable {VARIABLE} \
-             name the program"
-        );
-        let program = self.program.display();
-        let problem = match error.kind() {
-            io::ErrorKind::NotFound => "the program gmsh is not found".to_owned(),
-            _ => format!("gmsh cannot be started: {error}"),
+    /// The program without its arguments, as the launcher wants it if there is one.
+    fn command(&self, scope: &Scope) -> io::Result<Command> {
+        let program = self.find()?;
+        let Some(launcher) = &self.options.launcher else {
+            return Ok(Command::new(program));
         };
-        Defect::new(program.to_string(), problem, remedy)
+        let mut command = Command::new(&launcher.program);
+        command.arg(&launcher.argument);
+        command.arg("--parent").arg(std::process::id().to_string());
+        if self.options.confines() {
+            command.arg("--confine");
+            if let Some(folder) = &scope.folder {
+                command.arg("--folder").arg(folder);
+            }
+            for path in &scope.reads {
+                command.arg("--read").arg(path);
+            }
+        }
+        command.arg("--").arg(program);
+        Ok(command)
+    }
+
+    /// The file of the program.
+    fn find(&self) -> io::Result<PathBuf> {
+        let named = Path::new(&self.program);
+        let there = |file: &Path| file.exists().then(|| file.to_owned());
+        let found = if named.components().count() > 1 {
+            there(named)
+        } else {
+            let folders = std::env::var_os("PATH").unwrap_or_default();
+            std::env::split_paths(&folders).find_map(|folder| {
+                let file = folder.join(named);
+                there(&file).filter(|file| file.is_file())
+            })
+        };
+        found.ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 }
 
-fn failures(input: &Path, output: &Output, log: &Log) -> Vec<Defect> {
-    let name = input.display().to_string();
-    let mut defects = log.defects(&name);
-    if defects.is_empty() && !output.status.success() {
-        let problem = format!("gmsh failed without an error message ({})", output.status);
-        let remedy = "open the file in gmsh and look what it says";
-        defects.push(Defect::new(name, problem, remedy));
-    }
-    defects
+fn watch(mut child: Child, limit: Option<Duration>) -> io::Result<Ended> {
+    let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
+    let (ended, all) = mpsc::channel();
+    let output = child.stdout.take().map(|stream| read(stream, &ended));
+    let errors = child.stderr.take().map(|stream| read(stream, &ended));
+    drop(ended);
+    let mut pause = FIRST_PAUSE;
+    let mut is_out_of_time = false;
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            is_out_of_time = true;
+            child.kill()?;
+            break child.wait()?;
+        }
+        std::thread::sleep(pause);
+        pause = LONGEST_PAUSE.min(2 * pause);
+    };
+    wait_for_streams(&all);
+    let text = |capture: Option<Capture>| capture.map_or_else(String::new, |kept| kept.text());
+    Ok(Ended {
+        status,
+        output: text(output),
+        errors: text(errors),
+        is_out_of_time,
+    })
+}
+
+fn read(stream: impl io::Read + Send + 'static, ended: &mpsc::Sender<()>) -> Capture {
+    let ended = ended.clone();
+    // Nobody may wait for it any more.
+    Capture::begin(stream, move || {
+        let _ = ended.send(());
+    })
+}
+
+fn wait_for_streams(all: &Receiver<()>) {
+    let end = Instant::now() + LAST_WORDS;
+    let left = || end.saturating_duration_since(Instant::now());
+    while all.recv_timeout(left()).is_ok() {}
 }
 
 /// A path that gmsh cannot take for an option.

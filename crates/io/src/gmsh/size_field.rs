@@ -7,6 +7,7 @@ use std::path::Path;
 
 use kluft_mesh::{Defect, Mesh, Shape};
 
+use super::script::LONGEST_STRING;
 use crate::atomic::write_atomically;
 
 /// Writes `sizes` (m), one for each node, as a view that gmsh interpolates on the cells of the
@@ -53,12 +54,9 @@ fn scalar(shape: Shape) -> &'static str {
 
 /// Writes a script that meshes `geometry` with the sizes of a field and nothing else.
 pub(super) fn write_script(path: &Path, geometry: &Path, sizes: &Path) -> Result<(), Defect> {
-    let absolute = |path: &Path| -> std::io::Result<String> {
-        let path = std::path::absolute(path)?;
-        Ok(path.display().to_string().replace('"', "\\\""))
-    };
+    let [geometry, sizes] = [quoted(geometry)?, quoted(sizes)?];
     write_atomically(path, |out| {
-        writeln!(out, "Merge \"{}\";", absolute(geometry)?)?;
+        writeln!(out, "Merge {geometry};")?;
         for option in [
             "SizeMin = 0",
             "SizeMax = 1e22",
@@ -68,7 +66,7 @@ pub(super) fn write_script(path: &Path, geometry: &Path, sizes: &Path) -> Result
         ] {
             writeln!(out, "Mesh.Mesh{option};")?;
         }
-        writeln!(out, "Merge \"{}\";", absolute(sizes)?)?;
+        writeln!(out, "Merge {sizes};")?;
         writeln!(out, "kluft_sizes = newf;")?;
         writeln!(out, "Field[kluft_sizes] = PostView;")?;
         writeln!(
@@ -77,4 +75,32 @@ pub(super) fn write_script(path: &Path, geometry: &Path, sizes: &Path) -> Result
         )?;
         writeln!(out, "Background Field = kluft_sizes;")
     })
+}
+
+/// A path as a string of gmsh, which has no way to write a quote inside quotes.
+fn quoted(path: &Path) -> Result<String, Defect> {
+    let refuse = |problem: String| {
+        let remedy = "rename the file or its folder";
+        Defect::new(path.display().to_string(), problem, remedy)
+    };
+    let whole = std::path::absolute(path).map_err(|error| refuse(error.to_string()))?;
+    let name = whole.to_str().filter(|name| name.len() <= LONGEST_STRING);
+    let name = name.ok_or_else(|| refuse("gmsh cannot read a path like this".to_owned()))?;
+    let quote = ['"', '\''].into_iter().find(|&quote| !name.contains(quote));
+    let quote = quote.ok_or_else(|| refuse("the path has quotes of both kinds".to_owned()))?;
+    Ok(format!("{quote}{name}{quote}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_stays_one_string() {
+        assert_eq!(quoted(Path::new("/a b.geo")).as_deref(), Ok("\"/a b.geo\""));
+        let name = "/a\"; SystemCall \"b";
+        assert_eq!(quoted(Path::new(name)), Ok(format!("'{name}'")));
+        assert!(quoted(Path::new("/a\"'b")).is_err());
+        assert!(quoted(Path::new(&"/long".repeat(300))).is_err());
+    }
 }

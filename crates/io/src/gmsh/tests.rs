@@ -1,5 +1,6 @@
-//! gmsh played by scripts that behave as it does, well or badly.
+//! gmsh, and scripts that play it badly.
 
+use std::fs;
 use std::path::PathBuf;
 
 use super::*;
@@ -25,8 +26,18 @@ impl Scene {
         program: &str,
         parameters: &[(String, f64)],
     ) -> Result<Vec<String>, Vec<Defect>> {
+        self.mesh_as(program, parameters, &GmshOptions::default())
+    }
+
+    fn mesh_as(
+        &self,
+        program: &str,
+        parameters: &[(String, f64)],
+        options: &GmshOptions,
+    ) -> Result<Vec<String>, Vec<Defect>> {
         let gmsh = Gmsh {
             program: program.into(),
+            options,
         };
         let meshing = Meshing {
             geometry: &self.folder.join("in.geo"),
@@ -34,21 +45,23 @@ impl Scene {
             order: 1,
             sizes: None,
             output: &self.folder.join("out put.msh"),
+            gmsh: options,
         };
         mesh_with(&gmsh, &meshing)
     }
 
     fn fails_with(&self, problem: &str) {
-        let defects = self.mesh("gmsh", &[]).expect_err(problem);
-        assert!(
-            defects.iter().any(|d| d.to_string().contains(problem)),
-            "{defects:?}"
-        );
-        assert_eq!(
-            fs::read_dir(&self.folder).expect("there").count(),
-            1,
-            "nothing is left behind"
-        );
+        self.fails_as("gmsh", &GmshOptions::default(), problem);
+    }
+
+    fn fails_as(&self, program: &str, options: &GmshOptions, problem: &str) -> Vec<Defect> {
+        let files = || fs::read_dir(&self.folder).expect("there").count();
+        let before = files();
+        let defects = self.mesh_as(program, &[], options).expect_err(problem);
+        let told = defects.iter().any(|d| d.to_string().contains(problem));
+        assert!(told, "{problem}: {defects:?}");
+        assert_eq!(files(), before, "nothing is left behind");
+        defects
     }
 }
 
@@ -126,10 +139,133 @@ fn a_missing_geometry_and_a_wrong_order_are_defects() {
             order,
             sizes: None,
             output: Path::new("out.msh"),
+            gmsh: &GmshOptions::default(),
         };
         mesh_geometry(&meshing).is_err()
     };
     assert!(fails(&scene.folder.join("in.geo"), 3));
     assert!(fails(&scene.folder.join("nix.geo"), 1));
     assert!(fails(&scene.folder, 1));
+}
+
+/// A program in the folder that plays gmsh.
+#[cfg(unix)]
+fn player(scene: &Scene, text: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let file = scene.folder.join("gmsh.sh");
+    fs::write(&file, format!("#!/bin/sh\n{text}\n")).expect("written");
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("executable");
+    file.display().to_string()
+}
+
+#[cfg(unix)]
+#[test]
+fn last_words_and_the_signal_are_told() {
+    let scene = Scene::new("words", BOX);
+    let program = player(&scene, "echo one; echo out of luck >&2; kill -SEGV $$");
+    let defects = scene.fails_as(&program, &GmshOptions::default(), "out of luck");
+    assert!(defects[0].problem.contains("SIGSEGV"), "{defects:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_program_that_prints_or_waits_for_ever_ends_with_its_time() {
+    let options = GmshOptions {
+        time_limit: Some(Duration::from_millis(300)),
+        ..GmshOptions::default()
+    };
+    for (name, text) in [
+        ("prints", "while :; do echo so much to say; done"),
+        ("waits", "while :; do :; done"),
+        ("child", "sleep 5 & wait"),
+    ] {
+        let scene = Scene::new(name, BOX);
+        let program = player(&scene, text);
+        let begin = std::time::Instant::now();
+        let defects = scene.fails_as(&program, &options, "--mesh-timeout");
+        assert!(defects[0].problem.contains("0.3 s"), "{defects:?}");
+        assert_eq!(defects[0].code, Some(NOT_MESHED));
+        assert!(begin.elapsed() < Duration::from_secs(4), "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_mesh_that_is_cut_off_is_told_from_one_without_cells() {
+    let scene = Scene::new("cut", BOX);
+    // The last argument is the file to write.
+    let text = "for last; do :; done; printf '$MeshFormat\\n4.1 1 8\\n' > \"$last\"";
+    let program = player(&scene, text);
+    let defects = scene.fails_as(&program, &GmshOptions::default(), "cut off");
+    assert_eq!(defects[0].code, Some(NOT_MESHED));
+    assert!(defects[0].remedy.contains("space"), "{defects:?}");
+}
+
+#[test]
+fn a_geometry_that_does_more_is_refused_unless_trusted() {
+    let trusting = GmshOptions {
+        trust: true,
+        ..GmshOptions::default()
+    };
+    for (name, more, problem) in [
+        (
+            "system",
+            "SystemCall \"touch in.geo.pwned\";",
+            "line 5: `SystemCall` would run",
+        ),
+        (
+            "printf",
+            "Printf(\"x\") > \"in.geo.pwned\";",
+            "line 5: `Printf` would write",
+        ),
+        (
+            "save",
+            "Save \"in.geo.pwned\";",
+            "line 5: `Save` would write",
+        ),
+        (
+            "computed",
+            "Merge Str(\"a.geo\");",
+            "what `Merge` would open",
+        ),
+        (
+            "etc",
+            "Merge \"/etc/passwd\";",
+            "would read /etc/passwd, a file of the system",
+        ),
+    ] {
+        let scene = Scene::new(name, &format!("{BOX}{more}\n"));
+        let defects = scene.fails_as("gmsh", &GmshOptions::default(), problem);
+        assert!(defects[0].remedy.contains("--trust"), "{defects:?}");
+    }
+    let scene = Scene::new("trusted", &format!("{BOX}Printf(\"x\") > \"written\";\n"));
+    scene.mesh_as("gmsh", &[], &trusting).expect("a mesh");
+    assert!(scene.folder.join("written").exists());
+}
+
+#[test]
+fn what_a_geometry_opens_is_reviewed_too() {
+    let scene = Scene::new("includes", &format!("{BOX}Include \"a.inc\";\n"));
+    let write = |name: &str, text: &str| fs::write(scene.folder.join(name), text).expect("written");
+    write("a.inc", "Include \"in.geo\";\nMerge 'b.step.opt';");
+    write("b.step.opt", "\n\nSystemCall \"a\";");
+    scene.fails_as(
+        "gmsh",
+        &GmshOptions::default(),
+        "b.step.opt, line 3: `SystemCall`",
+    );
+    write("b.step.opt", "");
+    write("in.geo.opt", "Save \"a\";");
+    scene.fails_as(
+        "gmsh",
+        &GmshOptions::default(),
+        "in.geo.opt, line 1: `Save`",
+    );
+    write("in.geo.opt", "Merge \"c.py\";");
+    write("c.py", "");
+    scene.fails_as(
+        "gmsh",
+        &GmshOptions::default(),
+        "c.py: gmsh would run a program",
+    );
 }

@@ -81,7 +81,7 @@ impl Outcome {
     fn problem(&self) -> Problem {
         let file = self.folder.path().join("scene.toml");
         let mesh = self.folder.path().join("out/mesh.msh");
-        let draft = kluft_io::load_msh(&mesh, self.folder.path());
+        let draft = kluft_io::load_msh(&mesh, self.folder.path(), &Default::default());
         let draft = draft.unwrap_or_else(|defects| panic!("{defects:?}"));
         scenes::bound(&file, draft)
     }

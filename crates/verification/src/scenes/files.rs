@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use kluft_io::{Meshing, load_msh, mesh_geometry};
+use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
 use kluft_run::{MeshInput, Origin, Outcome, Request};
 use kluft_scene::Scene;
@@ -29,9 +29,11 @@ pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> 
         order,
         sizes: None,
         output: &file,
+        gmsh: &GmshOptions::default(),
     })
     .unwrap_or_else(|defects| panic!("{defects:?}"));
-    load_msh(&file, folder.path()).unwrap_or_else(|defects| panic!("{defects:?}"))
+    load_msh(&file, folder.path(), &GmshOptions::default())
+        .unwrap_or_else(|defects| panic!("{defects:?}"))
 }
 
 /// The problem of `geometries/NAME/scene.toml` on a mesh with these parameters.
@@ -65,6 +67,7 @@ pub fn run_scene_file(file: &Path, out: &Path) -> Result<Outcome, Vec<Defect>> {
         origin: Some(Origin { file, text: &text }),
         resume: false,
         keep_results: false,
+        gmsh: GmshOptions::default(),
     };
     kluft_run::run(request, &mut ())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use glam::DVec3;
-use kluft_io::{Meshing, load_msh, mesh_geometry};
+use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
 use kluft_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 use lie_core::{Closure, ClosureKind, FractureLaw};
@@ -127,8 +127,9 @@ pub fn meshed(polygons: &[Polygon], size: f64) -> Result<Draft, Vec<Defect>> {
         order: 1,
         sizes: None,
         output: &file,
+        gmsh: &GmshOptions::default(),
     })?;
-    let mut draft = load_msh(&file, folder.path())?;
+    let mut draft = load_msh(&file, folder.path(), &GmshOptions::default())?;
     name_by_plane(&mut draft, polygons);
     Ok(draft)
 }

@@ -1,0 +1,80 @@
+//! What the end of a run of gmsh means.
+
+use std::io;
+use std::path::Path;
+
+use kluft_mesh::Defect;
+
+use super::log::Log;
+use super::options::{NOT_MESHED, NOT_STARTED};
+use super::run::{Ended, Gmsh};
+
+/// Lines of what gmsh said last that a message holds.
+const LAST: usize = 3;
+
+/// gmsh's warnings, or why it failed; any error that it reports is a failure.
+pub(super) fn judge(gmsh: &Gmsh, input: &Path, ended: &Ended) -> Result<Vec<String>, Vec<Defect>> {
+    let name = input.display().to_string();
+    let is_launched = gmsh.options.launcher.is_some();
+    if ended.is_out_of_time {
+        return Err(vec![out_of_time(gmsh, name)]);
+    }
+    if is_launched && ended.status.code() == Some(NOT_STARTED.into()) {
+        let why = ended.errors.lines().next_back().unwrap_or_default();
+        return Err(vec![not_started(
+            gmsh,
+            format!("gmsh cannot be started: {why}"),
+        )]);
+    }
+    let log = Log::parse(&ended.output, &ended.errors);
+    let mut defects = log.defects(&name);
+    if defects.is_empty() && !ended.status.success() {
+        defects.push(silent(name, ended));
+    }
+    if defects.is_empty() {
+        Ok(log.warnings)
+    } else {
+        Err(defects)
+    }
+}
+
+/// Why the program could not be started.
+pub(super) fn cannot_start(gmsh: &Gmsh, error: &io::Error) -> Defect {
+    let problem = match error.kind() {
+        io::ErrorKind::NotFound => "the program gmsh is not found".to_owned(),
+        _ => format!("gmsh cannot be started: {error}"),
+    };
+    not_started(gmsh, problem)
+}
+
+fn not_started(gmsh: &Gmsh, problem: String) -> Defect {
+    let remedy = "install it (`sudo apt-get install gmsh`), or let the environment variable \
+                  KLUFT_GMSH name the program";
+    Defect::new(gmsh.program.display().to_string(), problem, remedy)
+}
+
+fn out_of_time(gmsh: &Gmsh, name: String) -> Defect {
+    let limit = gmsh.options.time_limit.unwrap_or_default().as_secs_f64();
+    let problem = format!("gmsh was ended after {limit} s, which is all the time it was given");
+    let remedy = "ask for larger cells, or give it more time with --mesh-timeout SECONDS";
+    Defect::new(name, problem, remedy).with_code(NOT_MESHED)
+}
+
+fn silent(name: String, ended: &Ended) -> Defect {
+    let streams = [&ended.output, &ended.errors];
+    let lines = streams.iter().flat_map(|text| text.lines());
+    let lines: Vec<&str> = lines.filter(|line| !line.trim().is_empty()).collect();
+    let last = lines[lines.len().saturating_sub(LAST)..].join("; ");
+    let said = if last.is_empty() {
+        String::new()
+    } else {
+        format!("; it said last: {last}")
+    };
+    let problem = format!(
+        "gmsh failed without an error message ({}){said}",
+        ended.status
+    );
+    let remedy = "open the file in gmsh and look what it says; if KLUFT_GMSH names a script that \
+                  starts gmsh, let it name gmsh itself";
+    Defect::new(name, problem, remedy)
+}

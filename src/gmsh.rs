@@ -1,0 +1,63 @@
+//! How this program starts gmsh: by way of itself.
+
+use std::time::Duration;
+
+use clap::Args;
+use kluft_io::GmshOptions;
+use kluft_io::gmsh::Launcher;
+
+/// The hidden command that becomes gmsh.
+#[cfg(target_os = "linux")]
+pub const START: &str = "start-gmsh";
+
+/// Arguments of every command that makes meshes.
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub struct GmshArgs {
+    /// Let the geometry run programs and open any file; only for geometries that you have read
+    #[arg(long)]
+    pub trust: bool,
+    /// End gmsh after this time, s [default: no limit]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub mesh_timeout: Option<Duration>,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.parse::<f64>().ok().filter(|number| *number > 0.0);
+    let time = number.and_then(|number| Duration::try_from_secs_f64(number).ok());
+    time.ok_or_else(|| "a time greater than 0 is wanted, in seconds".to_owned())
+}
+
+impl From<GmshArgs> for GmshOptions {
+    fn from(args: GmshArgs) -> Self {
+        Self {
+            launcher: launcher(),
+            trust: args.trust,
+            time_limit: args.mesh_timeout,
+        }
+    }
+}
+
+impl GmshArgs {
+    /// The same, to be handed on to another run of the program.
+    pub fn arguments(self) -> Vec<String> {
+        let trust = self.trust.then(|| "--trust".to_owned());
+        let limit = self.mesh_timeout.map(|limit| limit.as_secs_f64());
+        let limit = limit.map(|limit| format!("--mesh-timeout={limit}"));
+        trust.into_iter().chain(limit).collect()
+    }
+}
+
+/// Where this program does not find itself, gmsh is started as it is.
+#[cfg(target_os = "linux")]
+fn launcher() -> Option<Launcher> {
+    Some(Launcher {
+        program: std::env::current_exe().ok()?,
+        argument: START.into(),
+        confines: crate::start_gmsh::can_confine(),
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn launcher() -> Option<Launcher> {
+    None
+}
