@@ -1,0 +1,206 @@
+//! The six junctions that random materials fill: gmsh geometries, each meshed once.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use kluft_mesh::Draft;
+use tempfile::TempDir;
+
+use super::asked::bytes_of;
+use crate::root;
+use crate::scenes::meshed_file;
+
+/// A junction.
+pub struct Junction {
+    /// Name of its geometry.
+    pub name: &'static str,
+    /// Its fractures.
+    pub fractures: &'static [&'static str],
+    /// Where it stands, if not in `geometries/`: the beginning, before the faces of the cube.
+    script: Option<&'static str>,
+    /// Cell size of most cases (m).
+    coarse: f64,
+    /// Cell size at which the iterative solver is the cheapest (m).
+    fine: f64,
+}
+
+/// How a junction is meshed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fineness {
+    /// Large cells of order 1.
+    Coarse,
+    /// Large cells of order 2.
+    Quadratic,
+    /// Small cells of order 1.
+    Fine,
+}
+
+/// Every junction.
+pub const JUNCTIONS: [Junction; 6] = [
+    Junction {
+        name: "wedge",
+        fractures: &["f", "g"],
+        script: Some(WEDGE),
+        coarse: 0.4,
+        fine: 0.09,
+    },
+    Junction {
+        name: "x-junction",
+        fractures: &["east", "north"],
+        script: None,
+        coarse: 0.35,
+        fine: 0.09,
+    },
+    Junction {
+        name: "t-junction",
+        fractures: &["through", "abutting"],
+        script: None,
+        coarse: 0.35,
+        fine: 0.09,
+    },
+    Junction {
+        name: "nest",
+        fractures: &["f"],
+        script: Some(NEST),
+        coarse: 0.35,
+        fine: 0.09,
+    },
+    Junction {
+        name: "corner",
+        fractures: &["f", "g"],
+        script: Some(CORNER),
+        coarse: 0.35,
+        fine: 0.09,
+    },
+    Junction {
+        name: "three-planes",
+        fractures: &["x_plane", "y_plane", "z_plane"],
+        script: None,
+        coarse: 0.4,
+        fine: 0.09,
+    },
+];
+
+/// Two planes that cross at 5 degrees.
+const WEDGE: &str = r#"t = 0.5 * Tan(5 * Pi / 180); Rectangle(1) = {0, 0, 0, 1, 1};
+Point(101) = {0, 0.5, 0}; Point(102) = {1, 0.5, 0};
+Point(103) = {0, 0.5 - t, 0}; Point(104) = {1, 0.5 + t, 0};
+Line(101) = {101, 102}; Line(102) = {103, 104};
+BooleanFragments{ Surface{1}; Delete; }{ Line{101, 102}; Delete; }
+Rotate {{1, 0, 0}, {0, 0, 0}, Pi / 2} { Surface{:}; }
+Extrude {0, 1, 0} { Surface{:}; Layers{Ceil(1.6 / h)}; }
+Coherence;
+f() = Surface In BoundingBox{-e, -e, 0.5 - e, 1 + e, 1 + e, 0.5 + e};
+g() = Surface In BoundingBox{-e, -e, 0.5 - t - e, 0.5 + e, 1 + e, 0.5 + e};
+g() += Surface In BoundingBox{0.5 - e, -e, 0.5 - e, 1 + e, 1 + e, 0.5 + t + e};
+"#;
+
+/// A cube in a cube.
+const NEST: &str = r#"Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {0.2, 0.2, 0.2, 0.6, 0.6, 0.6};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+f() = Surface In BoundingBox{0.2 - e, 0.2 - e, 0.2 - e, 0.8 + e, 0.8 + e, 0.8 + e};
+g() = {};
+"#;
+
+/// A small block at a corner of the cube.
+const CORNER: &str = r#"s = 0.8; Box(1) = {0, 0, 0, 1, 1, 1};
+Box(2) = {s, s, s, 1 - s, 1 - s, 1 - s};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+f() = Surface In BoundingBox{s - e, s - e, s - e, s + e, 1 + e, 1 + e};
+g() = Surface In BoundingBox{s - e, s - e, s - e, 1 + e, s + e, 1 + e};
+g() += Surface In BoundingBox{s - e, s - e, s - e, 1 + e, 1 + e, s + e};
+"#;
+
+const FACES: &str = r#"left() = Surface In BoundingBox{-e, -e, -e, e, 1 + e, 1 + e};
+right() = Surface In BoundingBox{1 - e, -e, -e, 1 + e, 1 + e, 1 + e};
+front() = Surface In BoundingBox{-e, -e, -e, 1 + e, e, 1 + e};
+back() = Surface In BoundingBox{-e, 1 - e, -e, 1 + e, 1 + e, 1 + e};
+bottom() = Surface In BoundingBox{-e, -e, -e, 1 + e, 1 + e, e};
+top() = Surface In BoundingBox{-e, -e, 1 - e, 1 + e, 1 + e, 1 + e};
+g() -= {f(), left(), right(), front(), back(), bottom(), top()};
+Physical Volume("rock") = Volume{:};
+Physical Surface("left") = left(); Physical Surface("right") = right();
+Physical Surface("front") = front(); Physical Surface("back") = back();
+Physical Surface("bottom") = bottom(); Physical Surface("top") = top();
+Physical Surface("f") = f();
+If (#g() > 0)
+  Physical Surface("g") = g();
+EndIf
+Mesh.MeshSizeMax = h;
+"#;
+
+impl Junction {
+    /// The text of its geometry.
+    pub fn geometry(&self) -> String {
+        let Some(script) = self.script else {
+            let file = format!("geometries/{0}/{0}.geo", self.name);
+            return String::from_utf8_lossy(&bytes_of(&root().join(file))).into_owned();
+        };
+        let head = "SetFactory(\"OpenCASCADE\");\nDefineConstant[ h = {0.35, Name \"h\"} ];\n";
+        format!("{head}e = 1e-5;\n{script}{FACES}")
+    }
+
+    /// The section of a scene that makes its mesh.
+    pub fn section(&self, fineness: Fineness) -> String {
+        let (size, order) = self.size(fineness);
+        let name = self.name;
+        format!(
+            "[mesh]\ngeometry = \"{name}.geo\"\nparameters = {{ h = {size} }}\norder = {order}\n"
+        )
+    }
+
+    fn size(&self, fineness: Fineness) -> (f64, u32) {
+        match fineness {
+            Fineness::Coarse => (self.coarse, 1),
+            Fineness::Quadratic => (self.coarse, 2),
+            Fineness::Fine => (self.fine, 1),
+        }
+    }
+}
+
+/// The meshes of all junctions, each made when it is needed first.
+pub struct Meshes {
+    folder: TempDir,
+    made: [[OnceLock<Draft>; 3]; 6],
+}
+
+impl Meshes {
+    /// None so far.
+    ///
+    /// # Panics
+    /// If there is no place for temporary files.
+    pub fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().expect("a temporary folder"),
+            made: Default::default(),
+        }
+    }
+
+    /// The mesh of a junction by its number.
+    ///
+    /// # Panics
+    /// If gmsh does not make it.
+    pub fn of(&self, junction: usize, fineness: Fineness) -> Draft {
+        let made = self.made[junction][fineness as usize].get_or_init(|| {
+            let own = &JUNCTIONS[junction];
+            let file = self.file(own);
+            let (size, order) = own.size(fineness);
+            meshed_file(&file, &[("h", size)], order)
+        });
+        made.clone()
+    }
+
+    fn file(&self, junction: &Junction) -> PathBuf {
+        let file: &Path = self.folder.path();
+        let file = file.join(format!("{}.geo", junction.name));
+        fs::write(&file, junction.geometry()).expect("a writable folder");
+        file
+    }
+}
+
+impl Default for Meshes {
+    fn default() -> Self {
+        Self::new()
+    }
+}

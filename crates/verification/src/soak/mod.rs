@@ -1,0 +1,48 @@
+//! The soak: random and damaged input, runs that are killed, race and find the disk full; how they
+//! end is counted.
+//!
+//! A new suite is a file here, a row of [`SUITES`] and a test.
+
+mod asked;
+mod dice;
+mod material;
+pub mod materials;
+mod meshes;
+mod solve;
+mod tally;
+
+pub use asked::Asked;
+
+use crate::report::{Finding, Layout, Report, Study};
+
+const HEAD: &str = "# Soak
+
+Written by `cargo run --release -p kluft-verification --bin verify -- soak`: what comes of random and damaged input, \
+and of runs that are killed, race for a folder or find the disk full. Nothing here is typed in. A case is seen again \
+by `verify soak --only SUITE --seed SEED --case CASE`, which leaves its input in `target/verification/soak/kept`. \
+Short forms of all suites are tests (`crates/verification/tests`, `tests/program/soak.rs`).";
+
+const PROMISE: &str = "Promised is: no panic, no abort, no hang; exit codes 0, 1 and 2 only; one \
+    answer whatever the linear solver and the number of load steps, or a run that says that the \
+    state is not unique; no file lost or mixed, and no process left behind.";
+
+/// A suite and how it is run as asked.
+pub type Suite = (Study, fn(&Asked) -> Finding);
+
+/// All suites, in the order of the page.
+pub const SUITES: [Suite; 1] = [
+    (materials::STUDY, materials::run),
+];
+
+/// All suites as studies with their usual cases.
+pub fn report() -> Report {
+    Report {
+        name: "soak",
+        head: HEAD,
+        columns: &["suite", "what is tried", "cases", "outcomes", "did not hold"],
+        studies: SUITES.iter().map(|(study, _)| *study).collect(),
+        layout: Layout::OnePage {
+            promise: PROMISE.to_owned(),
+        },
+    }
+}

@@ -1,0 +1,70 @@
+//! How cases ended, counted by outcome.
+
+use std::any::Any;
+use std::collections::BTreeMap;
+
+use crate::report::{Finding, Table};
+
+/// Cases that did not hold which a page lists by name.
+const MOST_LISTED: usize = 20;
+
+/// How one case ended.
+#[derive(Debug, Clone)]
+pub struct Verdict {
+    /// The class that it counts in.
+    pub outcome: String,
+    /// What did not hold, with all that is needed to see it again.
+    pub miss: Option<String>,
+}
+
+impl Verdict {
+    /// A case as it should be.
+    pub fn held(outcome: impl Into<String>) -> Self {
+        Self {
+            outcome: outcome.into(),
+            miss: None,
+        }
+    }
+
+    /// A case as it should not be.
+    pub fn missed(outcome: impl Into<String>, what: impl Into<String>) -> Self {
+        Self {
+            outcome: outcome.into(),
+            miss: Some(what.into()),
+        }
+    }
+}
+
+/// All cases by outcome: a sentence, a table, and those that did not hold.
+pub fn finding(text: &str, verdicts: &[Verdict]) -> Finding {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for verdict in verdicts {
+        *counts.entry(&verdict.outcome).or_default() += 1;
+    }
+    let mut counts: Vec<(&str, usize)> = counts.into_iter().collect();
+    counts.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+    let mut table = Table::new(&["outcome", "cases"]);
+    for (outcome, count) in &counts {
+        table.push([(*outcome).to_owned(), count.to_string()]);
+    }
+    let all = verdicts.len();
+    let missed: Vec<String> = verdicts.iter().filter_map(|v| v.miss.clone()).collect();
+    let most = counts.iter().take(4);
+    let most: Vec<String> = most.map(|(what, count)| format!("{count} {what}")).collect();
+    let finding = Finding::new([
+        all.to_string(),
+        most.join("; "),
+        missed.len().to_string(),
+    ]);
+    let beyond = missed.len().saturating_sub(MOST_LISTED);
+    let rest = (beyond > 0).then(|| format!("{beyond} more"));
+    let listed = missed.into_iter().take(MOST_LISTED).chain(rest);
+    finding.text(text).table(table).missing(listed.collect())
+}
+
+/// The words of a panic.
+pub fn words_of(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+    text.unwrap_or("no words").to_owned()
+}
