@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, reason = "progress is what one waits for")]
 
 use std::error::Error;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
@@ -63,12 +64,21 @@ struct SoakChoice {
     /// The number of cases [default: that of each suite]
     #[arg(long, value_name = "COUNT")]
     cases: Option<usize>,
-    /// One case by its number
-    #[arg(long, value_name = "NUMBER", conflicts_with = "cases")]
+    /// One case by its number, or the first of several
+    #[arg(long, value_name = "NUMBER")]
     case: Option<usize>,
     /// The program that is run and killed [default: kluft beside this one]
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
+}
+
+impl SoakChoice {
+    /// The cases to run, if not the usual ones: a case alone, unless there is a count.
+    fn cases(&self) -> Option<Range<usize>> {
+        let first = self.case.unwrap_or(0);
+        let count = self.cases.or(self.case.map(|_| 1))?;
+        Some(first..first + count)
+    }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -103,11 +113,10 @@ fn write(report: &Report, choice: &Choice) -> Result<(), Box<dyn Error>> {
 /// Suites that ran other cases than the usual ones leave the committed page alone.
 fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
     let report = soak::report();
-    let (effort, folder) = target(choice.quick || choice.cases.is_some() || choice.case.is_some());
+    let (effort, folder) = target(choice.quick || choice.cases().is_some());
     let mut asked = Asked::of(effort);
     asked.seed = choice.seed;
-    asked.cases = choice.cases.map(|count| 0..count);
-    asked.cases = asked.cases.or(choice.case.map(|case| case..case + 1));
+    asked.cases = choice.cases();
     asked.program = choice.program.clone().unwrap_or(asked.program);
     report.chosen(&choice.only)?;
     let is_chosen = |name: &str| choice.only.is_empty() || choice.only.iter().any(|n| n == name);

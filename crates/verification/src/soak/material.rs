@@ -33,7 +33,10 @@ fn rock(dice: &mut Dice) -> String {
     }
     if dice.chance(0.15) {
         let [x, y, z] = [0; 3].map(|_| -dice.decades(5.0, 7.5));
-        let _ = write!(text, "[initial_stress]\nxx = {x:e}\nyy = {y:e}\nzz = {z:e}\n");
+        let _ = write!(
+            text,
+            "[initial_stress]\nxx = {x:e}\nyy = {y:e}\nzz = {z:e}\n"
+        );
     }
     text
 }

@@ -4,10 +4,19 @@
 //! A new suite is a file here, a row of [`SUITES`] and a test.
 
 mod asked;
+mod damage;
 mod dice;
+pub mod disks;
+mod folder;
+pub mod kills;
 mod material;
 pub mod materials;
 mod meshes;
+pub mod mutated_meshes;
+pub mod mutated_scenes;
+pub mod networks;
+mod program;
+pub mod races;
 mod solve;
 mod tally;
 
@@ -30,8 +39,14 @@ const PROMISE: &str = "Promised is: no panic, no abort, no hang; exit codes 0, 1
 pub type Suite = (Study, fn(&Asked) -> Finding);
 
 /// All suites, in the order of the page.
-pub const SUITES: [Suite; 1] = [
+pub const SUITES: [Suite; 7] = [
     (materials::STUDY, materials::run),
+    (networks::STUDY, networks::run),
+    (mutated_scenes::STUDY, mutated_scenes::run),
+    (mutated_meshes::STUDY, mutated_meshes::run),
+    (kills::STUDY, kills::run),
+    (races::STUDY, races::run),
+    (disks::STUDY, disks::run),
 ];
 
 /// All suites as studies with their usual cases.
@@ -39,7 +54,13 @@ pub fn report() -> Report {
     Report {
         name: "soak",
         head: HEAD,
-        columns: &["suite", "what is tried", "cases", "outcomes", "did not hold"],
+        columns: &[
+            "suite",
+            "what is tried",
+            "cases",
+            "outcomes",
+            "did not hold",
+        ],
         studies: SUITES.iter().map(|(study, _)| *study).collect(),
         layout: Layout::OnePage {
             promise: PROMISE.to_owned(),

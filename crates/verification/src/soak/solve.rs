@@ -100,7 +100,9 @@ fn fields(outcome: &Outcome) -> Fields {
 
 /// Length of the longest of vectors, three numbers each.
 pub fn longest(vectors: &[f64]) -> f64 {
-    let lengths = vectors.chunks(3).map(|v| v.iter().map(|x| x * x).sum::<f64>().sqrt());
+    let lengths = vectors
+        .chunks(3)
+        .map(|v| v.iter().map(|x| x * x).sum::<f64>().sqrt());
     lengths.fold(0.0, f64::max)
 }
 
@@ -110,7 +112,10 @@ pub fn kind_of(why: &str) -> String {
         ("nothing holds", "the loads push rock that nothing holds"),
         ("tests do not hold", "the tests do not hold"),
         ("no longer finite", "a number is no longer finite"),
-        ("not positive definite", "the stiffness is not positive definite"),
+        (
+            "not positive definite",
+            "the stiffness is not positive definite",
+        ),
         ("gave up", "the linear solver gave up"),
         ("not finite", "a number in the linear system is not finite"),
         ("not unique", "the state is not unique"),

@@ -50,12 +50,10 @@ pub fn finding(text: &str, verdicts: &[Verdict]) -> Finding {
     let all = verdicts.len();
     let missed: Vec<String> = verdicts.iter().filter_map(|v| v.miss.clone()).collect();
     let most = counts.iter().take(4);
-    let most: Vec<String> = most.map(|(what, count)| format!("{count} {what}")).collect();
-    let finding = Finding::new([
-        all.to_string(),
-        most.join("; "),
-        missed.len().to_string(),
-    ]);
+    let most: Vec<String> = most
+        .map(|(what, count)| format!("{count} {what}"))
+        .collect();
+    let finding = Finding::new([all.to_string(), most.join("; "), missed.len().to_string()]);
     let beyond = missed.len().saturating_sub(MOST_LISTED);
     let rest = (beyond > 0).then(|| format!("{beyond} more"));
     let listed = missed.into_iter().take(MOST_LISTED).chain(rest);
