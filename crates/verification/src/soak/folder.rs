@@ -168,3 +168,31 @@ pub fn broken(folder: &Path) -> Option<String> {
     let fits = steps == grids || steps + 1 == grids;
     (!fits).then(|| format!("summary.json has {steps} load steps, and there are {grids} grids"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_lost_cut_short_or_mixed_is_seen() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let write = |name: &str, text: &str| fs::write(folder.path().join(name), text);
+        write("rock_0001.vtu", "<VTKFile></VTKFile>\n").expect("written");
+        write("rock.pvd", "<VTKFile file=\"rock_0001.vtu\"/></VTKFile>").expect("written");
+        write("summary.json", "{\"steps\": [1], \"seconds\": 7}").expect("written");
+        write(".lock", "hidden").expect("written");
+        assert_eq!(broken(folder.path()), None);
+        let whole = results(folder.path());
+        assert_eq!(whole.len(), 3);
+        write("summary.json", "{\"seconds\": 8, \"steps\": [1]}").expect("written");
+        assert_eq!(difference(&results(folder.path()), &whole), None);
+        write("rock_0002.vtu", "<VTKFile>").expect("written");
+        assert!(broken(folder.path()).is_some_and(|what| what.contains("ends early")));
+        assert!(difference(&results(folder.path()), &whole).is_some());
+        for name in ["rock_0001.vtu", "rock_0002.vtu"] {
+            fs::remove_file(folder.path().join(name)).expect("removed");
+        }
+        assert!(broken(folder.path()).is_some_and(|what| what.contains("not there")));
+        assert!(difference(&results(folder.path()), &whole).is_some());
+    }
+}

@@ -19,10 +19,6 @@ pub struct Junction {
     pub fractures: &'static [&'static str],
     /// Where it stands, if not in `geometries/`: the beginning, before the faces of the cube.
     script: Option<&'static str>,
-    /// Cell size of most cases (m).
-    coarse: f64,
-    /// Cell size at which the iterative solver is the cheapest (m).
-    fine: f64,
 }
 
 /// How a junction is meshed.
@@ -32,55 +28,31 @@ pub enum Fineness {
     Coarse,
     /// Large cells of order 2.
     Quadratic,
-    /// Small cells of order 1.
+    /// Cells of order 1 so small that the iterative solver is the cheapest.
     Fine,
 }
 
 /// Every junction.
 pub const JUNCTIONS: [Junction; 6] = [
-    Junction {
-        name: "wedge",
-        fractures: &["f", "g"],
-        script: Some(WEDGE),
-        coarse: 0.4,
-        fine: 0.09,
-    },
-    Junction {
-        name: "x-junction",
-        fractures: &["east", "north"],
-        script: None,
-        coarse: 0.35,
-        fine: 0.09,
-    },
-    Junction {
-        name: "t-junction",
-        fractures: &["through", "abutting"],
-        script: None,
-        coarse: 0.35,
-        fine: 0.09,
-    },
-    Junction {
-        name: "nest",
-        fractures: &["f"],
-        script: Some(NEST),
-        coarse: 0.35,
-        fine: 0.09,
-    },
-    Junction {
-        name: "corner",
-        fractures: &["f", "g"],
-        script: Some(CORNER),
-        coarse: 0.35,
-        fine: 0.09,
-    },
-    Junction {
-        name: "three-planes",
-        fractures: &["x_plane", "y_plane", "z_plane"],
-        script: None,
-        coarse: 0.4,
-        fine: 0.09,
-    },
+    junction("wedge", &["f", "g"], Some(WEDGE)),
+    junction("x-junction", &["east", "north"], None),
+    junction("t-junction", &["through", "abutting"], None),
+    junction("nest", &["f"], Some(NEST)),
+    junction("corner", &["f", "g"], Some(CORNER)),
+    junction("three-planes", &["x_plane", "y_plane", "z_plane"], None),
 ];
+
+const fn junction(
+    name: &'static str,
+    fractures: &'static [&'static str],
+    script: Option<&'static str>,
+) -> Junction {
+    Junction {
+        name,
+        fractures,
+        script,
+    }
+}
 
 /// Two planes that cross at 5 degrees.
 const WEDGE: &str = r#"t = 0.5 * Tan(5 * Pi / 180); Rectangle(1) = {0, 0, 0, 1, 1};
@@ -143,18 +115,21 @@ impl Junction {
 
     /// The section of a scene that makes its mesh.
     pub fn section(&self, fineness: Fineness) -> String {
-        let (size, order) = self.size(fineness);
+        let (size, order) = fineness.size();
         let name = self.name;
         format!(
             "[mesh]\ngeometry = \"{name}.geo\"\nparameters = {{ h = {size} }}\norder = {order}\n"
         )
     }
+}
 
-    fn size(&self, fineness: Fineness) -> (f64, u32) {
-        match fineness {
-            Fineness::Coarse => (self.coarse, 1),
-            Fineness::Quadratic => (self.coarse, 2),
-            Fineness::Fine => (self.fine, 1),
+impl Fineness {
+    /// Cell size (m) and order of the cells.
+    fn size(self) -> (f64, u32) {
+        match self {
+            Self::Coarse => (0.4, 1),
+            Self::Quadratic => (0.4, 2),
+            Self::Fine => (0.09, 1),
         }
     }
 }
@@ -170,7 +145,7 @@ impl Meshes {
     ///
     /// # Panics
     /// If there is no place for temporary files.
-    pub fn new() -> Self {
+    pub fn none() -> Self {
         Self {
             folder: tempfile::tempdir().expect("a temporary folder"),
             made: Default::default(),
@@ -185,7 +160,7 @@ impl Meshes {
         let made = self.made[junction][fineness as usize].get_or_init(|| {
             let own = &JUNCTIONS[junction];
             let file = self.file(own);
-            let (size, order) = own.size(fineness);
+            let (size, order) = fineness.size();
             meshed_file(&file, &[("h", size)], order)
         });
         made.clone()
@@ -196,11 +171,5 @@ impl Meshes {
         let file = file.join(format!("{}.geo", junction.name));
         fs::write(&file, junction.geometry()).expect("a writable folder");
         file
-    }
-}
-
-impl Default for Meshes {
-    fn default() -> Self {
-        Self::new()
     }
 }

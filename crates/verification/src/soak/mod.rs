@@ -1,7 +1,7 @@
 //! The soak: random and damaged input, runs that are killed, race and find the disk full; how they
 //! end is counted.
 //!
-//! A new suite is a file here, a row of [`SUITES`] and a test.
+//! A new suite is a file here, a row of [`ALL`] and a test.
 
 mod asked;
 mod damage;
@@ -39,7 +39,7 @@ const PROMISE: &str = "Promised is: no panic, no abort, no hang; exit codes 0, 1
 pub type Suite = (Study, fn(&Asked) -> Finding);
 
 /// All suites, in the order of the page.
-pub const SUITES: [Suite; 7] = [
+pub const ALL: [Suite; 7] = [
     (materials::STUDY, materials::run),
     (networks::STUDY, networks::run),
     (mutated_scenes::STUDY, mutated_scenes::run),
@@ -61,7 +61,7 @@ pub fn report() -> Report {
             "outcomes",
             "did not hold",
         ],
-        studies: SUITES.iter().map(|(study, _)| *study).collect(),
+        studies: ALL.iter().map(|(study, _)| *study).collect(),
         layout: Layout::OnePage {
             promise: PROMISE.to_owned(),
         },

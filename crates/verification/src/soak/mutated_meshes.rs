@@ -31,15 +31,25 @@ const MOST_ADDRESS_SPACE: u64 = 400_000;
 const TEXT: &str = "Bits are flipped, counts and tags overwritten, words replaced by numbers \
     that no file should hold, and lines and sections deleted, doubled, moved or cut off, up to \
     three times a file. A file that is still read must give a draft whose indices, coordinates \
-    and groups are sound, and a mesh with a default rock and fracture is built of it. All files \
+    and groups are sound, and a scene with its joint and a support meets the mesh that is built of it. All files \
     together may take at most 0.4 GB of address space.";
 
 const SEEDS: [&str; 4] = ["text", "binary", "partitioned", "sparse"];
 
-/// Every volume is rock, and every inner surface a fracture.
-const SCENE: &str = "[mesh]\nfile = \"x.msh\"\n[rock.default]\nyoung_modulus = \
-                     1e9\npoisson_ratio = 0.2\n[fracture.default]\naperture = \
-                     1e-4\nnormal_stiffness = 1e9\nshear_stiffness = 1e9\n";
+/// Rock cut by the joint that every seed has, held at a face.
+const SCENE: &str = r#"
+[mesh]
+file = "damaged.msh"
+[rock.default]
+young_modulus = 1e9
+poisson_ratio = 0.2
+[fracture."joint one"]
+aperture = 1e-4
+normal_stiffness = 1e9
+shear_stiffness = 1e9
+[boundary.7]
+displacement = { x = 0.0, y = 0.0, z = 0.0 }
+"#;
 
 const NUMBERS: [&str; 16] = [
     "0",

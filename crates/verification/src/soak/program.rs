@@ -98,10 +98,10 @@ pub fn run(program: &Path, arguments: &[&OsStr], limit: Duration) -> End {
     start(program, arguments).end(limit)
 }
 
-/// Processes that work on files of a folder, by their command lines; waits a while for them to end,
-/// then ends them. Linux only.
+/// Processes that work on files of a folder, by their command lines; waits a moment for the system
+/// to end them with their parent, then ends them. Linux only.
 pub fn left_behind(folder: &Path) -> Vec<String> {
-    const PATIENCE: Duration = Duration::from_secs(2);
+    const PATIENCE: Duration = Duration::from_millis(100);
     let begin = Instant::now();
     loop {
         let found = working_on(folder);
@@ -114,7 +114,7 @@ pub fn left_behind(folder: &Path) -> Vec<String> {
             }
             return found.into_iter().map(|(_, command)| command).collect();
         }
-        thread::sleep(Duration::from_millis(20));
+        thread::sleep(Duration::from_millis(5));
     }
 }
 
