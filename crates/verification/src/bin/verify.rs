@@ -120,7 +120,7 @@ fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
     asked.program = choice.program.clone().unwrap_or(asked.program);
     report.chosen(&choice.only)?;
     let is_chosen = |name: &str| choice.only.is_empty() || choice.only.iter().any(|n| n == name);
-    for (study, run) in soak::ALL {
+    for soak::Suite { study, run } in soak::ALL {
         if !choice.rewrite && is_chosen(study.name) {
             tell(study.name, &report.run_as(&study, || run(&asked), &folder)?);
         }

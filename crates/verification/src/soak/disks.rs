@@ -9,7 +9,7 @@ use super::asked::{Asked, each};
 use super::dice::Dice;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results, visible};
 use super::program::{End, left_behind, run as run_program};
-use super::tally::{Verdict, finding};
+use super::tally::{Miss, Verdict, finding};
 use crate::report::{Finding, Study};
 
 /// The suite.
@@ -73,10 +73,7 @@ pub fn run(asked: &Asked) -> Finding {
             expected: results(&next),
         };
         let verdict = case.run(&mut Dice::new(asked.seed, number));
-        verdict.unwrap_or_else(|(outcome, what)| {
-            let case = format!("case {number} (seed {})", asked.seed);
-            Verdict::missed(outcome, format!("{case}: {outcome}: {what}"))
-        })
+        verdict.unwrap_or_else(|miss| miss.in_case(&format!("{number} (seed {})", asked.seed)))
     });
     finding(TEXT, &verdicts)
 }
@@ -99,7 +96,7 @@ fn size(files: &Files) -> usize {
 }
 
 impl Case<'_> {
-    fn run(&self, dice: &mut Dice) -> Result<Verdict, (&'static str, String)> {
+    fn run(&self, dice: &mut Dice) -> Result<Verdict, Miss> {
         let share = dice.between(0.0, 1.2);
         let beyond = (size(&self.next) as f64 * share) as usize;
         let disk = Disk::of(self.out.clone(), size(&self.former) + 8192 + beyond);
@@ -116,7 +113,7 @@ impl Case<'_> {
         let left = left_behind(&out);
         let verdict = self.judged(&out, &end)?;
         match left.first() {
-            Some(left) => Err(("a process left behind", left.clone())),
+            Some(left) => Err(Miss::of("a process left behind", left.clone())),
             None => Ok(verdict),
         }
     }
@@ -137,29 +134,29 @@ impl Case<'_> {
         run_program(Path::new("sh"), &arguments, LIMIT)
     }
 
-    fn judged(&self, out: &Path, end: &End) -> Result<Verdict, (&'static str, String)> {
+    fn judged(&self, out: &Path, end: &End) -> Result<Verdict, Miss> {
         let first = end.first_line().to_owned();
         if let Some(fault) = end.fault() {
-            return Err(("fault", format!("{fault}: {first}")));
+            return Err(Miss::of("fault", format!("{fault}: {first}")));
         }
         if end.code == Some(0) {
             let differs = difference(&results(out), &self.expected);
             return match differs {
-                Some(what) => Err(("other results", what)),
+                Some(what) => Err(Miss::of("other results", what)),
                 None => Ok(Verdict::held("there was room")),
             };
         }
         if end.code != Some(1) {
-            return Err(("taken for bad input", end.said.replace('\n', " ")));
+            return Err(Miss::of("taken for bad input", end.said.replace('\n', " ")));
         }
         if !["space", "full", "too large"]
             .iter()
             .any(|word| end.said.contains(word))
         {
-            return Err(("not named", end.said.replace('\n', " ")));
+            return Err(Miss::of("not named", end.said.replace('\n', " ")));
         }
         if let Some(what) = broken(out) {
-            return Err(("a file that is not whole", what));
+            return Err(Miss::of("a file that is not whole", what));
         }
         let found = visible(out);
         let is_kept = |(name, bytes): (&String, &Vec<u8>)| found.get(name) == Some(bytes);
@@ -178,7 +175,7 @@ impl Case<'_> {
                 "full: named, what became of former results told",
             ));
         }
-        Err((
+        Err(Miss::of(
             "former results lost without a word",
             end.said.replace('\n', " "),
         ))

@@ -12,7 +12,7 @@ use super::asked::{Asked, each};
 use super::dice::Dice;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results};
 use super::program::left_behind;
-use super::tally::{Verdict, finding};
+use super::tally::{Miss, Verdict, finding};
 use crate::report::{Finding, Study};
 
 /// The suite.
@@ -53,9 +53,8 @@ pub fn run(asked: &Asked) -> Finding {
         let whole = &wholes[number % wholes.len()];
         let mut dice = Dice::new(asked.seed, number);
         let verdict = killed(&workshop, whole, number, &mut dice);
-        verdict.unwrap_or_else(|(outcome, what)| {
-            let case = format!("case {number} (seed {}, {})", asked.seed, whole.scene);
-            Verdict::missed(outcome, format!("{case}: {outcome}: {what}"))
+        verdict.unwrap_or_else(|miss| {
+            miss.in_case(&format!("{number} (seed {}, {})", asked.seed, whole.scene))
         })
     });
     finding(TEXT, &verdicts)
@@ -78,7 +77,7 @@ fn killed(
     whole: &Whole,
     number: usize,
     dice: &mut Dice,
-) -> Result<Verdict, (&'static str, String)> {
+) -> Result<Verdict, Miss> {
     // A folder with a name that no other begins with.
     let out = workshop.path(&format!("case-{number}-killed"));
     let (mut hit, mut late) = (0, 0);
@@ -88,21 +87,21 @@ fn killed(
         hit += usize::from(started.kill());
         late += usize::from(out.join("resume.bin").exists());
         if let Some(left) = left_behind(&out).first() {
-            return Err(("a process left behind", left.clone()));
+            return Err(Miss::of("a process left behind", left.clone()));
         }
         if let Some(what) = broken(&out) {
-            return Err(("a file that is not whole", what));
+            return Err(Miss::of("a file that is not whole", what));
         }
     }
     let end = workshop.start(&whole.scene, &out, true).end(LIMIT);
     if end.code != Some(0) {
-        return Err((
+        return Err(Miss::of(
             "not resumed",
             format!("{:?}: {}", end.code, end.first_line()),
         ));
     }
     if let Some(what) = difference(&results(&out), &whole.files) {
-        return Err(("other results", what));
+        return Err(Miss::of("other results", what));
     }
     let _ = fs::remove_dir_all(&out);
     let what = match (hit, late) {

@@ -10,7 +10,7 @@ use super::dice::Dice;
 use super::material;
 use super::meshes::{Fineness, JUNCTIONS, Meshes};
 use super::solve::{End, Fields, longest, solve};
-use super::tally::{Verdict, finding};
+use super::tally::{Miss, Verdict, finding};
 use crate::report::{Effort, Finding, Study};
 
 /// The suite.
@@ -44,8 +44,14 @@ Runs *agree* if the largest difference of a jump anywhere on the fractures betwe
     the same kind of reason, at least those with the same load steps. A run *declares* that its state is not unique by a warning. Anything \
     else is not explained, and listed below; *slightly* is below ten path accuracies.";
 
-/// A run of a case: its linear solver, none for the program's choice, and its load steps.
-type Way = (Option<LinearMethod>, usize);
+/// How a case is run.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    /// The linear solver; none for the program's choice.
+    linear: Option<LinearMethod>,
+    /// Number of equal load steps.
+    steps: usize,
+}
 
 struct Case {
     name: String,
@@ -73,21 +79,22 @@ impl Case {
     }
 
     fn ways(&self) -> Vec<Way> {
-        if self.fineness == Fineness::Fine {
-            let choices = [None, Some(LinearMethod::Direct)];
-            return [1, 2]
-                .into_iter()
-                .flat_map(|n| choices.map(|c| (c, n)))
-                .collect();
-        }
-        let all = |steps| LinearMethod::ALL.map(|method| (Some(method), steps));
-        [1, 2, 10].into_iter().flat_map(all).collect()
+        let (solvers, counts): (Vec<_>, &[usize]) = if self.fineness == Fineness::Fine {
+            (vec![None, Some(LinearMethod::Direct)], &[1, 2])
+        } else {
+            (LinearMethod::ALL.map(Some).into(), &[1, 2, 10])
+        };
+        let all = |&steps: &usize| {
+            let with = move |&linear: &Option<LinearMethod>| Way { linear, steps };
+            solvers.iter().map(with).collect::<Vec<_>>()
+        };
+        counts.iter().flat_map(all).collect()
     }
 
-    fn scene(&self, (method, steps): Way) -> String {
+    fn scene(&self, Way { linear, steps }: Way) -> String {
         let factor = |step: usize| format!("{}", step as f64 / steps as f64);
         let factors: Vec<String> = (1..=steps).map(factor).collect();
-        let solver = method.map(|method| format!("[solver]\nlinear = \"{method}\"\n"));
+        let solver = linear.map(|linear| format!("[solver]\nlinear = \"{linear}\"\n"));
         let solver = solver.unwrap_or_default();
         format!(
             "{}{solver}[load]\nsteps = [{}]\n",
@@ -102,7 +109,7 @@ pub fn run(asked: &Asked) -> Finding {
     let meshes = Meshes::none();
     let limit = Duration::from_secs(match asked.effort {
         Effort::Quick => 120,
-        Effort::Full => 600,
+        Effort::Full => 300,
     });
     let verdicts = each(asked.cases(6, 1000), |number| {
         let case = Case::of(number, asked.seed);
@@ -129,20 +136,26 @@ fn with_words(case: &Case, miss: &str) -> String {
     words + &case.text
 }
 
+/// How the runs of a case end; the first that is out of time is the last.
 fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool, limit: Duration) -> Vec<(Way, End)> {
-    let ways = case.ways().into_iter();
-    ways.map(|way| {
+    let mut ends = Vec::new();
+    for way in case.ways() {
         let draft = meshes.of(case.junction, case.fineness);
-        (way, solve(&case.scene(way), draft, pool, limit))
-    })
-    .collect()
+        let end = solve(&case.scene(way), draft, pool, limit);
+        let is_last = matches!(end, End::OutOfTime);
+        ends.push((way, end));
+        if is_last {
+            break;
+        }
+    }
+    ends
 }
 
-fn words((method, steps): &Way) -> String {
-    let method = method.map_or("the program's choice".to_owned(), |method| {
-        method.to_string()
+fn words(&Way { linear, steps }: &Way) -> String {
+    let method = linear.map_or("the program's choice".to_owned(), |linear| {
+        linear.to_string()
     });
-    let plural = if *steps == 1 { "" } else { "s" };
+    let plural = if steps == 1 { "" } else { "s" };
     format!("{method} in {steps} step{plural}")
 }
 
@@ -174,7 +187,7 @@ fn judged(case: &Case, ends: &[(Way, End)]) -> Verdict {
         count if count == ends.len() => match worst(&solved().collect::<Vec<_>>()) {
             None => Verdict::held("agree"),
             Some(_) if is_declared => Verdict::held("declared not unique"),
-            Some((outcome, what)) => missed(outcome, &what),
+            Some(Miss { outcome, what }) => missed(outcome, &what),
         },
         _ if is_declared => Verdict::held("declared not unique"),
         _ => missed("solved by some only", &listed(ends)),
@@ -204,7 +217,7 @@ fn all_failed(ends: &[(Way, End)], missed: &dyn Fn(&str, &str) -> Verdict) -> Ve
             _ => Verdict::held(format!("fail alike: {first}")),
         };
     }
-    let of_steps = |steps| ends.iter().filter(move |(way, _)| way.1 == steps);
+    let of_steps = |steps| ends.iter().filter(move |(way, _)| way.steps == steps);
     let is_alike = |steps| {
         let mut reasons = of_steps(steps).map(|(_, end)| reason(end));
         let first = reasons.next();
@@ -224,12 +237,13 @@ fn listed(ends: &[(Way, End)]) -> String {
 }
 
 /// The largest difference between two runs, if it is more than the path accuracy.
-fn worst(solved: &[(&Way, &Fields)]) -> Option<(&'static str, String)> {
+fn worst(solved: &[(&Way, &Fields)]) -> Option<Miss> {
     let pairs = solved.iter().enumerate();
     let pairs = pairs.flat_map(|(i, a)| solved[..i].iter().map(move |b| (a, b)));
     let differ = pairs.map(|(a, b)| (difference(a.1, b.1), a.0, b.0));
     // Solvers that differ in the same load steps say more than load steps that differ.
-    let rank = |&(by, a, b): &(f64, &Way, &Way)| (by > NewtonSettings::default().path, a.1 == b.1);
+    let rank =
+        |&(by, a, b): &(f64, &Way, &Way)| (by > NewtonSettings::default().path, a.steps == b.steps);
     let order = |a: &(f64, &Way, &Way), b: &(f64, &Way, &Way)| {
         rank(a).cmp(&rank(b)).then(a.0.total_cmp(&b.0))
     };
@@ -237,7 +251,7 @@ fn worst(solved: &[(&Way, &Fields)]) -> Option<(&'static str, String)> {
     if by <= NewtonSettings::default().path {
         return None;
     }
-    let outcome = if a.1 == b.1 {
+    let outcome = if a.steps == b.steps {
         "linear solvers differ"
     } else if by <= SLIGHT * NewtonSettings::default().path {
         "load steps differ slightly"
@@ -250,12 +264,15 @@ fn worst(solved: &[(&Way, &Fields)]) -> Option<(&'static str, String)> {
         words(b),
         words(a)
     );
-    Some((outcome, what))
+    Some(Miss { outcome, what })
 }
 
 /// The largest difference of a jump as a share of the largest jump; 0 if it is rounding.
 fn difference(a: &Fields, b: &Fields) -> f64 {
     let differences: Vec<f64> = a.jumps.iter().zip(&b.jumps).map(|(a, b)| a - b).collect();
+    if differences.iter().any(|x| !x.is_finite()) {
+        return f64::INFINITY;
+    }
     let by = longest(&differences);
     if by <= ROUNDING * a.displacement.max(b.displacement) {
         return 0.0;
@@ -277,23 +294,33 @@ mod tests {
 
     #[test]
     fn a_difference_beyond_the_path_accuracy_is_seen_and_named() {
-        let direct = (Some(LinearMethod::Direct), 2);
-        let iterative = (Some(LinearMethod::Iterative), 2);
-        let once = (Some(LinearMethod::Direct), 1);
+        let way = |linear, steps| Way {
+            linear: Some(linear),
+            steps,
+        };
+        let direct = way(LinearMethod::Direct, 2);
+        let iterative = way(LinearMethod::Iterative, 2);
+        let once = way(LinearMethod::Direct, 1);
         let [a, near, far] = [5e-5, 5.005e-5, 5.02e-5].map(fields);
         assert!(worst(&[(&direct, &a), (&iterative, &near)]).is_none());
         let found = worst(&[(&direct, &a), (&iterative, &far), (&once, &far)]);
-        assert_eq!(found.expect("a difference").0, "linear solvers differ");
+        assert_eq!(
+            found.expect("a difference").outcome,
+            "linear solvers differ"
+        );
         let found = worst(&[(&direct, &a), (&once, &far)]).expect("a difference");
-        assert_eq!(found.0, "load steps differ slightly");
-        assert!(found.1.contains("2.0e-3"), "{}", found.1);
+        assert_eq!(found.outcome, "load steps differ slightly");
+        assert!(found.what.contains("2.0e-3"), "{}", found.what);
     }
 
     #[test]
     fn every_drawn_scene_is_read() {
         for number in 0..300 {
             let case = Case::of(number, 1);
-            let scene = case.scene((None, 1));
+            let scene = case.scene(Way {
+                linear: None,
+                steps: 1,
+            });
             let read = kluft_scene::Scene::parse(&scene, "s", std::path::Path::new("."));
             assert!(read.is_ok(), "{:?}\n{scene}", read.err());
         }

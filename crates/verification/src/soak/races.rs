@@ -8,7 +8,7 @@ use super::asked::{Asked, each};
 use super::dice::Dice;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results};
 use super::program::{End, left_behind};
-use super::tally::{Verdict, finding};
+use super::tally::{Miss, Verdict, finding};
 use crate::report::{Finding, Study};
 
 /// The suite.
@@ -47,10 +47,8 @@ pub fn run(asked: &Asked) -> Finding {
             took: scenes.map(|scene| alone[scene].1),
         };
         let after = race.took[0].mul_f64(dice.between(0.0, 0.4));
-        race.run(after).unwrap_or_else(|(outcome, what)| {
-            let case = format!("case {number} (seed {})", asked.seed);
-            Verdict::missed(outcome, format!("{case}: {outcome}: {what}"))
-        })
+        race.run(after)
+            .unwrap_or_else(|miss| miss.in_case(&format!("{number} (seed {})", asked.seed)))
     });
     finding(TEXT, &verdicts)
 }
@@ -64,7 +62,7 @@ struct Race<'a> {
 }
 
 impl Race<'_> {
-    fn run(&self, after: Duration) -> Result<Verdict, (&'static str, String)> {
+    fn run(&self, after: Duration) -> Result<Verdict, Miss> {
         let out = self.workshop.path(&format!("case-{}-raced", self.number));
         let start = |which: usize| {
             let scene = SCENES[self.scenes[which]].0;
@@ -82,35 +80,38 @@ impl Race<'_> {
             second.1.saturating_duration_since(first.1),
         )?;
         if let Some(left) = left_behind(&out).first() {
-            return Err(("a process left behind", left.clone()));
+            return Err(Miss::of("a process left behind", left.clone()));
         }
         if let Some(what) = broken(&out) {
-            return Err(("a file that is not whole", what));
+            return Err(Miss::of("a file that is not whole", what));
         }
         let found = results(&out);
         let mut differences = self.alone.iter().map(|alone| difference(&found, alone));
         let [a, b] = [differences.next().flatten(), differences.next().flatten()];
         if let (Some(a), Some(b)) = (a, b) {
             let what = format!("beside the first run {a}, beside the second {b}");
-            return Err(("mixed", what));
+            return Err(Miss::of("mixed", what));
         }
         let _ = fs::remove_dir_all(&out);
         Ok(verdict)
     }
 
-    fn judged(&self, ends: [&End; 2], later: Duration) -> Result<Verdict, (&'static str, String)> {
+    fn judged(&self, ends: [&End; 2], later: Duration) -> Result<Verdict, Miss> {
         if let Some(fault) = ends.iter().find_map(|end| end.fault()) {
-            return Err(("fault", fault));
+            return Err(Miss::of("fault", fault));
         }
         let words = |end: &End| format!("{:?}: {}", end.code, end.first_line());
         match ends.map(|end| end.code == Some(0)) {
             [true, true] if later >= self.took[1].mul_f64(FOLLOWS) => {
                 Ok(Verdict::held("one followed the other"))
             }
-            [true, true] => Err(("both at the same time", format!("{later:?} apart"))),
+            [true, true] => Err(Miss::of(
+                "both at the same time",
+                format!("{later:?} apart"),
+            )),
             [true, false] => Ok(Verdict::held("the second was refused")),
             [false, true] => Ok(Verdict::held("the first was refused")),
-            [false, false] => Err(("none won", ends.map(words).join("; "))),
+            [false, false] => Err(Miss::of("none won", ends.map(words).join("; "))),
         }
     }
 }

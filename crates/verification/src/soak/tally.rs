@@ -35,6 +35,31 @@ impl Verdict {
     }
 }
 
+/// What did not hold in a case.
+#[derive(Debug, Clone)]
+pub struct Miss {
+    /// The class that it counts in.
+    pub outcome: &'static str,
+    /// What was seen.
+    pub what: String,
+}
+
+impl Miss {
+    /// A miss of a class.
+    pub fn of(outcome: &'static str, what: impl Into<String>) -> Self {
+        Self {
+            outcome,
+            what: what.into(),
+        }
+    }
+
+    /// The verdict of the case of this name.
+    pub fn in_case(self, case: &str) -> Verdict {
+        let Self { outcome, what } = self;
+        Verdict::missed(outcome, format!("case {case}: {outcome}: {what}"))
+    }
+}
+
 /// All cases by outcome: a sentence, a table, and those that did not hold.
 pub fn finding(text: &str, verdicts: &[Verdict]) -> Finding {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
