@@ -73,7 +73,10 @@ pub fn finding(text: &str, verdicts: &[Verdict]) -> Finding {
         table.push([(*outcome).to_owned(), count.to_string()]);
     }
     let all = verdicts.len();
-    let missed: Vec<String> = verdicts.iter().filter_map(|v| v.miss.clone()).collect();
+    let missed = verdicts
+        .iter()
+        .filter_map(|verdict| verdict.miss.as_deref());
+    let missed: Vec<String> = missed.map(without_folders).collect();
     let most = counts.iter().take(4);
     let most: Vec<String> = most
         .map(|(what, count)| format!("{count} {what}"))
@@ -85,9 +88,34 @@ pub fn finding(text: &str, verdicts: &[Verdict]) -> Finding {
     finding.text(text).table(table).missing(listed.collect())
 }
 
+/// A text without the temporary folders that it names, which are others in every run.
+fn without_folders(text: &str) -> String {
+    let temporary = std::env::temp_dir().join("");
+    let mut parts = text.split(&*temporary.to_string_lossy());
+    let first = parts.next().unwrap_or_default().to_owned();
+    let behind = |part: &str| {
+        part.split_once('/')
+            .map_or(part, |(_, name)| name)
+            .to_owned()
+    };
+    first + &parts.map(behind).collect::<String>()
+}
+
 /// The words of a panic.
 pub fn words_of(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
     text.unwrap_or("no words").to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn temporary_folders_are_not_named() {
+        let folder = std::env::temp_dir().join("random");
+        let text = format!("gmsh {0}/a.geo -o {0}/out/b.msh", folder.display());
+        assert_eq!(without_folders(&text), "gmsh a.geo -o out/b.msh");
+    }
 }
