@@ -91,7 +91,8 @@ pub fn finding(text: &str, verdicts: &[Verdict]) -> Finding {
 /// A text without the temporary folders that it names, which are others in every run.
 fn without_folders(text: &str) -> String {
     let temporary = std::env::temp_dir().join("");
-    let mut parts = text.split(&*temporary.to_string_lossy());
+    let temporary = temporary.to_string_lossy();
+    let mut parts = text.split(&*temporary);
     let first = parts.next().unwrap_or_default().to_owned();
     let behind = |part: &str| {
         part.split_once('/')
