@@ -1,9 +1,5 @@
-//! Runs that are interrupted and resumed: to the last bit the results of one that is not.
-//! `KLUFT_KILLS` sets how many runs are killed for each linear solver, by default 3.
-#![allow(
-    clippy::print_stdout,
-    reason = "the long suite keeps the count of interrupted runs"
-)]
+//! Runs that are interrupted and resumed: to the last bit the results of one that is not. The soak
+//! kills them at random.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -74,100 +70,6 @@ fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
         assert!(said_of.remove(key).is_some());
     }
     (left, said)
-}
-
-/// Whatever stands in the folder is whole, and the collections list nothing that is not there.
-fn assert_valid(out: &Path) {
-    let Ok(entries) = fs::read_dir(out) else {
-        return;
-    };
-    let names: Vec<String> = entries
-        .map(|entry| entry.expect("an entry").file_name().display().to_string())
-        .collect();
-    let has = |name: &str| names.iter().any(|other| other == name);
-    for collection in ["rock.pvd", "fractures.pvd"]
-        .into_iter()
-        .filter(|name| has(name))
-    {
-        let text = fs::read_to_string(out.join(collection)).expect("a collection");
-        assert!(text.ends_with("</VTKFile>\n"), "{text}");
-        let listed = text.split("file=\"").skip(1);
-        for name in listed.map(|rest| rest.split('"').next().expect("a name")) {
-            let grid = fs::read(out.join(name)).expect("a grid that is listed");
-            assert!(grid.trim_ascii_end().ends_with(b"</VTKFile>"), "{name}");
-        }
-    }
-    if has("summary.json") {
-        let steps = summary(out)["steps"].as_array().expect("steps").len();
-        let grids = names
-            .iter()
-            .filter(|name| name.starts_with("rock_"))
-            .count();
-        assert!(steps == grids || steps + 1 == grids, "{steps} of {grids}");
-    }
-}
-
-/// The generator xorshift64: other places to kill at each time, the same in every test run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: Duration) -> Duration {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        end.mul_f64((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-}
-
-/// Kills runs of one scene at random, up to four times each, and compares how they end.
-fn kill_and_compare(linear: &str, seed: u64) {
-    let kills = std::env::var("KLUFT_KILLS").ok();
-    let runs: usize = kills.and_then(|kills| kills.parse().ok()).unwrap_or(3);
-    let workshop = workshop(linear);
-    let begin = Instant::now();
-    let expected = outcome(&workshop.solve("whole", &[]));
-    let took = begin.elapsed();
-    let mut random = Random(seed);
-    let (mut killed, mut continued) = (0, 0);
-    for number in 0..runs {
-        let out = format!("killed-{number}");
-        for attempt in 0..=number % 4 {
-            let flags: &[&str] = if attempt == 0 { &[] } else { &["--resume"] };
-            let child = start(&workshop, &out, flags);
-            std::thread::sleep(random.below(took));
-            let hit = kill(child);
-            assert_valid(&workshop.path(&out));
-            let goes_on = workshop.path(&out).join("resume.bin").exists();
-            killed += usize::from(hit);
-            continued += usize::from(hit && goes_on);
-        }
-        let found = outcome(&workshop.solve(&out, &["--resume"]));
-        assert_eq!(found.1, expected.1, "{linear}, run {number}");
-        let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
-        assert_eq!(names(&found.0), names(&expected.0));
-        for (name, bytes) in &found.0 {
-            assert!(*bytes == expected.0[name], "{linear}, run {number}: {name}");
-        }
-        fs::remove_dir_all(workshop.path(&out)).expect("removed");
-    }
-    println!(
-        "{runs} of {runs} interrupted runs ({linear}) end as the whole one: killed {killed} times, {continued} of them after the first step"
-    );
-}
-
-#[test]
-fn killed_direct_runs_resume_to_the_same_bytes() {
-    kill_and_compare("direct", 0x9e37_79b9_7f4a_7c15);
-}
-
-#[test]
-fn killed_condensed_runs_resume_to_the_same_bytes() {
-    kill_and_compare("condensed", 0xd1b5_4a32_d192_ed03);
-}
-
-#[test]
-fn killed_iterative_runs_resume_to_the_same_bytes() {
-    kill_and_compare("iterative", 0x8cb9_2ba7_2f3d_8dd7);
 }
 
 /// Killed as soon as there is a checkpoint, a run goes on from there, without gmsh.

@@ -230,7 +230,9 @@ fn names_with_quotes_survive_the_conversion() {
     let quoted = text.replace("\"joint one\"", "\"he said \"hi\" there\"");
     assert!(quoted != text);
     fs::write(&path, quoted).expect("written");
-    let names = load_msh(&path, &scratch.0, &GmshOptions::default()).expect("a draft").groups;
+    let names = load_msh(&path, &scratch.0, &GmshOptions::default())
+        .expect("a draft")
+        .groups;
     let names: Vec<&str> = names.iter().map(|group| group.name.as_str()).collect();
     for name in [
         "he said \"hi\" there",

@@ -8,7 +8,7 @@
 //! cargo run --release -p kluft-verification --bin verify -- REPORT [--quick] [NAME...]
 //! ```
 //!
-//! with `stability`, `closures` or `book` as the report.
+//! with `stability`, `closures`, `book` or `soak` as the report.
 
 pub mod book;
 pub mod closures;
@@ -18,6 +18,7 @@ pub mod oracles;
 pub mod random;
 pub mod report;
 pub mod scenes;
+pub mod soak;
 pub mod stability;
 
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use std::fs;
 
 use kluft_verification::report::{Effort, Finding, Layout, Report, Study, Table};
-use kluft_verification::{book, closures, root, stability};
+use kluft_verification::{book, closures, root, soak, stability};
 use tempfile::tempdir;
 
 const STUDY: Study = Study {
@@ -118,6 +118,7 @@ fn committed_overviews_are_those_of_the_writer() {
         ),
         (closures::report(), "closures/findings.json", "closures.md"),
         (book::report(), "book/index.json", "book/README.md"),
+        (soak::report(), "soak/findings.json", "soak.md"),
     ] {
         let folder = tempdir().expect("a folder");
         fs::create_dir(folder.path().join(report.name)).expect("a folder");

@@ -30,7 +30,6 @@ use review::review;
 use run::{Gmsh, Scope, path_argument};
 pub use size_field::write_size_field;
 use workspace::Workspace;
-pub use workspace::is_workspace;
 
 /// Name of what gmsh writes in its workspace.
 const MADE: &str = "made.msh";

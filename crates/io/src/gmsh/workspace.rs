@@ -43,24 +43,12 @@ impl Workspace {
 
 impl Drop for Workspace {
     fn drop(&mut self) {
-        // What stays is removed with the results of a former run.
+        // What stays is removed by the next run into the folder.
         let _ = fs::remove_dir_all(&self.folder);
     }
 }
 
 const ENDING: &str = ".gmsh";
-
-/// Whether runs of gmsh make folders of this name beside their output, and leave them if they are
-/// killed.
-pub fn is_workspace(name: &str) -> bool {
-    let inside = name
-        .strip_prefix('.')
-        .and_then(|name| name.strip_suffix(ENDING));
-    let number = inside.and_then(|inside| inside.rsplit_once('.'));
-    number.is_some_and(|(_, number)| {
-        !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
-    })
-}
 
 fn cannot_write(output: &Path, error: &io::Error) -> Defect {
     let remedy = match error.kind() {
@@ -76,17 +64,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_workspace_is_known_by_its_name_and_goes_with_its_owner() {
+    fn a_workspace_goes_with_its_owner() {
         let output = std::env::temp_dir().join("kluft-io.work space.msh");
         let workspace = Workspace::beside(&output).expect("a folder");
         let folder = workspace.folder().to_owned();
         fs::write(workspace.path("a"), "b").expect("written");
-        let name = folder.file_name().expect("a name").to_string_lossy();
-        assert!(is_workspace(&name), "{name}");
         drop(workspace);
         assert!(!folder.exists());
-        for other in [".mesh.gmsh", ".mesh.1a.gmsh", "mesh.1.gmsh", ".mesh.1.msh"] {
-            assert!(!is_workspace(other), "{other}");
-        }
     }
 }

@@ -2,9 +2,12 @@
 #![allow(clippy::print_stdout, reason = "progress is what one waits for")]
 
 use std::error::Error;
+use std::ops::Range;
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use kluft_verification::report::{Effort, Report};
+use kluft_verification::report::{Effort, Finding, Report};
+use kluft_verification::soak::{self, Asked};
 use kluft_verification::{book, closures, root, stability};
 
 #[derive(Parser)]
@@ -25,6 +28,8 @@ enum Command {
     Closures(Choice),
     /// Real runs beside closed forms, a page for each benchmark
     Book(Choice),
+    /// Random and damaged input, runs that are killed, race or find the disk full
+    Soak(SoakChoice),
     /// Runs one case in this process and prints the memory that it took
     #[command(hide = true)]
     Memory { case: Vec<String> },
@@ -42,11 +47,46 @@ struct Choice {
     names: Vec<String>,
 }
 
+#[derive(Args)]
+struct SoakChoice {
+    /// A few cases only, into target/verification
+    #[arg(long)]
+    quick: bool,
+    /// Run nothing: write the overview again from what was found before
+    #[arg(long, conflicts_with = "only")]
+    rewrite: bool,
+    /// A suite to run, may be given several times [default: all]
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+    /// Seed of all random choices
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The number of cases [default: that of each suite]
+    #[arg(long, value_name = "COUNT")]
+    cases: Option<usize>,
+    /// One case by its number, or the first of several
+    #[arg(long, value_name = "NUMBER")]
+    case: Option<usize>,
+    /// The program that is run and killed [default: kluft beside this one]
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
+}
+
+impl SoakChoice {
+    /// The cases to run, if not the usual ones: a case alone, unless there is a count.
+    fn cases(&self) -> Option<Range<usize>> {
+        let first = self.case.unwrap_or(0);
+        let count = self.cases.or(self.case.map(|_| 1))?;
+        Some(first..first + count)
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     match Cli::parse().command {
         Command::Stability(choice) => write(&stability::report(), &choice),
         Command::Closures(choice) => write(&closures::report(), &choice),
         Command::Book(choice) => write(&book::report(), &choice),
+        Command::Soak(choice) => write_soak(&choice),
         Command::Memory { case } => {
             println!(
                 "{}",
@@ -58,23 +98,47 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn write(report: &Report, choice: &Choice) -> Result<(), Box<dyn Error>> {
-    let (effort, folder) = if choice.quick {
-        (Effort::Quick, root().join("target/verification"))
-    } else {
-        (Effort::Full, root().join("docs/verification"))
-    };
+    let (effort, folder) = target(choice.quick);
     let chosen = if choice.rewrite {
         Vec::new()
     } else {
         report.chosen(&choice.names)?
     };
     for study in chosen {
-        let (finding, seconds) = report.run(study, effort, &folder)?;
-        let summary = finding.summary.join("; ");
-        println!("{}: {seconds:.0} s. {summary}", study.name);
-        for miss in &finding.misses {
-            println!("  did not hold: {miss}");
+        tell(study.name, &report.run(study, effort, &folder)?);
+    }
+    Ok(report.write_overview(&folder)?)
+}
+
+/// Suites that ran other cases than the usual ones leave the committed page alone.
+fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
+    let report = soak::report();
+    let (effort, folder) = target(choice.quick || choice.cases().is_some());
+    let mut asked = Asked::of(effort);
+    asked.seed = choice.seed;
+    asked.cases = choice.cases();
+    asked.program = choice.program.clone().unwrap_or(asked.program);
+    report.chosen(&choice.only)?;
+    let is_chosen = |name: &str| choice.only.is_empty() || choice.only.iter().any(|n| n == name);
+    for soak::Suite { study, run } in soak::ALL {
+        if !choice.rewrite && is_chosen(study.name) {
+            tell(study.name, &report.run_as(&study, || run(&asked), &folder)?);
         }
     }
     Ok(report.write_overview(&folder)?)
+}
+
+fn target(is_short: bool) -> (Effort, PathBuf) {
+    if is_short {
+        (Effort::Quick, root().join("target/verification"))
+    } else {
+        (Effort::Full, root().join("docs/verification"))
+    }
+}
+
+fn tell(name: &str, (finding, seconds): &(Finding, f64)) {
+    println!("{name}: {seconds:.0} s. {}", finding.summary.join("; "));
+    for miss in &finding.misses {
+        println!("  did not hold: {miss}");
+    }
 }

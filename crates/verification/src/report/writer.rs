@@ -63,9 +63,22 @@ impl Report {
     /// # Errors
     /// What the system says of files that cannot be written.
     pub fn run(&self, study: &Study, effort: Effort, folder: &Path) -> io::Result<(Finding, f64)> {
+        self.run_as(study, || (study.run)(effort), folder)
+    }
+
+    /// The same with another way to run the study.
+    ///
+    /// # Errors
+    /// As [`Report::run`].
+    pub fn run_as(
+        &self,
+        study: &Study,
+        run: impl FnOnce() -> Finding,
+        folder: &Path,
+    ) -> io::Result<(Finding, f64)> {
         let is_busy = machine::is_busy();
         let start = Instant::now();
-        let finding = (study.run)(effort);
+        let finding = run();
         let seconds = start.elapsed().as_secs_f64();
         let own = folder.join(self.name);
         fs::create_dir_all(&own)?;

@@ -17,6 +17,12 @@ pub fn geometry(name: &str, parameters: &[(&str, f64)]) -> Draft {
 
 /// The same of order 1 or 2.
 pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> Draft {
+    let geometry = root().join(format!("geometries/{name}/{name}.geo"));
+    meshed_file(&geometry, parameters, order)
+}
+
+/// The mesh that gmsh makes of a geometry, of order 1 or 2.
+pub fn meshed_file(geometry: &Path, parameters: &[(&str, f64)], order: u32) -> Draft {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("mesh.msh");
     let parameters: Vec<(String, f64)> = parameters
@@ -24,7 +30,7 @@ pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> 
         .map(|&(name, value)| (name.to_owned(), value))
         .collect();
     mesh_geometry(&Meshing {
-        geometry: &root().join(format!("geometries/{name}/{name}.geo")),
+        geometry,
         parameters: &parameters,
         order,
         sizes: None,

@@ -1,0 +1,88 @@
+//! What is asked of a suite, and how its cases are run.
+
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use crate::report::Effort;
+use crate::root;
+
+/// What is asked of a suite.
+#[derive(Debug, Clone)]
+pub struct Asked {
+    /// How many cases, if `cases` does not say.
+    pub effort: Effort,
+    /// Seed of all random choices.
+    pub seed: u64,
+    /// The cases to run, by number.
+    pub cases: Option<Range<usize>>,
+    /// The program that is run, killed and starved.
+    pub program: PathBuf,
+}
+
+impl Asked {
+    /// The usual cases with the program beside the one that runs.
+    pub fn of(effort: Effort) -> Self {
+        let here = std::env::current_exe().unwrap_or_default();
+        let name = format!("kluft{}", std::env::consts::EXE_SUFFIX);
+        Self {
+            effort,
+            seed: 1,
+            cases: None,
+            program: here.with_file_name(name),
+        }
+    }
+
+    /// The cases to run: the first `quick` or `full` ones unless others are asked for.
+    pub fn cases(&self, quick: usize, full: usize) -> Range<usize> {
+        let count = match self.effort {
+            Effort::Quick => quick,
+            Effort::Full => full,
+        };
+        self.cases.clone().unwrap_or(0..count)
+    }
+
+    /// Keeps an input of a case that did not hold in `target/verification/soak`; returns its name
+    /// there.
+    pub fn keep(&self, name: &str, content: &[u8]) -> String {
+        let folder = root().join("target/verification/soak/kept");
+        let file = folder.join(name);
+        let kept = fs::create_dir_all(&folder).and_then(|()| fs::write(&file, content));
+        match kept {
+            Ok(()) => name.to_owned(),
+            Err(error) => format!("{name}, which cannot be written: {error}"),
+        }
+    }
+}
+
+/// The bytes of a file that the suites need.
+///
+/// # Panics
+/// If it cannot be read.
+pub fn bytes_of(file: &Path) -> Vec<u8> {
+    fs::read(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+}
+
+/// Runs cases on as many threads as the machine has cores; what they return, in their order.
+///
+/// # Panics
+/// If a case does.
+pub fn each<T: Send>(cases: Range<usize>, run: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(cases.start);
+    let work = || {
+        let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
+        let own = numbers.take_while(|&case| case < cases.end);
+        own.map(|case| (case, run(case))).collect::<Vec<_>>()
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let mut done: Vec<(usize, T)> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let done = workers.into_iter();
+        done.flat_map(|worker| worker.join().expect("a case without a panic"))
+            .collect()
+    });
+    done.sort_by_key(|(case, _)| *case);
+    done.into_iter().map(|(_, result)| result).collect()
+}

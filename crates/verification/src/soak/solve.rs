@@ -1,0 +1,127 @@
+//! One scene in this process, however it ends.
+
+use std::any::Any;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use kluft_io::{Grid, Values};
+use kluft_mesh::{Defect, Draft};
+use kluft_run::{Ending, MeshInput, Observer, Outcome, Request};
+use kluft_scene::Scene;
+use kluft_solver::Iteration;
+use rayon::ThreadPool;
+
+use super::tally::words_of;
+
+/// How a run ended.
+#[derive(Debug, Clone)]
+pub enum End {
+    /// All load steps converged.
+    Solved(Fields),
+    /// A load step did not converge: the kind of reason.
+    Failed(String),
+    /// The input has defects: the first.
+    Refused(String),
+    /// It was stopped after its time.
+    OutOfTime,
+    /// It panicked, with these words.
+    Panicked(String),
+}
+
+/// What is compared of a solution.
+#[derive(Debug, Clone)]
+pub struct Fields {
+    /// Jump at each node of each facet (m).
+    pub jumps: Vec<f64>,
+    /// Largest displacement of the rock (m).
+    pub displacement: f64,
+    /// Whether the run says that the state is not unique.
+    pub is_declared: bool,
+}
+
+/// Stops a run after its time.
+struct Clock(Instant);
+
+impl Observer for Clock {
+    fn iteration(&mut self, _number: usize, _iteration: &Iteration) -> ControlFlow<()> {
+        if Instant::now() < self.0 {
+            return ControlFlow::Continue(());
+        }
+        ControlFlow::Break(())
+    }
+}
+
+/// Runs a scene on a mesh for at most this time.
+pub fn solve(text: &str, draft: Draft, pool: &ThreadPool, limit: Duration) -> End {
+    let mut clock = Clock(Instant::now() + limit);
+    let run = || -> Result<Outcome, Vec<Defect>> {
+        let scene = Scene::parse(text, "scene.toml", Path::new("."))?;
+        let mesh = MeshInput::Draft(Box::new(draft));
+        kluft_run::run(Request::in_memory(&scene, mesh, pool), &mut clock)
+    };
+    catch_unwind(AssertUnwindSafe(run)).map_or_else(panicked, ended)
+}
+
+fn panicked(panic: Box<dyn Any + Send>) -> End {
+    End::Panicked(words_of(&*panic))
+}
+
+fn ended(result: Result<Outcome, Vec<Defect>>) -> End {
+    match result {
+        Err(defects) => End::Refused(defects.first().map_or(String::new(), ToString::to_string)),
+        Ok(outcome) => match &outcome.ending {
+            Ending::Solved | Ending::NothingLeft => End::Solved(fields(&outcome)),
+            Ending::NotConverged(why) => End::Failed(kind_of(why)),
+            Ending::Stopped => End::OutOfTime,
+        },
+    }
+}
+
+fn fields(outcome: &Outcome) -> Fields {
+    let last = outcome.steps.last();
+    let values = |grid: fn(&kluft_run::StepResult) -> &Grid, name: &str| -> Vec<f64> {
+        let mut fields = last.iter().flat_map(|step| &grid(step).point_fields);
+        let field = fields.find(|field| field.name == name);
+        match field.map(|field| &field.values) {
+            Some(Values::Real(values)) => values.clone(),
+            _ => Vec::new(),
+        }
+    };
+    let displacements = values(|step| &step.rock, "displacement");
+    let mut warnings = outcome.summary.warnings.iter();
+    Fields {
+        jumps: values(|step| &step.fracture_grid, "jump"),
+        displacement: longest(&displacements),
+        is_declared: warnings.any(|warning| warning.contains("not unique")),
+    }
+}
+
+/// Length of the longest of vectors, three numbers each.
+pub fn longest(vectors: &[f64]) -> f64 {
+    let lengths = vectors
+        .chunks(3)
+        .map(|v| v.iter().map(|x| x * x).sum::<f64>().sqrt());
+    lengths.fold(0.0, f64::max)
+}
+
+/// The kind of reason that a step did not converge, without its place and numbers.
+pub fn kind_of(why: &str) -> String {
+    let kinds = [
+        ("nothing holds", "the loads push rock that nothing holds"),
+        ("tests do not hold", "the tests do not hold"),
+        ("no longer finite", "a number is no longer finite"),
+        (
+            "not positive definite",
+            "the stiffness is not positive definite",
+        ),
+        ("gave up", "the linear solver gave up"),
+        ("not finite", "a number in the linear system is not finite"),
+        ("not unique", "the state is not unique"),
+    ];
+    let known = kinds.iter().find(|(words, _)| why.contains(words));
+    let words = || why.split([':', ';']).nth(1).unwrap_or(why).trim();
+    let first = || words().split(' ').take(8).collect::<Vec<_>>().join(" ");
+    known.map_or_else(first, |(_, kind)| (*kind).to_owned())
+}
