@@ -122,9 +122,10 @@ impl Output {
             });
             names.iter().try_for_each(|name| {
                 let path = self.folder.join(name);
-                match name.to_str().is_some_and(is_workspace) {
-                    true => std::fs::remove_dir_all(path),
-                    false => std::fs::remove_file(path),
+                if name.to_str().is_some_and(is_workspace) {
+                    std::fs::remove_dir_all(path)
+                } else {
+                    std::fs::remove_file(path)
                 }
             })
         };

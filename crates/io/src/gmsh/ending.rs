@@ -65,9 +65,10 @@ fn silent(name: String, ended: &Ended) -> Defect {
     let lines = streams.iter().flat_map(|text| text.lines());
     let lines: Vec<&str> = lines.filter(|line| !line.trim().is_empty()).collect();
     let last = lines[lines.len().saturating_sub(LAST)..].join("; ");
-    let said = match last.is_empty() {
-        true => String::new(),
-        false => format!("; it said last: {last}"),
+    let said = if last.is_empty() {
+        String::new()
+    } else {
+        format!("; it said last: {last}")
     };
     let problem = format!(
         "gmsh failed without an error message ({}){said}",
