@@ -31,6 +31,10 @@ fn inspect(workshop: &Workshop, flags: &[&str]) -> Run {
 }
 
 /// Whether this kernel confines; the program finds out in the same way that it is used in.
+#[expect(
+    clippy::print_stdout,
+    reason = "who reads the tests wants to know what they leave out"
+)]
 fn is_confined_here() -> bool {
     let workshop = scene(&format!("{} \"x\";\n", hidden("NoSuchCommand")));
     let run = inspect(&workshop, &[]);
