@@ -31,7 +31,10 @@ fn inspect(workshop: &Workshop, flags: &[&str]) -> Run {
 }
 
 /// Whether this kernel confines; the program finds out in the same way that it is used in.
-#[allow(clippy::print_stdout, reason = "a test that is skipped says so")]
+#[expect(
+    clippy::print_stdout,
+    reason = "who reads the tests wants to know what they leave out"
+)]
 fn is_confined_here() -> bool {
     let workshop = scene(&format!("{} \"x\";\n", hidden("NoSuchCommand")));
     let run = inspect(&workshop, &[]);

@@ -127,7 +127,12 @@ fn text(bytes: usize, blocks: &[Vec<u8>]) -> String {
 
 /// The smallest and the largest of the numbers; what is not a number counts for neither.
 fn range<T: Number>(values: &[T]) -> Option<[String; 2]> {
-    let numbers = || values.iter().copied().filter(|value| value.partial_cmp(value).is_some());
+    let numbers = || {
+        values
+            .iter()
+            .copied()
+            .filter(|value| value.partial_cmp(value).is_some())
+    };
     let min = numbers().reduce(|a, b| if b < a { b } else { a })?;
     let max = numbers().reduce(|a, b| if b > a { b } else { a })?;
     Some([format!("{min:?}"), format!("{max:?}")])

@@ -117,12 +117,16 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
     let facet_points = (0..jumps.len())
         .into_par_iter()
         .map(|i| {
-            facet_result(
-                system.law(&interface.points[i]).closure,
-                [jumps[i], interface.points[i].normal],
-                &state.facet_points[i],
-                state.reached,
-            )
+            let point = &interface.points[i];
+            // A joint without load is left with the rounding of the stress beside it.
+            let beside = point.spring * state.reached.displacement;
+            let reached = StateScales {
+                traction: state.reached.traction.max(beside),
+                ..state.reached
+            };
+            let walls = [jumps[i], point.normal];
+            let closure = system.law(point).closure;
+            facet_result(closure, walls, &state.facet_points[i], reached)
         })
         .collect();
     Solution {

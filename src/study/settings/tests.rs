@@ -186,7 +186,7 @@ fn slips_are_found_before_anything_is_run() {
         ("[study]\nmesh = [1]", "did you mean `meshes`"),
         ("[study]\nmeshes = [0.1]", "braces"),
         ("[study]\nmeshes = []", "empty"),
-        ("[study]\norders = [3]", "between 1 and 2"),
+        ("[study]\norders = [3]", "from 1 to 2"),
         ("[study]\norders = [1.5]", "order 1 or 2"),
         ("[study]\ntolerances = [2]", "between 0 and 1"),
         ("[study]\ntolerances = []", "empty"),
