@@ -127,7 +127,8 @@ pub struct RunArgs {
     /// Folder for the results [default: `out` beside the scene]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of threads, at most 4 a core (or 16); results do not depend on it [default: all cores]
+    /// Number of threads, at most 4 a core (or 16); results do not depend on it
+    /// [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Go on after the last load step that an interrupted run of the same scene finished

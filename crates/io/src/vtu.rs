@@ -213,9 +213,9 @@ fn write_arrays<'a>(
     write!(out, "</{element}>")
 }
 
-/// The number of the VTK cell of a shape (`vtkCellType.h`) and which of our nodes stands at each of its places; none where the
-/// order is the same. VTK has no 14-node pyramid: its 13-node pyramid leaves the middle of the base
-/// out.
+/// The number of the VTK cell of a shape (`vtkCellType.h`) and which of our nodes stands at each of
+/// its places; none where the order is the same. VTK has no 14-node pyramid: its 13-node pyramid
+/// leaves the middle of the base out.
 fn cell_of(shape: Shape) -> (u8, &'static [u8]) {
     match shape {
         Shape::Tri3 => (5, &[]),

@@ -1,7 +1,7 @@
 //! Snaps fractures whose ends nearly touch: in its own plane, a corner closer than the smallest gap
 //! to another fracture or to a face of the domain moves onto it, whether it ends before that or
-//! goes beyond; edges shorter than the gap are merged. Where planes are not at right angles a corner
-//! moves farther within its own than the gap is wide.
+//! goes beyond; edges shorter than the gap are merged. Where planes are not at right angles a
+//! corner moves farther within its own than the gap is wide.
 
 use glam::DVec3;
 

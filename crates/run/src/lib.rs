@@ -62,5 +62,4 @@ pub use output::Output;
 pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;
-pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary};
-pub use undetermined::Undetermined;
+pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary, Undetermined};

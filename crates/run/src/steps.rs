@@ -214,7 +214,7 @@ impl Run<'_> {
         let scene = self.request.scene;
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
-        let unclear = undetermined::warnings(fractures);
+        let unclear = undetermined::warnings(scene, fractures);
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {

@@ -8,7 +8,6 @@ use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, 
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
-use crate::undetermined::Undetermined;
 
 /// Smallest, area-weighted mean and largest value of a field over a fracture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -19,6 +18,17 @@ pub struct Spread {
     pub mean: f64,
     /// Largest.
     pub max: f64,
+}
+
+/// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Undetermined {
+    /// Where aperture and slip may be others, because the rock on one side floats.
+    pub aperture_area: f64,
+    /// Where the slip may be another, because the walls slide freely.
+    pub slip_area: f64,
+    /// Where closed walls could as well be held open by their slip.
+    pub metastable_area: f64,
 }
 
 /// Numbers of one fracture.

@@ -1,22 +1,11 @@
 //! What the loads do not determine, in numbers and in words.
 
 use kluft_io::Field;
+use kluft_scene::{Doubt, Scene};
 use kluft_solver::{Determinacy, System};
-use serde::{Deserialize, Serialize};
 
 use crate::grids::integer_field;
-use crate::summary::FractureSummary;
-
-/// Areas (m^2) of a fracture where the state is not unique, see [`Determinacy`].
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Undetermined {
-    /// Where aperture and slip may be others, because the rock on one side floats.
-    pub aperture_area: f64,
-    /// Where the slip may be another, because the walls slide freely.
-    pub slip_area: f64,
-    /// Where closed walls could as well be held open by their slip.
-    pub metastable_area: f64,
-}
+use crate::summary::{FractureSummary, Undetermined};
 
 /// Sums up what is not determined of each fracture.
 pub fn note_in(
@@ -44,7 +33,7 @@ pub fn field(facets: &[Determinacy]) -> Field {
 }
 
 /// What the user should know of it: one warning a kind, with all fractures.
-pub fn warnings(fractures: &[(String, FractureSummary)]) -> Vec<String> {
+pub fn warnings(scene: &Scene, fractures: &[(String, FractureSummary)]) -> Vec<String> {
     type Area = fn(&Undetermined) -> f64;
     let kinds: [(Area, &str); 3] = [
         (
@@ -70,7 +59,10 @@ pub fn warnings(fractures: &[(String, FractureSummary)]) -> Vec<String> {
             .map(|(name, own)| format!("`{name}` on {:.4} m2", area(&own.undetermined)))
             .collect();
         let places = named.join(", ");
-        (!named.is_empty()).then(|| format!("the state is not unique: {places}: {why}"))
+        let text = format!("the state is not unique: {places}: {why}");
+        scene
+            .warning(Doubt::NotUnique, &text)
+            .filter(|_| !named.is_empty())
     });
     told.collect()
 }

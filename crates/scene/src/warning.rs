@@ -21,11 +21,13 @@ pub enum Doubt {
     UnnamedSurfaces,
     /// Walls that have gone through each other.
     OverlappingWalls,
+    /// A state that the loads do not determine.
+    NotUnique,
 }
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Values,
         Self::BodySize,
         Self::WideApertures,
@@ -34,6 +36,7 @@ impl Doubt {
         Self::InitialStress,
         Self::UnnamedSurfaces,
         Self::OverlappingWalls,
+        Self::NotUnique,
     ];
 
     /// Its name under `silence`.
@@ -47,6 +50,7 @@ impl Doubt {
             Self::InitialStress => "initial_stress",
             Self::UnnamedSurfaces => "unnamed_surfaces",
             Self::OverlappingWalls => "overlapping_walls",
+            Self::NotUnique => "not_unique",
         }
     }
 }

@@ -188,7 +188,7 @@ fn slips_are_found_before_anything_is_run() {
         ("[study]\nmeshes = []", "empty"),
         ("[study]\norders = [3]", "from 1 to 2"),
         ("[study]\norders = [1.5]", "order 1 or 2"),
-        ("[study]\ntolerances = [2]", "between 0 and 1"),
+        ("[study]\ntolerances = [2]", "more than 0 and less than 1"),
         ("[study]\ntolerances = []", "empty"),
         (
             "[study]\nmeshes = [{ h = 1 }]\ntolerances = [0.1]",

@@ -3,7 +3,7 @@
 use crate::table::{Key, KeySection, Kind, Need};
 
 /// Names of what a run may warn of.
-pub const WARNINGS: [&str; 8] = [
+pub const WARNINGS: [&str; 9] = [
     "values",
     "body_size",
     "wide_apertures",
@@ -12,6 +12,7 @@ pub const WARNINGS: [&str; 8] = [
     "initial_stress",
     "unnamed_surfaces",
     "overlapping_walls",
+    "not_unique",
 ];
 
 /// What a run does not warn of.

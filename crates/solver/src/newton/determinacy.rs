@@ -1,8 +1,8 @@
 //! What of a converged state the loads do not determine.
 //!
-//! A block that nothing holds any more, but nothing pushes either, may lie anywhere: jumps beside it
-//! are balanced, but another solver would find others. And where slip has stored more energy than
-//! the walls are pressed together for, an open fracture would balance the same tractions.
+//! A block that nothing holds any more, but nothing pushes either, may lie anywhere: jumps beside
+//! it are balanced, but another solver would find others. And where slip has stored more energy
+//! than the walls are pressed together for, an open fracture would balance the same tractions.
 
 use kluft_mesh::facet_area_vector;
 

@@ -20,7 +20,7 @@ use super::{Newton, Step, StepOutcome};
 /// Iterations before Newton's method is tried the first time; each time after twice as many.
 const FIRST_ITERATIONS: usize = 20;
 /// How often it is tried.
-const TRIALS: u32 = 4;
+const TRIALS: u32 = 3;
 /// Iterations of such a trial.
 const NEWTON_ITERATIONS: usize = 10;
 

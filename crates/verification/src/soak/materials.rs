@@ -111,7 +111,7 @@ pub fn run(asked: &Asked) -> Finding {
         Effort::Quick => 120,
         Effort::Full => 300,
     });
-    let verdicts = each(asked.cases(6, 1000), |number| {
+    let verdicts = each(asked.cases(3, 1000), |number| {
         let case = Case::of(number, asked.seed);
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.expect("a thread");
