@@ -20,7 +20,7 @@ pub(super) struct NetworkRecord {
     /// The fractures in the geometry, in its order.
     fractures: Vec<FractureRecord>,
     /// The fractures that are not in it.
-    left_out: Vec<LeftOutRecord>,
+    rejected: Vec<RejectedRecord>,
     intersections: IntersectionsRecord,
     /// What is too small for the mesh and stays.
     small_features: Vec<FeatureRecord>,
@@ -82,7 +82,7 @@ struct FractureRecord {
 }
 
 #[derive(Debug, Serialize)]
-struct LeftOutRecord {
+struct RejectedRecord {
     name: String,
     set: String,
     reason: String,
@@ -121,7 +121,7 @@ impl NetworkRecord {
                 .map(|set| set_record(network, set))
                 .collect(),
             fractures: network.fractures.iter().map(fracture_record).collect(),
-            left_out: left_out(network),
+            rejected: rejected(network),
             intersections: IntersectionsRecord {
                 count: network.intersections.len(),
                 // The sum of nothing would be -0.
@@ -147,7 +147,7 @@ impl NetworkRecord {
             self.fractures.len()
         );
         report.entry("made", &text);
-        for one in &self.left_out {
+        for one in &self.rejected {
             report.entry("left out", &format!("`{}`: {}", one.name, one.reason));
         }
         for fracture in &self.fractures {
@@ -201,9 +201,9 @@ fn fracture_record(fracture: &NetworkFracture) -> FractureRecord {
     }
 }
 
-fn left_out(network: &Network) -> Vec<LeftOutRecord> {
+fn rejected(network: &Network) -> Vec<RejectedRecord> {
     let all = network.rejected.iter();
-    all.map(|one| LeftOutRecord {
+    all.map(|one| RejectedRecord {
         name: one.name.clone(),
         set: one.set.clone(),
         reason: one.reason.clone(),

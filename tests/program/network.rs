@@ -101,8 +101,8 @@ fn a_list_becomes_a_geometry_that_runs() {
     );
     assert!(summary["mesh"]["max_sectors"].as_u64() >= Some(3));
     let record = record(&folder);
-    assert_eq!(record["left_out"][0]["name"], "far");
-    assert_eq!(record["left_out"][0]["reason"], "outside the domain");
+    assert_eq!(record["rejected"][0]["name"], "far");
+    assert_eq!(record["rejected"][0]["reason"], "outside the domain");
     // The wall is 6 m long with 5 m inside, and its foot moves up or down onto the floor.
     let wall = &record["fractures"][1];
     assert!(

@@ -54,7 +54,7 @@ fn runs(seed: u64) -> bool {
     let record = record(&out);
     let count = |key: &str| record[key].as_array().map_or(0, Vec::len) as u64;
     assert_eq!(
-        count("fractures") + count("left_out"),
+        count("fractures") + count("rejected"),
         3 + seed % 10,
         "seed {seed}"
     );

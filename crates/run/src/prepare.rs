@@ -7,7 +7,6 @@ use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{MeshSource, Scene};
 
-use crate::decisions::gigabytes;
 use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::output::Output;
@@ -71,9 +70,9 @@ fn check_memory(
         return Ok(());
     }
     let problem = format!(
-        "the mesh needs at least {} of memory {what}, and this process may take {}",
-        gigabytes(needed),
-        gigabytes(available)
+        "the mesh needs at least {:.1} MB of memory {what}, and this process may take {:.1} MB",
+        needed as f64 / 1e6,
+        available as f64 / 1e6
     );
     let remedy = "mesh coarser (a larger h), or raise the limit of memory (ulimit -v, container)";
     Err(vec![Defect::new(

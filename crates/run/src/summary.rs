@@ -115,8 +115,8 @@ pub struct StepSummary {
 pub struct StepMeasures {
     /// Newton iterations, each with one linear solve.
     pub newton_iterations: usize,
-    /// Newton iterations of each part that the step was divided into, and that converged.
-    pub parts: Vec<usize>,
+    /// Newton iterations of each substep that the step was divided into, and that converged.
+    pub substeps: Vec<usize>,
     /// Iterations of an iterative linear solver; 0 with a direct one.
     pub linear_iterations: usize,
     /// Out-of-balance force at the end, against the largest force.
@@ -147,7 +147,7 @@ impl From<&StepRecord> for StepMeasures {
         let measure = |of: fn(&kluft_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
         Self {
             newton_iterations: record.iterations.len(),
-            parts: record.substeps.clone(),
+            substeps: record.substeps.clone(),
             linear_iterations: record.linear_iterations(),
             force_residual: measure(|last| last.force_residual),
             increment: measure(|last| last.increment),

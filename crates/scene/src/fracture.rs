@@ -205,7 +205,7 @@ fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
     })
 }
 
-/// Without one, friction holds the walls rigidly, and walls in contact without friction glide.
+/// Without one, friction holds the walls rigidly, and walls in contact without friction slide freely.
 fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64> {
     let has_friction = section.has("friction_angle");
     let given = section.number("shear_stiffness");
@@ -219,7 +219,7 @@ fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64>
     if section.has("shear_stiffness") && contact && !has_friction && given != Some(0.0) {
         section.refuse(
             "shear_stiffness",
-            "walls in contact without friction glide freely".into(),
+            "walls in contact without friction slide freely".into(),
             "remove shear_stiffness, or add friction_angle",
         );
     }

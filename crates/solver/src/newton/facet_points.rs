@@ -208,7 +208,7 @@ fn follow_point(
         traction: trial.normal_traction,
     };
     let rock = rock_stiffness(law, point, trial, secant);
-    settle(law, point, trial, rock, state)
+    update_state(law, point, trial, rock, state)
 }
 
 /// The half step of the laws in the splitting: from the traction that the law had, not from what
@@ -228,11 +228,11 @@ fn split(
         normal: point.spring,
         shear: point.spring,
     };
-    settle(law, point, &trial, spring, state)
+    update_state(law, point, &trial, spring, state)
 }
 
 /// Moves a facet point to where its law balances the rock; returns its closure error (Pa).
-fn settle(
+fn update_state(
     law: &FractureLaw,
     point: &FacetPoint,
     trial: &TrialState,

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::asked::{Asked, each};
-use super::dice::Dice;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results, visible};
 use super::program::{End, left_behind, run as run_program};
+use super::random_stream::RandomStream;
 use super::tally::{Miss, Verdict, finding};
 use crate::report::{Finding, Study};
 
@@ -72,7 +72,7 @@ pub fn run(asked: &Asked) -> Finding {
             next: visible(&next),
             expected: results(&next),
         };
-        let verdict = case.run(&mut Dice::new(asked.seed, number));
+        let verdict = case.run(&mut RandomStream::new(asked.seed, number));
         verdict.unwrap_or_else(|miss| miss.in_case(&format!("{number} (seed {})", asked.seed)))
     });
     finding(TEXT, &verdicts)
@@ -96,8 +96,8 @@ fn size(files: &Files) -> usize {
 }
 
 impl Case<'_> {
-    fn run(&self, dice: &mut Dice) -> Result<Verdict, Miss> {
-        let share = dice.between(0.0, 1.2);
+    fn run(&self, random: &mut RandomStream) -> Result<Verdict, Miss> {
+        let share = random.between(0.0, 1.2);
         let beyond = (size(&self.next) as f64 * share) as usize;
         let disk = Disk::of(self.out.clone(), size(&self.former) + 8192 + beyond);
         let out = self.out.join("out");

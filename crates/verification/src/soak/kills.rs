@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 use kluft_solver::LinearMethod;
 
 use super::asked::{Asked, each};
-use super::dice::Dice;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results};
 use super::program::left_behind;
+use super::random_stream::RandomStream;
 use super::tally::{Miss, Verdict, finding};
 use crate::report::{Finding, Study};
 
@@ -51,8 +51,8 @@ pub fn run(asked: &Asked) -> Finding {
     let wholes = LinearMethod::ALL.map(|linear| Whole::of(&workshop, linear));
     let verdicts = each(asked.cases(6, 100), |number| {
         let whole = &wholes[number % wholes.len()];
-        let mut dice = Dice::new(asked.seed, number);
-        let verdict = killed(&workshop, whole, number, &mut dice);
+        let mut random = RandomStream::new(asked.seed, number);
+        let verdict = killed(&workshop, whole, number, &mut random);
         verdict.unwrap_or_else(|miss| {
             miss.in_case(&format!("{number} (seed {}, {})", asked.seed, whole.scene))
         })
@@ -62,28 +62,28 @@ pub fn run(asked: &Asked) -> Finding {
 
 /// Waits to a random instant of a run, every second time after its first load step: meshing takes
 /// most of the time of a small scene.
-fn wait(out: &Path, took: Duration, dice: &mut Dice) {
+fn wait(out: &Path, took: Duration, random: &mut RandomStream) {
     let begin = Instant::now();
-    let is_late = dice.chance(0.5);
+    let is_late = random.chance(0.5);
     while is_late && !out.join("resume.bin").exists() && begin.elapsed() < took {
         thread::sleep(Duration::from_millis(1));
     }
     let longest = if is_late { 0.2 } else { 1.0 };
-    thread::sleep(took.mul_f64(dice.between(0.0, longest)));
+    thread::sleep(took.mul_f64(random.between(0.0, longest)));
 }
 
 fn killed(
     workshop: &Workshop,
     whole: &Whole,
     number: usize,
-    dice: &mut Dice,
+    random: &mut RandomStream,
 ) -> Result<Verdict, Miss> {
     // A folder with a name that no other begins with.
     let out = workshop.path(&format!("case-{number}-killed"));
     let (mut hit, mut late) = (0, 0);
-    for attempt in 0..=dice.below(4) {
+    for attempt in 0..=random.below(4) {
         let started = workshop.start(&whole.scene, &out, attempt > 0);
-        wait(&out, whole.took, dice);
+        wait(&out, whole.took, random);
         hit += usize::from(started.kill());
         late += usize::from(out.join("resume.bin").exists());
         if let Some(left) = left_behind(&out).first() {

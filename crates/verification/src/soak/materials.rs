@@ -6,9 +6,9 @@ use kluft_solver::{LinearMethod, NewtonSettings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::asked::{Asked, each};
-use super::dice::Dice;
 use super::material;
 use super::meshes::{Fineness, JUNCTIONS, Meshes};
+use super::random_stream::RandomStream;
 use super::solve::{End, Fields, longest, solve};
 use super::tally::{Miss, Verdict, finding};
 use crate::report::{Effort, Finding, Study};
@@ -69,7 +69,7 @@ impl Case {
             _ => Fineness::Coarse,
         };
         let own = &JUNCTIONS[junction];
-        let drawn = material::random(own.fractures, &mut Dice::new(seed, number));
+        let drawn = material::random(own.fractures, &mut RandomStream::new(seed, number));
         Self {
             name: format!("{number} (seed {seed}, {}, {fineness:?})", own.name),
             junction,

@@ -5,7 +5,6 @@
 
 mod asked;
 mod damage;
-mod dice;
 pub mod disks;
 mod folder;
 pub mod kills;
@@ -17,6 +16,7 @@ pub mod mutated_scenes;
 pub mod networks;
 mod program;
 pub mod races;
+mod random_stream;
 mod solve;
 mod tally;
 

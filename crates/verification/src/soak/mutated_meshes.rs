@@ -12,7 +12,7 @@ use kluft_scene::Scene;
 
 use super::asked::{Asked, bytes_of, each};
 use super::damage::{flip_bits, move_stretch};
-use super::dice::Dice;
+use super::random_stream::RandomStream;
 use super::tally::{Verdict, finding, words_of};
 use crate::report::{Finding, Study};
 use crate::root;
@@ -81,13 +81,13 @@ const LARGE: [u64; 8] = [
     1 << 20,
 ];
 
-fn overwrite(bytes: &mut [u8], dice: &mut Dice) {
-    let number = dice.pick(&LARGE).to_le_bytes();
-    let width = dice.pick(&[4, 8]);
-    let at = if dice.chance(0.5) {
-        dice.below(bytes.len())
+fn overwrite(bytes: &mut [u8], random: &mut RandomStream) {
+    let number = random.pick(&LARGE).to_le_bytes();
+    let width = random.pick(&[4, 8]);
+    let at = if random.chance(0.5) {
+        random.below(bytes.len())
     } else {
-        count_place(bytes, dice)
+        count_place(bytes, random)
     };
     if let Some(field) = bytes.get_mut(at..at + width) {
         field.copy_from_slice(&number[..width]);
@@ -95,34 +95,34 @@ fn overwrite(bytes: &mut [u8], dice: &mut Dice) {
 }
 
 /// Where a count of a binary section may stand: near the begin of the section.
-fn count_place(bytes: &[u8], dice: &mut Dice) -> usize {
+fn count_place(bytes: &[u8], random: &mut RandomStream) -> usize {
     let sections = ["Entities", "PartitionedEntities", "Nodes", "Elements"];
-    let marker = format!("${}\n", dice.pick(&sections));
+    let marker = format!("${}\n", random.pick(&sections));
     let mut windows = bytes.windows(marker.len());
     let begin = windows.position(|window| window == marker.as_bytes());
-    begin.unwrap_or(0) + marker.len() + 4 * dice.below(24)
+    begin.unwrap_or(0) + marker.len() + 4 * random.below(24)
 }
 
 /// Replaces one word by a number.
-fn replace_word(bytes: &mut Vec<u8>, dice: &mut Dice) {
-    let from = dice.below(bytes.len());
+fn replace_word(bytes: &mut Vec<u8>, random: &mut RandomStream) {
+    let from = random.below(bytes.len());
     let space = |byte: &u8| byte.is_ascii_whitespace();
     let Some(begin) = bytes[from..].iter().position(space).map(|at| from + at + 1) else {
         return;
     };
     let length = bytes[begin..].iter().position(space).unwrap_or(0);
-    bytes.splice(begin..begin + length, dice.pick(&NUMBERS).bytes());
+    bytes.splice(begin..begin + length, random.pick(&NUMBERS).bytes());
 }
 
-fn mutated(seeds: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
-    let mut bytes = dice.pick(seeds);
-    for _ in 0..1 + dice.below(3) {
-        match dice.below(7) {
-            0 => flip_bits(&mut bytes, dice),
-            1 | 2 => overwrite(&mut bytes, dice),
-            3 | 4 => replace_word(&mut bytes, dice),
-            5 => move_stretch(&mut bytes, &[Some(b'\n'), Some(b'$'), None], dice),
-            _ if dice.below(4) == 0 => bytes.truncate(dice.below(bytes.len())),
+fn mutated(seeds: &[Vec<u8>], random: &mut RandomStream) -> Vec<u8> {
+    let mut bytes = random.pick(seeds);
+    for _ in 0..1 + random.below(3) {
+        match random.below(7) {
+            0 => flip_bits(&mut bytes, random),
+            1 | 2 => overwrite(&mut bytes, random),
+            3 | 4 => replace_word(&mut bytes, random),
+            5 => move_stretch(&mut bytes, &[Some(b'\n'), Some(b'$'), None], random),
+            _ if random.below(4) == 0 => bytes.truncate(random.below(bytes.len())),
             _ => {}
         }
     }
@@ -206,7 +206,7 @@ pub fn run(asked: &Asked) -> Finding {
     let scene = Scene::parse(SCENE, "scene.toml", Path::new(".")).expect("a sound scene");
     let before = peak_address_space();
     let mut verdicts = each(asked.cases(2_000, 1_000_000), |number| {
-        let bytes = mutated(&seeds, &mut Dice::new(asked.seed, number));
+        let bytes = mutated(&seeds, &mut RandomStream::new(asked.seed, number));
         let panicked = |panic: Box<dyn Any + Send>| Verdict::missed("panic", words_of(&*panic));
         let mut verdict = catch_unwind(|| judged(&bytes, &scene)).unwrap_or_else(panicked);
         if let Some(miss) = &mut verdict.miss {

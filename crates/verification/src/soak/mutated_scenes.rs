@@ -13,7 +13,7 @@ use kluft_scene::{Scene, Timetable};
 
 use super::asked::{Asked, bytes_of, each};
 use super::damage::{flip_bits, move_stretch};
-use super::dice::Dice;
+use super::random_stream::RandomStream;
 use super::tally::{Verdict, finding, words_of};
 use crate::report::{Finding, Study};
 use crate::root;
@@ -137,17 +137,17 @@ fn words(text: &str) -> Vec<Range<usize>> {
         .collect()
 }
 
-fn replace_word(text: &mut String, dice: &mut Dice) {
+fn replace_word(text: &mut String, random: &mut RandomStream) {
     let words = words(text);
     if !words.is_empty() {
-        text.replace_range(dice.pick(&words), dice.pick(&WORDS));
+        text.replace_range(random.pick(&words), random.pick(&WORDS));
     }
 }
 
-fn swap_words(text: &mut String, dice: &mut Dice) {
+fn swap_words(text: &mut String, random: &mut RandomStream) {
     let words = words(text);
     if !words.is_empty() {
-        let (a, b) = (dice.pick(&words), dice.pick(&words));
+        let (a, b) = (random.pick(&words), random.pick(&words));
         let (first, second) = if a.start <= b.start { (a, b) } else { (b, a) };
         let (one, two) = (
             text[first.clone()].to_owned(),
@@ -159,9 +159,9 @@ fn swap_words(text: &mut String, dice: &mut Dice) {
 }
 
 /// Something deep or long in the place of a word or at the end.
-fn overgrow(text: &mut String, dice: &mut Dice) {
-    let size = 1 << dice.below(13);
-    let growth = match dice.below(6) {
+fn overgrow(text: &mut String, random: &mut RandomStream) {
+    let size = 1 << random.below(13);
+    let growth = match random.below(6) {
         0 => "[".repeat(size),
         1 => "{ x = ".repeat(size),
         2 => format!("{}1{}", "[".repeat(size), "]".repeat(size)),
@@ -170,29 +170,29 @@ fn overgrow(text: &mut String, dice: &mut Dice) {
         _ => "long ".repeat(size),
     };
     let words = words(text);
-    if words.is_empty() || dice.chance(0.5) {
+    if words.is_empty() || random.chance(0.5) {
         text.push_str(&format!("\n{growth}\n"));
     } else {
-        text.replace_range(dice.pick(&words), &growth);
+        text.replace_range(random.pick(&words), &growth);
     }
 }
 
-fn mutated(text: &str, dice: &mut Dice) -> String {
+fn mutated(text: &str, random: &mut RandomStream) -> String {
     let mut text = text.to_owned();
     let of_bytes = |text: &str, damage: &mut dyn FnMut(&mut Vec<u8>)| {
         let mut bytes = text.as_bytes().to_vec();
         damage(&mut bytes);
         String::from_utf8_lossy(&bytes).into_owned()
     };
-    for _ in 0..1 + dice.below(3) {
-        match dice.below(16) {
-            0..3 => text = of_bytes(&text, &mut |bytes| flip_bits(bytes, dice)),
-            3..8 => replace_word(&mut text, dice),
-            8..11 => swap_words(&mut text, dice),
+    for _ in 0..1 + random.below(3) {
+        match random.below(16) {
+            0..3 => text = of_bytes(&text, &mut |bytes| flip_bits(bytes, random)),
+            3..8 => replace_word(&mut text, random),
+            8..11 => swap_words(&mut text, random),
             11..15 => {
-                text = of_bytes(&text, &mut |b| move_stretch(b, &[Some(b'\n')], dice));
+                text = of_bytes(&text, &mut |b| move_stretch(b, &[Some(b'\n')], random));
             }
-            _ => overgrow(&mut text, dice),
+            _ => overgrow(&mut text, random),
         }
     }
     text
@@ -249,9 +249,9 @@ fn judged(text: &str, draft: &Draft) -> Verdict {
 pub fn run(asked: &Asked) -> Finding {
     let seeds = Seed::all();
     let verdicts = each(asked.cases(2_000, 1_000_000), |number| {
-        let mut dice = Dice::new(asked.seed, number);
-        let seed = &seeds[dice.below(seeds.len())];
-        let text = mutated(&seed.text, &mut dice);
+        let mut random = RandomStream::new(asked.seed, number);
+        let seed = &seeds[random.below(seeds.len())];
+        let text = mutated(&seed.text, &mut random);
         let panicked = |panic: Box<dyn Any + Send>| Verdict::missed("panic", words_of(&*panic));
         let judged = catch_unwind(|| judged(&text, &seed.draft));
         let mut verdict = judged.unwrap_or_else(panicked);

@@ -7,8 +7,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::asked::{Asked, each};
-use super::dice::{Dice, rounded};
 use super::program::{End, left_behind, run as run_program};
+use super::random_stream::{RandomStream, rounded};
 use super::solve::kind_of;
 use super::tally::{Verdict, finding};
 use crate::report::{Effort, Finding, Study};
@@ -35,7 +35,7 @@ pub fn run(asked: &Asked) -> Finding {
         Effort::Full => 600,
     });
     let verdicts = each(asked.cases(4, 1000), |number| {
-        let text = description(&mut Dice::new(asked.seed, number), number % 2 == 1);
+        let text = description(&mut RandomStream::new(asked.seed, number), number % 2 == 1);
         let mut verdict = solved(&asked.program, &text, limit);
         if let Some(miss) = &mut verdict.miss {
             let name = format!("network-{}-{number}.toml", asked.seed);
@@ -46,37 +46,37 @@ pub fn run(asked: &Asked) -> Finding {
     finding(TEXT, &verdicts)
 }
 
-fn description(dice: &mut Dice, dilates: bool) -> String {
+fn description(random: &mut RandomStream, dilates: bool) -> String {
     let mut text = format!(
         "seed = {}\n[domain]\nlow = [0, 0, 0]\nhigh = [10, 9, 8]\n[mesh]\nh = 3\nh_fracture = \
          {}\n[boundary.top]\ntraction = [0, 0, -10e6]\n[boundary.right]\npressure = \
          {:e}\n[boundary.back]\npressure = {:e}\n[boundary.left]\ndisplacement = {{ x = 0.0 \
          }}\n[boundary.front]\ndisplacement = {{ y = 0.0 }}\n[boundary.bottom]\ndisplacement = {{ \
          z = 0.0 }}\n",
-        dice.below(1_000_000),
-        rounded(dice.between(1.2, 2.0)),
-        rounded(dice.between(1e6, 15e6)),
-        rounded(dice.between(1e6, 15e6)),
+        random.below(1_000_000),
+        rounded(random.between(1.2, 2.0)),
+        rounded(random.between(1e6, 15e6)),
+        rounded(random.between(1e6, 15e6)),
     );
-    for set in 0..1 + dice.below(3) {
-        let shape = dice.pick(&[
+    for set in 0..1 + random.below(3) {
+        let shape = random.pick(&[
             "shape = \"disc\"\nsides = 7",
             "shape = \"disc\"\nsides = 4",
             "shape = \"rectangle\"\naspect = 1.7",
         ]);
-        let largest = rounded(dice.between(2.0, 7.0));
+        let largest = rounded(random.between(2.0, 7.0));
         let _ = write!(
             text,
             "[fracture_set.s{set}]\naperture = 1e-3\nclosure = \"contact\"\nfriction_angle = \
              30\n{shape}\ncount = {}\norientation = {{ dip = {}, dip_direction = {}, kappa = {} \
              }}\nsize = {{ law = \"power\", exponent = 1.5, min = 1, max = {largest} }}\n",
-            1 + dice.below(8),
-            dice.below(91),
-            dice.below(360),
-            dice.pick(&[0, 5, 20, 100]),
+            1 + random.below(8),
+            random.below(91),
+            random.below(360),
+            random.pick(&[0, 5, 20, 100]),
         );
         if dilates {
-            let _ = writeln!(text, "dilation_angle = {}", dice.pick(&[3, 5, 10, 30]));
+            let _ = writeln!(text, "dilation_angle = {}", random.pick(&[3, 5, 10, 30]));
         }
     }
     text

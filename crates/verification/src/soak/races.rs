@@ -5,9 +5,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::asked::{Asked, each};
-use super::dice::Dice;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results};
 use super::program::{End, left_behind};
+use super::random_stream::RandomStream;
 use super::tally::{Miss, Verdict, finding};
 use crate::report::{Finding, Study};
 
@@ -37,8 +37,8 @@ pub fn run(asked: &Asked) -> Finding {
         workshop.undisturbed(scene)
     });
     let verdicts = each(asked.cases(6, 100), |number| {
-        let mut dice = Dice::new(asked.seed, number);
-        let scenes = dice.pick(&[[0, 1], [1, 0], [0, 0]]);
+        let mut random = RandomStream::new(asked.seed, number);
+        let scenes = random.pick(&[[0, 1], [1, 0], [0, 0]]);
         let race = Race {
             workshop: &workshop,
             number,
@@ -46,7 +46,7 @@ pub fn run(asked: &Asked) -> Finding {
             alone: scenes.map(|scene| &alone[scene].0),
             took: scenes.map(|scene| alone[scene].1),
         };
-        let after = race.took[0].mul_f64(dice.between(0.0, 0.4));
+        let after = race.took[0].mul_f64(random.between(0.0, 0.4));
         race.run(after)
             .unwrap_or_else(|miss| miss.in_case(&format!("{number} (seed {})", asked.seed)))
     });

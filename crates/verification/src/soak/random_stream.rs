@@ -4,9 +4,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// The choices of one case.
-pub struct Dice(ChaCha8Rng);
+pub struct RandomStream(ChaCha8Rng);
 
-impl Dice {
+impl RandomStream {
     /// Those of a case: cases of one seed have streams of their own, whatever their order.
     pub fn new(seed: u64, case: usize) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
