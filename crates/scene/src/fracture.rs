@@ -205,7 +205,8 @@ fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
     })
 }
 
-/// Without one, friction holds the walls rigidly, and walls in contact without friction slide freely.
+/// Without one, friction holds the walls rigidly, and walls in contact without friction slide
+/// freely.
 fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64> {
     let has_friction = section.has("friction_angle");
     let given = section.number("shear_stiffness");
