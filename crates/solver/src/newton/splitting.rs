@@ -37,13 +37,14 @@ impl Newton {
         let mut outcome = StepOutcome::OutOfIterations;
         for trial in 0..TRIALS {
             iterate.linearisation = Linearisation::Springs;
-            if self.split_times(step, iterate, FIRST_ITERATIONS << trial)? {
-                return Ok(());
+            match self.iterate_at_most(FIRST_ITERATIONS << trial, step, iterate) {
+                Err(StepOutcome::OutOfIterations) => {}
+                ended => return ended,
             }
             let mut tried = iterate.clone();
             tried.linearisation = Linearisation::Tangents;
             tried.last_trials = vec![LastTrial::default(); iterate.last_trials.len()];
-            match self.iterate_by_newton(step, &mut tried, NEWTON_ITERATIONS) {
+            match self.iterate_at_most(NEWTON_ITERATIONS, step, &mut tried) {
                 Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
                 Err(failed) => outcome = failed,
                 Ok(()) => {
@@ -53,26 +54,5 @@ impl Newton {
             }
         }
         Err(outcome)
-    }
-
-    /// Iterates so often by the splitting; whether the tests came to hold.
-    ///
-    /// # Errors
-    /// If a linear solve fails, numbers are no longer finite, or the observer stops the step.
-    fn split_times(
-        &mut self,
-        step: &mut Step<'_>,
-        iterate: &mut Iterate,
-        iterations: usize,
-    ) -> Result<bool, StepOutcome> {
-        for count in 1..=iterations {
-            let iteration = self.iterate(step, iterate, count)?;
-            step.report(iteration);
-            if self.settings.accept(step.system, iterate, &iteration) {
-                return Ok(true);
-            }
-            step.go_on()?;
-        }
-        Ok(false)
     }
 }
