@@ -1,14 +1,18 @@
 //! How this program starts gmsh: by way of itself.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use kluft_io::GmshOptions;
 use kluft_io::gmsh::Launcher;
+use kluft_io::{GmshOptions, MeshCache};
 
 /// The hidden command that becomes gmsh.
 #[cfg(target_os = "linux")]
 pub const START: &str = "start-gmsh";
+
+/// Names the folder for what can be made again; empty for none.
+const CACHE: &str = "KLUFT_CACHE";
 
 /// Arguments of every command that makes meshes.
 #[derive(Debug, Clone, Copy, Default, Args)]
@@ -19,6 +23,9 @@ pub struct GmshArgs {
     /// End gmsh after this time, s [default: no limit]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub mesh_timeout: Option<Duration>,
+    /// Mesh again, even if nothing that the mesh is made of has changed
+    #[arg(long)]
+    pub remesh: bool,
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -33,6 +40,7 @@ impl From<GmshArgs> for GmshOptions {
             launcher: launcher(),
             trust: args.trust,
             time_limit: args.mesh_timeout,
+            cache: cache(args.remesh),
         }
     }
 }
@@ -43,8 +51,30 @@ impl GmshArgs {
         let trust = self.trust.then(|| "--trust".to_owned());
         let limit = self.mesh_timeout.map(|limit| limit.as_secs_f64());
         let limit = limit.map(|limit| format!("--mesh-timeout={limit}"));
-        trust.into_iter().chain(limit).collect()
+        let again = self.remesh.then(|| "--remesh".to_owned());
+        trust.into_iter().chain(limit).chain(again).collect()
     }
+}
+
+/// Where meshes are kept: the folder that the environment names, if it does not name none, or the
+/// user's own for such files.
+fn cache(remesh: bool) -> Option<MeshCache> {
+    let folder = match std::env::var_os(CACHE) {
+        Some(named) if named.is_empty() => return None,
+        Some(named) => PathBuf::from(named),
+        None => users_folder()?.join("kluft"),
+    };
+    let cache = MeshCache::at(folder.join("meshes"));
+    Some(if remesh { cache.making_again() } else { cache })
+}
+
+/// The folder for what programs can make again, by the XDG base directory specification.
+fn users_folder() -> Option<PathBuf> {
+    let absolute = |name: &str| {
+        let folder = PathBuf::from(std::env::var_os(name)?);
+        folder.is_absolute().then_some(folder)
+    };
+    absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")))
 }
 
 /// Where this program does not find itself, gmsh is started as it is.

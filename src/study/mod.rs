@@ -35,7 +35,7 @@ use crate::stdout::print;
 use crate::threads::{ThreadCount, thread_count};
 use assess::{Assessment, assess};
 use files::{PAGE, TABLE};
-use kluft_run::fingerprint_of;
+use kluft_io::fingerprint_of;
 use kluft_scene::Scene;
 use machine::Machine;
 use point::{PointOutcome, PointRecord, Runner};

@@ -30,9 +30,26 @@ impl From<Output> for Run {
     }
 }
 
+/// The program.
+pub const KLUFT: &str = env!("CARGO_BIN_EXE_kluft");
+
+/// A command under which the program neither finds nor keeps meshes of other tests.
+pub fn command(program: &str) -> Command {
+    let mut command = Command::new(program);
+    command.env("KLUFT_CACHE", "");
+    command
+}
+
+/// Writes a script that plays gmsh.
+pub fn write_gmsh(file: &Path, script: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    fs::write(file, format!("#!/bin/sh\n{script}\n")).expect("written");
+    fs::set_permissions(file, fs::Permissions::from_mode(0o755)).expect("a program");
+}
+
 /// Runs the program; `environment` is added to that of the test.
 pub fn kluft_with<S: AsRef<OsStr>>(arguments: &[S], environment: &[(&str, &str)]) -> Run {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_kluft"));
+    let mut command = command(KLUFT);
     command.args(arguments).envs(environment.iter().copied());
     command.output().expect("the program starts").into()
 }

@@ -3,10 +3,10 @@
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::Duration;
 
-use crate::harness::{Run, Workshop, edited, files, kluft, scratch};
+use crate::harness::{KLUFT, Run, Workshop, command, edited, files, kluft, scratch, write_gmsh};
 
 const SCENE: &str = include_str!("bad_input/base.toml");
 const MESH: &str = include_str!("bad_input/base.msh");
@@ -34,11 +34,9 @@ fn assert_refused(scene: &Path, out: &Path) -> String {
 fn a_second_run_into_a_folder_is_refused_while_the_first_works() {
     let workshop = Workshop::new("inclined-joint", &[]);
     let gmsh = workshop.path("gmsh");
-    fs::write(&gmsh, "#!/bin/sh\nsleep 2\nexec gmsh \"$@\"\n").expect("written");
-    let made = Command::new("chmod").arg("+x").arg(&gmsh).status();
-    assert!(made.expect("chmod").success());
+    write_gmsh(&gmsh, "sleep 2\nexec gmsh \"$@\"");
     let (scene, out) = (workshop.scene(), workshop.path("out"));
-    let mut first = Command::new(env!("CARGO_BIN_EXE_kluft"))
+    let mut first = command(KLUFT)
         // A confined gmsh starts no other program.
         .args(["run", "--trust"])
         .arg(&scene)
@@ -76,10 +74,8 @@ fn a_second_run_into_a_folder_is_refused_while_the_first_works() {
 fn the_claim_ends_with_the_process_however_it_ends() {
     let workshop = Workshop::new("inclined-joint", &[]);
     let gmsh = workshop.path("gmsh");
-    fs::write(&gmsh, "#!/bin/sh\nexec sleep 3\n").expect("written");
-    let made = Command::new("chmod").arg("+x").arg(&gmsh).status();
-    assert!(made.expect("chmod").success());
-    let mut first = Command::new(env!("CARGO_BIN_EXE_kluft"))
+    write_gmsh(&gmsh, "exec sleep 3");
+    let mut first = command(KLUFT)
         .arg("run")
         .arg(workshop.scene())
         .env("KLUFT_GMSH", &gmsh)

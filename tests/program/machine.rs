@@ -3,10 +3,10 @@
 use std::fs::{self, File};
 use std::process::{Command, Stdio};
 
-use crate::harness::{Run, Workshop, root, scratch};
+use crate::harness::{KLUFT, Run, Workshop, command, root, scratch};
 
 fn program() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_kluft"))
+    command(KLUFT)
 }
 
 fn assert_fails(run: &Run, says: &[&str]) {
@@ -83,8 +83,8 @@ fn files_that_cannot_be_written_are_no_defect_of_the_input() {
         "trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"",
         mesh.div_ceil(1024) + 1
     );
-    let run = Command::new("bash")
-        .args(["-c", &script, env!("CARGO_BIN_EXE_kluft"), "run"])
+    let run = command("bash")
+        .args(["-c", &script, KLUFT, "run"])
         .arg(workshop.scene())
         .output();
     let run: Run = run.expect("it starts").into();
@@ -133,14 +133,8 @@ fn a_system_that_gives_no_threads_is_a_failure() {
     let folder = scratch();
     mesh_in(folder.path());
     let script = "ulimit -v 100000; exec \"$0\" \"$@\"";
-    let mut command = Command::new("bash");
-    command.args([
-        "-c",
-        script,
-        env!("CARGO_BIN_EXE_kluft"),
-        "inspect",
-        "base.msh",
-    ]);
+    let mut command = command("bash");
+    command.args(["-c", script, KLUFT, "inspect", "base.msh"]);
     command
         .current_dir(folder.path())
         .env("RAYON_NUM_THREADS", "16");
@@ -152,15 +146,8 @@ fn a_system_that_gives_no_threads_is_a_failure() {
 fn a_limit_of_the_address_space_refuses_what_would_not_fit() {
     let workshop = Workshop::new("inclined-joint", &[]);
     let script = "ulimit -v 400000; exec \"$0\" \"$@\"";
-    let run = Command::new("bash")
-        .args([
-            "-c",
-            script,
-            env!("CARGO_BIN_EXE_kluft"),
-            "run",
-            "--threads",
-            "1",
-        ])
+    let run = command("bash")
+        .args(["-c", script, KLUFT, "run", "--threads", "1"])
         .arg(workshop.scene())
         .output();
     let run: Run = run.expect("it starts").into();

@@ -12,6 +12,7 @@ mod kept_files;
 mod load_paths;
 mod machine;
 mod manners;
+mod mesh_once;
 mod network;
 mod network_seeds;
 mod one_answer;

@@ -4,11 +4,12 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use tempfile::TempDir;
 
-use crate::harness::{Run, Workshop, edited, kluft, kluft_with, scratch};
+use crate::harness::{
+    KLUFT, Run, Workshop, command, edited, kluft, kluft_with, scratch, write_gmsh,
+};
 
 const SCENE: &str = include_str!("bad_input/base.toml");
 const MESH: &str = include_str!("bad_input/base.msh");
@@ -100,12 +101,12 @@ fn messages_command_no_terminal() {
 #[test]
 #[cfg(unix)]
 fn what_gmsh_says_commands_no_terminal() {
-    use std::os::unix::fs::PermissionsExt;
     let workshop = Workshop::new("inclined-joint", &[]);
     let gmsh = workshop.path("gmsh");
-    let script = "#!/bin/sh\nprintf 'Error   : no \\033]0;owned\\007 volume\\n' >&2\nexit 1\n";
-    fs::write(&gmsh, script).expect("a script");
-    fs::set_permissions(&gmsh, fs::Permissions::from_mode(0o755)).expect("executable");
+    write_gmsh(
+        &gmsh,
+        "printf 'Error   : no \\033]0;owned\\007 volume\\n' >&2\nexit 1",
+    );
     let scene = workshop.scene();
     let run = kluft_with(
         &["run".as_ref(), scene.as_os_str()],
@@ -166,12 +167,12 @@ fn half_on_a_terminal(
     let log = workshop.path("log");
     let line = format!(
         "'{}' run '{}' --out '{}' {flags} {redirected} '{}'",
-        env!("CARGO_BIN_EXE_kluft"),
+        KLUFT,
         workshop.scene().display(),
         workshop.path("out").display(),
         log.display(),
     );
-    let output = Command::new("script")
+    let output = command("script")
         .args(["-qec", &line, "/dev/null"])
         .envs([("TERM", "xterm-256color"), ("NO_COLOR", "1")])
         .output()

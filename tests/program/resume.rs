@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::harness::{Run, Workshop, files, kluft_with, summary};
+use crate::harness::{KLUFT, Run, Workshop, command, files, kluft_with, summary, write_gmsh};
 
 /// Loading, unloading and loading again, so that a step depends on several before it.
 const PATH: &str = "[[load.phase]]\nname = \"loading\"\nuntil = 1.0\nsteps = 5\n\n\
@@ -35,7 +35,7 @@ fn arguments(workshop: &Workshop, out: &str, flags: &[&str]) -> Vec<std::ffi::Os
 }
 
 fn start(workshop: &Workshop, out: &str, flags: &[&str]) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_kluft"))
+    command(KLUFT)
         .args(arguments(workshop, out, flags))
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -252,13 +252,10 @@ fn a_mesh_that_is_gone_is_made_again() {
     );
     // Another gmsh, which makes another mesh of the same geometry.
     let gmsh = workshop.path("gmsh");
-    fs::write(
+    write_gmsh(
         &gmsh,
-        "#!/bin/sh\nexec gmsh \"$@\" -setnumber Mesh.RandomSeed 7 -clscale 0.9\n",
-    )
-    .expect("written");
-    let made = Command::new("chmod").arg("+x").arg(&gmsh).status();
-    assert!(made.expect("chmod").success());
+        "exec gmsh \"$@\" -setnumber Mesh.RandomSeed 7 -clscale 0.9",
+    );
     fs::remove_file(&mesh).expect("removed");
     let gmsh = gmsh.display().to_string();
     // A confined gmsh starts no other program.

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::harness::{Run, Workshop, kluft, kluft_with, scratch};
+use crate::harness::{KLUFT, Run, Workshop, command, kluft, kluft_with, scratch, write_gmsh};
 
 /// A command that only gmsh finds out, spelled so that no reader can.
 fn hidden(command: &str) -> String {
@@ -187,10 +187,8 @@ fn one_geometry_gives_one_mesh() {
 
 /// A script that plays gmsh, in the folder of a scene.
 fn player(workshop: &Workshop, text: &str) -> String {
-    use std::os::unix::fs::PermissionsExt;
     let file = workshop.path("gmsh.sh");
-    fs::write(&file, format!("#!/bin/sh\n{text}\n")).expect("written");
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("executable");
+    write_gmsh(&file, text);
     file.display().to_string()
 }
 
@@ -247,10 +245,10 @@ fn gmsh_does_not_outlive_the_program() {
     let workshop = scene("\nFor i In {1:1e12}\nEndFor\n");
     let scene = workshop.scene();
     let folder = scene.parent().expect("a folder");
-    let start = |command: &str| -> Child {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_kluft"));
+    let start = |name: &str| -> Child {
+        let mut program = command(KLUFT);
         program
-            .arg(command)
+            .arg(name)
             .arg(&scene)
             .arg("--out")
             .arg(folder.join("out"));

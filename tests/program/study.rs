@@ -2,16 +2,15 @@
 //! coarse meshes, a cube of 4 m instead of 20 m: half a second a setting.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::Duration;
 
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use toml::{Table, Value};
 
-use crate::harness::{Run, Workshop, kluft, summary};
+use crate::harness::{KLUFT, Run, Workshop, command, kluft, summary, write_gmsh};
 
 const SMALL: [(&str, &str); 4] = [
     (
@@ -200,7 +199,7 @@ fn a_killed_study_goes_on_where_it_was() {
         records.sort();
         records
     };
-    let mut child = Command::new(env!("CARGO_BIN_EXE_kluft"))
+    let mut child = command(KLUFT)
         .arg("study")
         .arg(workshop.scene())
         .stdout(Stdio::null())
@@ -243,9 +242,8 @@ fn a_killed_study_goes_on_where_it_was() {
 fn a_run_of_a_study_that_died_ends() {
     let workshop = workshop("");
     let gmsh = workshop.path("gmsh");
-    fs::write(&gmsh, "#!/bin/sh\nsleep 20\n").expect("written");
-    fs::set_permissions(&gmsh, fs::Permissions::from_mode(0o755)).expect("a program");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_kluft"))
+    write_gmsh(&gmsh, "sleep 20");
+    let mut child = command(KLUFT)
         .args(["run", "--tied"])
         .arg(workshop.scene())
         .env("KLUFT_GMSH", &gmsh)

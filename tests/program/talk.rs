@@ -1,10 +1,8 @@
 //! What the program says, to whom, and what it keeps when it fails.
 
-use std::process::Command;
-
 use serde_json::json;
 
-use crate::harness::{Run, Workshop, files, summary};
+use crate::harness::{KLUFT, Run, Workshop, command, files, summary};
 use crate::read_back::read_back;
 
 const STEPS: (&str, &str) = ("[mesh]", "[load]\nsteps = [0.25, 0.5, 1.0]\n\n[mesh]");
@@ -155,13 +153,13 @@ fn the_summary_has_no_negative_zeros() {
 /// Runs under a pseudo-terminal; none where `script` of util-linux is not installed.
 fn on_a_terminal(workshop: &Workshop, flags: &str) -> Option<Run> {
     let (scene, out) = (workshop.scene(), workshop.path("out"));
-    let program = env!("CARGO_BIN_EXE_kluft");
+    let program = KLUFT;
     let line = format!(
         "'{program}' run '{}' --out '{}' {flags}",
         scene.display(),
         out.display()
     );
-    let output = Command::new("script")
+    let output = command("script")
         .args(["-qec", &line, "/dev/null"])
         .env("TERM", "xterm")
         .output();

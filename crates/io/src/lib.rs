@@ -2,6 +2,7 @@
 
 mod atomic;
 mod claimed_folder;
+mod fingerprint;
 pub mod gmsh;
 mod load;
 pub mod msh;
@@ -11,7 +12,8 @@ mod vtu_array;
 
 pub use atomic::{NOT_WRITTEN, sync_folder, write_atomically};
 pub use claimed_folder::ClaimedFolder;
-pub use gmsh::{GmshOptions, Meshing, mesh_geometry, write_size_field};
+pub use fingerprint::{Fingerprint, fingerprint, fingerprint_of};
+pub use gmsh::{GmshOptions, MeshCache, Meshed, Meshing, mesh_geometry, write_size_field};
 pub use load::load_msh;
 pub use msh::{parse_msh, read_msh};
 pub use pvd::write_pvd;

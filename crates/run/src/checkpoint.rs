@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use kluft_io::write_atomically;
+use kluft_io::{Fingerprint, write_atomically};
 use kluft_mesh::Defect;
 use kluft_solver::RestartState;
 use serde::{Deserialize, Serialize};
@@ -20,15 +20,12 @@ use crate::summary::{FractureSummary, Seconds, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 4\n";
+const HEAD: &[u8] = b"kluft checkpoint 5\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
 /// What helps against any checkpoint that does not serve.
 const AFRESH: &str = "run without --resume: it starts from the beginning";
-
-/// A sum over some bytes (XXH3, 128 bits): equal for equal bytes, and for others never in practice.
-pub type Fingerprint = u128;
 
 /// The sums of the two grids of a load step.
 pub type StepFiles = [Fingerprint; 2];
@@ -67,36 +64,6 @@ pub struct Progress<'a> {
     pub peak_memory_bytes: u64,
     /// Where the solver stands; none after the last load step.
     pub restart: Option<RestartState<'a>>,
-}
-
-/// Sum of a file's bytes.
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn fingerprint_of(path: &Path) -> Result<Fingerprint, Defect> {
-    let sum = || -> io::Result<Fingerprint> {
-        let mut file = File::open(path)?;
-        let mut buffer = vec![0; 1 << 18];
-        let mut sum = XxHash3_128::new();
-        loop {
-            match file.read(&mut buffer) {
-                Ok(0) => return Ok(sum.finish_128()),
-                Ok(count) => sum.write(&buffer[..count]),
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
-            }
-        }
-    };
-    sum().map_err(|error| {
-        let place = path.display().to_string();
-        let problem = format!("the file cannot be read: {error}");
-        Defect::new(place, problem, "check the path and the permissions")
-    })
-}
-
-/// Sum of a text.
-pub fn fingerprint(text: &str) -> Fingerprint {
-    XxHash3_128::oneshot(text.as_bytes())
 }
 
 /// A writer that sums up what goes through it, and keeps the error that postcard does not pass on.
@@ -272,6 +239,8 @@ pub fn other_mesh(path: &Path, is_made: bool) -> Defect {
 
 #[cfg(test)]
 mod tests {
+    use kluft_io::fingerprint;
+
     use super::*;
 
     fn identity() -> Identity {
@@ -387,15 +356,5 @@ mod tests {
             "{}",
             said[2]
         );
-    }
-
-    #[test]
-    fn a_file_has_the_sum_of_its_text() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("text");
-        let text = "0123456789".repeat(100_000);
-        std::fs::write(&path, &text).expect("written");
-        assert_eq!(fingerprint_of(&path).expect("a sum"), fingerprint(&text));
-        assert!(fingerprint_of(&folder.path().join("none")).is_err());
     }
 }

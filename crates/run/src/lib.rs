@@ -53,7 +53,6 @@ mod steps;
 mod summary;
 mod undetermined;
 
-pub use checkpoint::{Fingerprint, fingerprint, fingerprint_of};
 pub use grids::{integer_field, real_field};
 pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use kluft_io::{ClaimedFolder, Grid, sync_folder, write_pvd, write_vtu};
+use kluft_io::{ClaimedFolder, Grid, fingerprint_of, sync_folder, write_pvd, write_vtu};
 use kluft_mesh::Defect;
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-use crate::checkpoint::{self, StepFiles, fingerprint_of};
+use crate::checkpoint::{self, StepFiles};
 use crate::former;
 
 /// The collections of the grids of all load steps.

@@ -1,9 +1,9 @@
 //! From a scene to a checked problem, piece by piece; a run and an inspection share them.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
+use kluft_io::{GmshOptions, Meshed, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{MeshSource, Scene};
 
@@ -14,12 +14,12 @@ use crate::output::Output;
 /// The mesh that gmsh makes.
 pub const MESH: &str = "mesh.msh";
 
-/// A mesh file, and how long gmsh took to make it, if it did.
+/// A mesh file.
 pub struct MeshFile {
     /// The file.
     pub path: PathBuf,
-    /// Time in gmsh.
-    pub meshing: Option<Duration>,
+    /// How gmsh made it, if the scene names a geometry.
+    pub meshed: Option<Meshed>,
 }
 
 /// The folder `out` beside a file, unless another one is asked for.
@@ -96,7 +96,7 @@ pub fn mesh_file(
     match &scene.mesh {
         MeshSource::File(file) => Ok(MeshFile {
             path: file.clone(),
-            meshing: None,
+            meshed: None,
         }),
         MeshSource::Geometry {
             geometry,
@@ -115,16 +115,16 @@ pub fn mesh_file(
             };
             observer.stage_begins(Stage::Mesh);
             let start = Instant::now();
-            let warnings = mesh_geometry(&meshing);
-            let took = start.elapsed();
-            observer.stage_ends(Stage::Mesh, took);
-            for warning in warnings? {
-                observer.detail("gmsh", &warning);
+            let meshed = mesh_geometry(&meshing);
+            observer.stage_ends(Stage::Mesh, start.elapsed());
+            let meshed = meshed?;
+            for warning in &meshed.warnings {
+                observer.detail("gmsh", warning);
             }
             output.publish(MESH).map_err(|defect| vec![defect])?;
             Ok(MeshFile {
                 path: output.path(MESH),
-                meshing: Some(took),
+                meshed: Some(meshed),
             })
         }
     }

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use kluft_io::{Fingerprint, fingerprint, fingerprint_of};
 use kluft_mesh::Defect;
 use kluft_scene::{MeshSource, Scene};
 
-use crate::checkpoint::{self, Fingerprint, Identity, Progress};
+use crate::checkpoint::{self, Identity, Progress};
 use crate::output::Output;
 use crate::request::Origin;
 
@@ -30,9 +31,9 @@ impl FormerRun {
 pub fn identity(scene: &Scene, origin: Option<Origin<'_>>) -> Identity {
     Identity {
         version: env!("CARGO_PKG_VERSION").into(),
-        scene: origin.map_or(0, |origin| checkpoint::fingerprint(origin.text)),
+        scene: origin.map_or(0, |origin| fingerprint(origin.text)),
         // One that cannot be read is refused when it is meshed.
-        geometry: geometry(scene).and_then(|path| checkpoint::fingerprint_of(path).ok()),
+        geometry: geometry(scene).and_then(|path| fingerprint_of(path).ok()),
         mesh: 0,
     }
 }
@@ -84,10 +85,10 @@ pub fn find(
 fn mesh_of(scene: &Scene, former: &Identity, output: &Output) -> Result<bool, Defect> {
     match &scene.mesh {
         MeshSource::Geometry { .. } => {
-            let kept = checkpoint::fingerprint_of(&output.path("mesh.msh"));
+            let kept = fingerprint_of(&output.path("mesh.msh"));
             Ok(kept.is_ok_and(|kept| kept == former.mesh))
         }
-        MeshSource::File(file) if checkpoint::fingerprint_of(file)? == former.mesh => Ok(false),
+        MeshSource::File(file) if fingerprint_of(file)? == former.mesh => Ok(false),
         MeshSource::File(file) => Err(checkpoint::other_mesh(file, false)),
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use kluft_io::{Meshed, fingerprint_of};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
@@ -182,10 +183,10 @@ impl<'a> Run<'a> {
         };
         let scratch = self.output.unfinished("");
         let draft = prepare::read_mesh(&file.path, &scratch, &self.request.gmsh)?;
-        let fingerprint = checkpoint::fingerprint_of(&file.path);
+        let fingerprint = fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {
-            let is_made = file.meshing.is_some();
+            let is_made = file.meshed.is_some();
             return Err(vec![checkpoint::other_mesh(&file.path, is_made)]);
         }
         Ok(draft)
@@ -213,7 +214,7 @@ impl<'a> Run<'a> {
         if is_kept || former.is_some_and(|former| former.mesh_is_kept) {
             return Ok(MeshFile {
                 path: self.output.path(prepare::MESH),
-                meshing: None,
+                meshed: None,
             });
         }
         let sizes = match &self.meshing {
@@ -228,12 +229,27 @@ impl<'a> Run<'a> {
             &self.request.gmsh,
             self.observer,
         )?;
-        if let (Some(took), MeshSource::Geometry { geometry, .. }) = (file.meshing, &scene.mesh) {
-            self.summary.seconds.mesh += took.as_secs_f64();
-            self.took = took;
-            self.note_timed("meshed", &geometry.display().to_string());
+        if let (Some(meshed), MeshSource::Geometry { geometry, .. }) = (&file.meshed, &scene.mesh) {
+            self.note_meshed(meshed, &geometry.display().to_string());
         }
         Ok(file)
+    }
+
+    /// Tells where a mesh came from.
+    fn note_meshed(&mut self, meshed: &Meshed, geometry: &str) {
+        if meshed.is_kept {
+            self.summary.seconds.mesh_spared += meshed.seconds;
+            let text = format!(
+                "{geometry}: nothing that it is made of has changed since it was meshed in {:.2} s \
+                 (--remesh meshes again)",
+                meshed.seconds
+            );
+            self.observer.note("mesh kept", &text);
+        } else {
+            self.summary.seconds.mesh += meshed.seconds;
+            self.took = Duration::from_secs_f64(meshed.seconds);
+            self.note_timed("meshed", geometry);
+        }
     }
 
     /// Keeps the mesh for what follows.

@@ -162,6 +162,8 @@ impl From<&StepRecord> for StepMeasures {
 pub struct Seconds {
     /// gmsh.
     pub mesh: f64,
+    /// gmsh, when it made a mesh that this run found kept.
+    pub mesh_spared: f64,
     /// Reading and checking the mesh.
     pub read: f64,
     /// Sectors, unknowns, pattern.

@@ -11,6 +11,8 @@ pub(super) enum Effect {
     Writes,
     /// It opens the file of this name.
     Opens(String),
+    /// It asks the machine for something: a variable, the time, whether a file is there.
+    Asks,
     /// It opens a file, or is a command, whose name is only known when it runs.
     Computed,
 }
@@ -45,6 +47,7 @@ fn effect(word: &str, before: Option<Token>, mut ahead: Ahead) -> Option<Effect>
         "SystemCall" | "NonBlockingSystemCall" | "OnelabRun" | "ExternalProcess" => {
             Some(Effect::Runs)
         }
+        "GetEnv" | "FileExists" | "Today" | "Cpu" | "Memory" | "TotalMemory" => Some(Effect::Asks),
         "System" => ahead.is_argument().then_some(Effect::Runs),
         "Solver" => ahead.names_a_program().then_some(Effect::Runs),
         "CreateDir" => Some(Effect::Writes),

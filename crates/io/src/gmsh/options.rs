@@ -1,8 +1,40 @@
-//! How gmsh is started.
+//! What gmsh is asked for, and how it is started.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+use super::cache::MeshCache;
+
+/// A mesh to be made.
+#[derive(Debug, Clone, Copy)]
+pub struct Meshing<'a> {
+    /// The `.geo` file.
+    pub geometry: &'a Path,
+    /// Values for `DefineConstant` names of the geometry, or for options such as
+    /// `Mesh.Algorithm3D`.
+    pub parameters: &'a [(String, f64)],
+    /// Order of the elements: 1 or 2.
+    pub order: u32,
+    /// A view of cell sizes to go by (see [`super::write_size_field`]), instead of those of the
+    /// geometry.
+    pub sizes: Option<&'a Path>,
+    /// The `.msh` file to write; it is written whole or not at all.
+    pub output: &'a Path,
+    /// How gmsh is started, and what the geometry may do.
+    pub gmsh: &'a GmshOptions,
+}
+
+/// A mesh that was made, or had been made before.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Meshed {
+    /// What gmsh warned of.
+    pub warnings: Vec<String>,
+    /// How long gmsh took, at the time (s).
+    pub seconds: f64,
+    /// Whether it was made before.
+    pub is_kept: bool,
+}
 
 /// How gmsh is started, and what a geometry may do. By default gmsh is a child of this process
 /// without a time limit, and a geometry that does more than describe a body is refused.
@@ -14,6 +46,8 @@ pub struct GmshOptions {
     pub trust: bool,
     /// After this time gmsh is ended.
     pub time_limit: Option<Duration>,
+    /// Where meshes are kept for the next time.
+    pub cache: Option<MeshCache>,
 }
 
 /// A program that prepares its own process and becomes gmsh.

@@ -8,6 +8,7 @@ use kluft_mesh::Defect;
 
 use super::commands::{Command, Effect, commands};
 use super::files::{Kind, kind};
+use super::options::GmshOptions;
 
 /// Most commands that are named.
 const SHOWN: usize = 10;
@@ -20,13 +21,47 @@ const TRUST: &str = "if you know what it does, start with --trust";
 pub(super) struct Review {
     /// What nobody may do behind the user's back.
     pub(super) defects: Vec<Defect>,
-    /// Files that the geometry opens by names that it writes out.
+    /// The file itself, and those that it opens by names that it writes out.
     pub(super) opened: Vec<PathBuf>,
+    /// Whether the outcome depends on more than these files.
+    pub(super) depends_on_more: bool,
+}
+
+impl Review {
+    /// What gmsh must be able to read: the folder of the file, and what lies elsewhere.
+    pub(super) fn reads(&self, file: &Path) -> Vec<PathBuf> {
+        let folder = folder_of(file);
+        let whole = folder.canonicalize().unwrap_or_else(|_| folder.clone());
+        let outside = self.opened.iter().filter(|file| !file.starts_with(&whole));
+        std::iter::once(folder).chain(outside.cloned()).collect()
+    }
+
+    /// The opened files that are scripts.
+    pub(super) fn scripts(&self) -> impl Iterator<Item = &PathBuf> {
+        self.opened.iter().filter(|file| kind(file) == Kind::Script)
+    }
+}
+
+/// The review of a file that gmsh is to open; what nobody may do behind the user's back is refused,
+/// unless the user trusts the file.
+pub(super) fn reviewed(file: &Path, options: &GmshOptions) -> Result<Review, Vec<Defect>> {
+    let review = review(file, options.confines());
+    if options.trust || review.defects.is_empty() {
+        Ok(review)
+    } else {
+        Err(review.defects)
+    }
+}
+
+/// The folder that a file is in.
+pub(super) fn folder_of(file: &Path) -> PathBuf {
+    let folder = file.parent().filter(|folder| *folder != Path::new(""));
+    folder.unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Reviews a file that gmsh is to open, with all files that it names. If gmsh is confined, names
 /// that are computed are no defects: it finds out itself that it may not open them.
-pub(super) fn review(file: &Path, is_confined: bool) -> Review {
+fn review(file: &Path, is_confined: bool) -> Review {
     let mut walk = Walk {
         is_confined,
         ..Walk::default()
@@ -80,6 +115,7 @@ impl Walk {
         match kind(file) {
             Kind::Data => {}
             Kind::Program => {
+                self.review.depends_on_more = true;
                 let problem = "gmsh would run a program to open a file of this name";
                 self.refuse(place, problem, "rename or unpack it");
             }
@@ -96,7 +132,9 @@ impl Walk {
     fn judge(&mut self, file: &Path, command: &Command) {
         let place = format!("{}, line {}", file.display(), command.line);
         let word = command.word;
+        self.review.depends_on_more |= !matches!(command.effect, Effect::Opens(_));
         match &command.effect {
+            Effect::Asks => {}
             Effect::Runs => {
                 let problem = format!("`{word}` would run a program on this machine");
                 self.refuse(place, problem, "remove it");

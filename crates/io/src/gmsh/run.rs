@@ -59,6 +59,8 @@ impl<'a> Gmsh<'a> {
         let home = scope.folder.as_deref().unwrap_or(Path::new("/dev/null"));
         let home = std::path::absolute(home)?;
         command.env("GMSH_HOME", &home);
+        // What it does on several threads depends on their number.
+        command.env("OMP_NUM_THREADS", "1");
         if scope.folder.is_some() {
             command.env("TMPDIR", &home);
         }
@@ -93,7 +95,7 @@ impl<'a> Gmsh<'a> {
     }
 
     /// The file of the program.
-    fn find(&self) -> io::Result<PathBuf> {
+    pub(super) fn find(&self) -> io::Result<PathBuf> {
         let named = Path::new(&self.program);
         let there = |file: &Path| file.exists().then(|| file.to_owned());
         let found = if named.components().count() > 1 {

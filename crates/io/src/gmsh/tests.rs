@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use super::meshing::mesh_with;
 use super::*;
 
 const BOX: &str = "SetFactory(\"OpenCASCADE\");\nDefineConstant[ h = 1 ];\nBox(1) = {0, 0, 0, 1, 1, 1};\n\
@@ -47,7 +48,7 @@ impl Scene {
             output: &self.folder.join("out put.msh"),
             gmsh: options,
         };
-        mesh_with(&gmsh, &meshing)
+        mesh_with(&gmsh, &meshing).map(|meshed| meshed.warnings)
     }
 
     fn fails_with(&self, problem: &str) {
@@ -268,4 +269,61 @@ fn what_a_geometry_opens_is_reviewed_too() {
         &GmshOptions::default(),
         "c.py: gmsh would run a program",
     );
+}
+
+/// What a mesh is made into, and whether it was there.
+fn meshed(scene: &Scene, h: f64, options: &GmshOptions) -> (bool, Vec<u8>) {
+    let output = scene.folder.join("out put.msh");
+    let meshing = Meshing {
+        geometry: &scene.folder.join("in.geo"),
+        parameters: &[("h".to_owned(), h)],
+        order: 1,
+        sizes: None,
+        output: &output,
+        gmsh: options,
+    };
+    let meshed = mesh_geometry(&meshing).expect("a mesh");
+    (meshed.is_kept, fs::read(&output).expect("written"))
+}
+
+#[test]
+fn a_mesh_is_made_once_until_something_of_it_changes() {
+    let scene = Scene::new("cache", &format!("{BOX}Include \"a.inc\";\n"));
+    let include = |text: &str| fs::write(scene.folder.join("a.inc"), text).expect("written");
+    let options = GmshOptions {
+        cache: Some(MeshCache::at(scene.folder.join("meshes"))),
+        ..GmshOptions::default()
+    };
+    include("x = 1;");
+    let (was_there, first) = meshed(&scene, 0.5, &options);
+    assert!(!was_there);
+    assert_eq!(meshed(&scene, 0.5, &options), (true, first.clone()));
+    assert!(!meshed(&scene, 0.4, &options).0, "another parameter");
+    include("x = 2;");
+    assert!(!meshed(&scene, 0.5, &options).0, "another include");
+    include("x = 1;");
+    assert_eq!(meshed(&scene, 0.5, &options), (true, first));
+    include("x = GetEnv(\"HOME\");");
+    assert!(!meshed(&scene, 0.5, &options).0, "what else it depends on");
+    assert!(!meshed(&scene, 0.5, &options).0, "is not known");
+}
+
+#[cfg(unix)]
+#[test]
+fn where_the_usual_way_fails_another_is_tried() {
+    let scene = Scene::new("ways", BOX);
+    let text = "case \"$*\" in *'Mesh.Algorithm3D 1e1 '*) ;; *) echo 'Error : no luck'; exit 1;; esac\n\
+                exec gmsh \"$@\"";
+    let program = player(&scene, text);
+    let warnings = scene.mesh(&program, &[]).expect("a mesh");
+    assert_eq!(
+        warnings,
+        ["gmsh's usual way failed: gmsh: no luck", "HXT was used"]
+    );
+    let chosen = [("Mesh.Algorithm3D".to_owned(), 1.0)];
+    let defects = scene.mesh(&program, &chosen).expect_err("no other way");
+    assert!(defects[0].problem.contains("no luck"), "{defects:?}");
+    let chooses = format!("{BOX}Mesh.Algorithm3D = 1;\n");
+    fs::write(scene.folder.join("in.geo"), chooses).expect("written");
+    scene.mesh(&program, &[]).expect_err("no other way");
 }

@@ -93,8 +93,8 @@ impl Newton {
     /// Iterates until the tests hold, at `most` so often.
     ///
     /// # Errors
-    /// [`StepOutcome::OutOfIterations`] if they do not; why, once it is clear that they will not, or
-    /// the observer stops the step.
+    /// [`StepOutcome::OutOfIterations`] if they do not; why, once it is clear that they will not,
+    /// or the observer stops the step.
     pub(super) fn iterate_at_most(
         &mut self,
         most: usize,

@@ -54,6 +54,8 @@ pub fn start(program: &Path, arguments: &[&OsStr]) -> Started {
     let mut command = Command::new(program);
     command
         .args(arguments)
+        // A mesh of an earlier case would hide what comes of making one.
+        .env("KLUFT_CACHE", "")
         .stdin(Stdio::null())
         .stdout(Stdio::null());
     let child = command.stderr(stderr).spawn();

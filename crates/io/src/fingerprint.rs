@@ -1,0 +1,56 @@
+//! Sums by which files and texts are known again.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use kluft_mesh::Defect;
+use twox_hash::XxHash3_128;
+
+/// A sum over some bytes (XXH3, 128 bits): equal for equal bytes, and for others never in practice.
+pub type Fingerprint = u128;
+
+/// Sum of a file's bytes.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn fingerprint_of(path: &Path) -> Result<Fingerprint, Defect> {
+    let sum = || -> io::Result<Fingerprint> {
+        let mut file = File::open(path)?;
+        let mut buffer = vec![0; 1 << 18];
+        let mut sum = XxHash3_128::new();
+        loop {
+            match file.read(&mut buffer) {
+                Ok(0) => return Ok(sum.finish_128()),
+                Ok(count) => sum.write(&buffer[..count]),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+    };
+    sum().map_err(|error| {
+        let place = path.display().to_string();
+        let problem = format!("the file cannot be read: {error}");
+        Defect::new(place, problem, "check the path and the permissions")
+    })
+}
+
+/// Sum of a text.
+pub fn fingerprint(text: &str) -> Fingerprint {
+    XxHash3_128::oneshot(text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_the_sum_of_its_text() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("text");
+        let text = "0123456789".repeat(100_000);
+        std::fs::write(&path, &text).expect("written");
+        assert_eq!(fingerprint_of(&path).expect("a sum"), fingerprint(&text));
+        assert!(fingerprint_of(&folder.path().join("none")).is_err());
+    }
+}
