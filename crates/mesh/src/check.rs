@@ -101,6 +101,13 @@ fn mixed(place: &str, outer: usize, inner: &[u64]) -> Defect {
     )
 }
 
+/// Defects of the nodes and cells of a draft by themselves: nothing to solve, coordinates that are
+/// not finite, cells without volume or inside out.
+pub fn cell_defects(draft: &Draft) -> Vec<Defect> {
+    let nodes: Vec<DVec3> = draft.nodes.iter().map(|node| DVec3::from(*node)).collect();
+    cells(draft, &nodes)
+}
+
 /// Defects of the nodes and cells by themselves.
 pub(crate) fn cells(draft: &Draft, nodes: &[DVec3]) -> Vec<Defect> {
     let mut defects = Vec::new();

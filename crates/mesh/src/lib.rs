@@ -39,7 +39,9 @@ pub mod structured;
 mod surfaces;
 mod survey;
 
-pub use check::{CONDITION_INSIDE, DOUBLED_NODES, FACES_NOT_MATCHING, FRACTURE_ON_DOUBLED_NODES};
+pub use check::{
+    CONDITION_INSIDE, DOUBLED_NODES, FACES_NOT_MATCHING, FRACTURE_ON_DOUBLED_NODES, cell_defects,
+};
 pub use disjoint_sets::DisjointSets;
 pub use doubled::{DoubledSurface, Touch};
 pub use draft::{Draft, Elements, Group, TaggedElements};

@@ -4,10 +4,10 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use kluft_mesh::Defect;
+use kluft_mesh::{Defect, cell_defects};
 
 use super::options::NOT_MESHED;
-use crate::msh::holds_cells;
+use crate::msh::{holds_cells, read_msh};
 
 /// gmsh answers with success and a file also when it has found nothing to mesh, or when the disk is
 /// full.
@@ -33,6 +33,16 @@ pub(super) fn check_made(made: &Path, geometry: &Path, output: &Path) -> Result<
         return Err(Defect::new(place, problem, remedy));
     }
     Ok(())
+}
+
+/// Whether every cell has a volume.
+pub(super) fn check_cells(made: &Path) -> Result<(), Vec<Defect>> {
+    let defects = cell_defects(&read_msh(made)?);
+    if defects.is_empty() {
+        Ok(())
+    } else {
+        Err(defects)
+    }
 }
 
 /// The last bytes of a file.

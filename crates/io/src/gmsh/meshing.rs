@@ -9,7 +9,7 @@ use kluft_mesh::Defect;
 use super::attempts::{Attempt, attempts, is_worth_another};
 use super::cache::MeshCache;
 use super::ending::{cannot_start, judge};
-use super::made::check_made;
+use super::made::{check_cells, check_made};
 use super::options::{Meshed, Meshing};
 use super::review::reviewed;
 use super::run::{Gmsh, Scope, path_argument};
@@ -111,9 +111,13 @@ fn make(
             return Err(failed);
         };
         let arguments = arguments(meshing, *attempt, [&input, &made]);
-        match try_once(gmsh, meshing, &arguments, &scope) {
+        let is_last = left.len() == 0;
+        let tried = try_once(gmsh, meshing, &arguments, &scope);
+        // What is wrong with the last is told by who reads it.
+        let sound = |made: &Path| if is_last { Ok(()) } else { check_cells(made) };
+        match tried.and_then(|warnings| sound(&made).map(|()| warnings)) {
             Ok(warnings) => break warnings,
-            Err(defects) if left.len() > 0 && is_worth_another(&defects) => {
+            Err(defects) if !is_last && is_worth_another(&defects) => {
                 failed.extend(defects.into_iter().next());
                 // It must not be taken for that of the next.
                 let _ = std::fs::remove_file(&made);

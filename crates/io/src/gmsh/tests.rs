@@ -327,3 +327,21 @@ fn where_the_usual_way_fails_another_is_tried() {
     fs::write(scene.folder.join("in.geo"), chooses).expect("written");
     scene.mesh(&program, &[]).expect_err("no other way");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_mesh_with_flat_cells_is_made_in_another_way() {
+    let scene = Scene::new("flat", BOX);
+    let flat = "$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 4 1 4\\n3 1 0 4\\n1\\n2\\n3\\n4\\n\
+                0 0 0\\n1 0 0\\n0 1 0\\n1 1 0\\n$EndNodes\\n$Elements\\n1 1 1 1\\n3 1 4 1\\n1 1 2 3 4\\n\
+                $EndElements\\n";
+    let text = format!(
+        "for last; do :; done; case \"$*\" in *'Mesh.Algorithm3D 1e1 '*) exec gmsh \"$@\";; esac\n\
+         printf '{flat}' > \"$last\""
+    );
+    let warnings = scene.mesh(&player(&scene, &text), &[]).expect("a mesh");
+    assert!(
+        warnings[0].contains("the cell has no volume"),
+        "{warnings:?}"
+    );
+}
