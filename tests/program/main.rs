@@ -7,6 +7,7 @@ mod doubled;
 mod doubts;
 mod examples;
 mod harness;
+mod history;
 mod inspect;
 mod kept_files;
 mod load_paths;

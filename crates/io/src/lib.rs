@@ -6,6 +6,7 @@ mod fingerprint;
 pub mod gmsh;
 mod load;
 pub mod msh;
+pub mod printable;
 mod pvd;
 mod vtu;
 mod vtu_array;

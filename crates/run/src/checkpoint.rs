@@ -20,7 +20,7 @@ use crate::summary::{FractureSummary, Seconds, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 5\n";
+const HEAD: &[u8] = b"kluft checkpoint 6\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -56,6 +56,8 @@ pub struct Progress<'a> {
     pub fractures: Vec<(String, FractureSummary)>,
     /// Estimated error of the stress after the last of them.
     pub stress_error: f64,
+    /// The text of the history of all of them.
+    pub history: String,
     /// The measures after the last of them.
     pub measures: Vec<Measure>,
     /// Where the time went so far.
@@ -258,6 +260,7 @@ mod tests {
             steps: Vec::new(),
             files: Vec::new(),
             fractures: Vec::new(),
+            history: String::new(),
             stress_error: 0.0,
             measures: Vec::new(),
             seconds: Seconds::default(),

@@ -25,10 +25,8 @@ pub fn named_files(folder: &Path) -> Vec<String> {
     };
     if let Some(summary) = json("summary.json", "steps") {
         names.push("summary.json".into());
-        if summary["seconds"]["mesh"]
-            .as_f64()
-            .is_some_and(|seconds| seconds > 0.0)
-        {
+        let seconds = |stage: &str| summary["seconds"][stage].as_f64().unwrap_or(0.0);
+        if seconds("mesh") + seconds("mesh_spared") > 0.0 {
             names.push("mesh.msh".into());
         }
         if summary["meshes"]

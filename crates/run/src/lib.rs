@@ -38,6 +38,7 @@ mod doubts;
 mod failures;
 mod former;
 mod grids;
+mod history;
 mod measure;
 mod measures;
 pub mod memory;

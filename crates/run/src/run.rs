@@ -6,6 +6,7 @@ use kluft_scene::MeshSource;
 use crate::adapt::{self, SIZES};
 use crate::checkpoint;
 use crate::failures;
+use crate::history;
 use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
 use crate::output::{COLLECTIONS, Output};
@@ -62,7 +63,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     let Some(folder) = request.folder else {
         return Output::nowhere();
     };
-    let mut names = vec!["summary.json", checkpoint::NAME];
+    let mut names = vec!["summary.json", history::NAME, checkpoint::NAME];
     names.extend(COLLECTIONS);
     if let (MeshSource::Geometry { adapt, .. }, MeshInput::OfScene) =
         (&request.scene.mesh, &request.mesh)

@@ -13,6 +13,7 @@ use kluft_solver::{
 use crate::checkpoint::{self, Identity};
 use crate::decisions;
 use crate::failures;
+use crate::history::History;
 use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::outcome::{Ending, Outcome, StepResult};
@@ -58,6 +59,8 @@ pub struct Run<'a> {
     pub identity: Identity,
     /// The finished load steps.
     pub finished: Vec<StepMeasures>,
+    /// How they went.
+    pub history: History,
     /// The results that are kept.
     pub kept: Vec<StepResult>,
     /// Name of the linear solver, and why it was chosen.
@@ -117,6 +120,7 @@ impl<'a> Run<'a> {
             summary,
             identity,
             finished: Vec::new(),
+            history: History::default(),
             kept: Vec::new(),
             choice: Default::default(),
             doubts: Vec::new(),

@@ -1,11 +1,13 @@
 //! The load steps of a run: each is solved, estimated, written, and can be resumed from.
 
+use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use kluft_io::Grid;
+use kluft_io::{Grid, write_atomically};
 use kluft_solver::{
-    Estimator, Newton, Plan, Problem, State, StepOutcome, StepRecord, System, determinacy, solution,
+    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord, System,
+    block_motions, determinacy, solution, surface_resultants,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -14,6 +16,7 @@ use crate::decisions;
 use crate::doubts;
 use crate::failures;
 use crate::grids::{fracture_grid, rock_grid};
+use crate::history::{self, Entry, History};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
@@ -131,6 +134,7 @@ impl Run<'_> {
         let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
         self.summary.steps = summaries.collect();
         self.summary.fractures = former.fractures;
+        self.history = History::from_text(former.history);
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
@@ -216,6 +220,7 @@ impl Run<'_> {
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
+        self.write_history(prepared, &solution)?;
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(system, &solution, &accuracy);
@@ -236,6 +241,38 @@ impl Run<'_> {
             written
         })?;
         Ok(())
+    }
+
+    /// Adds the load step that was solved last to the history.
+    fn write_history(
+        &mut self,
+        prepared: &Prepared<'_, '_>,
+        solution: &Solution,
+    ) -> Result<(), Interruption> {
+        if !self.output.is_kept() {
+            return Ok(());
+        }
+        let (system, displacements) = (prepared.system, &solution.displacements);
+        let problem = system.problem();
+        let number = self.finished.len();
+        let names = problem.mesh.boundaries.iter();
+        let names = names.map(|boundary| boundary.name.as_str());
+        let (surfaces, blocks) = rayon::join(
+            || surface_resultants(system, &prepared.state, displacements),
+            || block_motions(system, displacements),
+        );
+        let last = self.finished.last();
+        self.history.add(&Entry {
+            number,
+            step: &problem.schedule.steps[number - 1],
+            newton_iterations: last.map_or(0, |last| last.newton_iterations),
+            fractures: &self.summary.fractures,
+            surfaces: names.zip(surfaces).collect(),
+            blocks,
+        });
+        let text = self.history.text();
+        let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
+        Ok(self.output.write(history::NAME, write)?)
     }
 
     /// Keeps the results of the load step that was solved last.
@@ -270,6 +307,7 @@ impl Run<'_> {
             steps: self.finished.clone(),
             files: self.output.sums().to_vec(),
             fractures: self.summary.fractures.clone(),
+            history: self.history.text().to_owned(),
             measures: self.summary.measures.clone(),
             stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use kluft_io::write_atomically;
 use kluft_mesh::Defect;
 use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, StepRecord};
@@ -42,10 +43,20 @@ pub struct FractureSummary {
     pub aperture: Spread,
     /// Normal traction (Pa), tension positive.
     pub normal_traction: Spread,
+    /// Shear traction (Pa), its length.
+    pub shear_traction: Spread,
+    /// Slip (m), its length.
+    pub slip: Spread,
     /// Largest slip (m).
     pub slip_max: f64,
+    /// Resultant (N) of the traction, as it acts on the minus wall.
+    pub force: [f64; 3],
     /// Area that is open (m^2).
     pub open_area: f64,
+    /// Area that slides (m^2).
+    pub sliding_area: f64,
+    /// Area that is not open (m^2).
+    pub closed_area: f64,
     /// Area below the cutoff of the law (m^2).
     pub below_cutoff_area: f64,
     /// Number of facets with a node below the cutoff.
@@ -279,29 +290,49 @@ fn fracture_summary(
         chosen.fold(0.0, |sum, (_, weight)| sum + weight)
     };
     let area: f64 = weights().sum();
-    let spread = |value: &dyn Fn(&FacetResult) -> f64| Spread {
-        min: walls().map(value).fold(f64::INFINITY, f64::min),
-        mean: results()
+    let normals = || own.iter().map(|&i| interface.points()[i].normal);
+    let spread = |value: &dyn Fn(&FacetResult, DVec3) -> f64| {
+        let at_walls = || {
+            walls()
+                .zip(normals())
+                .map(|(wall, normal)| value(wall, normal))
+        };
+        let at_points = results()
+            .zip(normals())
+            .map(|(result, normal)| value(result, normal));
+        let integral: f64 = at_points
             .zip(weights())
-            .map(|(r, w)| value(r) * w)
-            .sum::<f64>()
-            / area,
-        max: walls().map(value).fold(f64::NEG_INFINITY, f64::max),
+            .map(|(value, weight)| value * weight)
+            .sum();
+        Spread {
+            min: at_walls().fold(f64::INFINITY, f64::min),
+            mean: integral / area,
+            max: at_walls().fold(f64::NEG_INFINITY, f64::max),
+        }
+    };
+    let shear = |result: &FacetResult, normal: DVec3| {
+        (result.traction - result.normal_traction * normal).length()
     };
     let is_below = |i: usize| points[i].state == FacetState::BelowCutoff;
     let of_fracture = (0..facets.elements.len()).filter(|&f| facets.fracture[f] == fracture);
     let below = of_fracture
         .clone()
         .filter(|&f| facets.elements.range(f).any(is_below));
+    let slip = spread(&|result, _| result.slip.length());
+    let open_area = area_where(&|result| result.state == FacetState::Open);
+    let force: DVec3 = results().zip(weights()).map(|(r, w)| w * r.traction).sum();
     FractureSummary {
         facets: of_fracture.clone().count(),
         area,
-        aperture: spread(&|result| result.aperture),
-        normal_traction: spread(&|result| result.normal_traction),
-        slip_max: walls()
-            .map(|result| result.slip.length())
-            .fold(0.0, f64::max),
-        open_area: area_where(&|result| result.state == FacetState::Open),
+        aperture: spread(&|result, _| result.aperture),
+        normal_traction: spread(&|result, _| result.normal_traction),
+        shear_traction: spread(&shear),
+        slip,
+        slip_max: slip.max.max(0.0),
+        force: force.to_array(),
+        open_area,
+        sliding_area: area_where(&|result| result.state == FacetState::Slipping),
+        closed_area: area - open_area,
         below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
         below_cutoff_facets: below.count(),
         overlap_area: area_where(&|result| result.aperture < 0.0),

@@ -20,7 +20,7 @@
 //! | `newton` | load steps: guess, iteration, tests, division of a step |
 //! | `estimate` | errors of stresses and of mean jumps, sizes of cells that would mend them |
 //!
-//! `solution` derives fields from a state, `memory` counts what a run keeps beside its linear
+//! `solution` derives fields from a state, `resultants` what whole parts feel, `memory` counts what a run keeps beside its linear
 //! solver.
 //!
 //! The laws of the fractures live in the [`Interface`]: it takes them over from the problem, and
@@ -32,6 +32,7 @@ mod linear;
 mod memory;
 mod newton;
 mod problem;
+mod resultants;
 mod solution;
 mod space;
 mod system;
@@ -53,6 +54,7 @@ pub use problem::{
     Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,
     Support, SurfaceLoad,
 };
+pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use space::pattern::{CellOfSlot, Pattern};
 pub use space::rigid_modes::UNHELD_BLOCK;
