@@ -37,6 +37,7 @@ mod decisions;
 mod doubts;
 mod failures;
 mod former;
+mod fractures;
 mod grids;
 mod history;
 mod measure;

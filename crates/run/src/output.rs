@@ -9,6 +9,7 @@ use tempfile::TempDir;
 
 use crate::checkpoint::{self, StepFiles};
 use crate::former;
+use crate::history;
 
 /// The collections of the grids of all load steps.
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
@@ -211,7 +212,7 @@ impl Output {
             return Ok(());
         };
         let mut names: Vec<&String> = folder.own().iter().collect();
-        names.retain(|name| *name == checkpoint::NAME || former::is_step(name));
+        names.retain(|name| is_of_run(name));
         // The checkpoint first, so that none ever continues steps that are gone, then the
         // collections, so that none ever lists a grid that is gone.
         names.sort_by_key(|name| (*name != checkpoint::NAME, !name.ends_with(".pvd")));
@@ -268,6 +269,11 @@ impl Output {
             ..defect
         })
     }
+}
+
+/// Whether a file belongs to one run and must not outlive it.
+fn is_of_run(name: &str) -> bool {
+    [checkpoint::NAME, history::NAME].contains(&name) || former::is_step(name)
 }
 
 fn list<'a>(

@@ -15,6 +15,7 @@ use crate::checkpoint::{self, Progress};
 use crate::decisions;
 use crate::doubts;
 use crate::failures;
+use crate::fractures::fractures;
 use crate::grids::{fracture_grid, rock_grid};
 use crate::history::{self, Entry, History};
 use crate::measures::{energy, measures};
@@ -22,7 +23,7 @@ use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
-use crate::summary::{self, StepSummary};
+use crate::summary::StepSummary;
 use crate::undetermined;
 
 /// A run that has a system and a solver.
@@ -203,7 +204,7 @@ impl Run<'_> {
         });
         let interface = system.discretisation().interface();
         let nodes = solution.facet_nodes(system.problem(), interface);
-        let mut fractures = summary::fractures(system.problem(), interface, &solution, &nodes);
+        let mut fractures = fractures(system.problem(), interface, &solution, &nodes);
         accuracy.note_in(&mut fractures);
         let facets = determinacy(system, &prepared.state);
         if let Some(facets) = &facets {

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use glam::DVec3;
 use kluft_io::write_atomically;
 use kluft_mesh::Defect;
-use kluft_solver::{FacetResult, FacetState, Interface, Problem, Solution, Step, StepRecord};
+use kluft_solver::{Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
@@ -248,96 +247,5 @@ impl Summary {
             serde_json::to_writer_pretty(&mut *out, self)?;
             std::io::Write::write_all(out, b"\n")
         })
-    }
-}
-
-/// Sums up the fractures of a solution; `nodes` are its results at the nodes of the facets.
-pub fn fractures(
-    problem: &Problem,
-    interface: &Interface,
-    solution: &Solution,
-    nodes: &[FacetResult],
-) -> Vec<(String, FractureSummary)> {
-    let mesh = &problem.mesh;
-    let names = mesh.fractures.iter().enumerate();
-    names
-        .map(|(fracture, name)| {
-            let points = solution.facet_points.as_slice();
-            let summary = fracture_summary(problem, interface, [points, nodes], fracture as u32);
-            (name.clone(), summary)
-        })
-        .collect()
-}
-
-/// Means and areas are taken from the facet `points` (their control values have the right
-/// integral), extremes from the `nodes` of the facets and the points between them.
-fn fracture_summary(
-    problem: &Problem,
-    interface: &Interface,
-    [points, nodes]: [&[FacetResult]; 2],
-    fracture: u32,
-) -> FractureSummary {
-    let facets = &problem.mesh.facets;
-    let own: Vec<usize> = (0..interface.points().len())
-        .filter(|&i| interface.points()[i].fracture == fracture)
-        .collect();
-    let results = || own.iter().map(|&i| &points[i]);
-    let walls = || own.iter().map(|&i| nodes.get(i).unwrap_or(&points[i]));
-    let weights = || own.iter().map(|&i| interface.points()[i].area);
-    let area_where = |holds: &dyn Fn(&FacetResult) -> bool| -> f64 {
-        let chosen = results().zip(weights()).filter(|(result, _)| holds(result));
-        // An empty sum of floats is -0.0.
-        chosen.fold(0.0, |sum, (_, weight)| sum + weight)
-    };
-    let area: f64 = weights().sum();
-    let normals = || own.iter().map(|&i| interface.points()[i].normal);
-    let spread = |value: &dyn Fn(&FacetResult, DVec3) -> f64| {
-        let at_walls = || {
-            walls()
-                .zip(normals())
-                .map(|(wall, normal)| value(wall, normal))
-        };
-        let at_points = results()
-            .zip(normals())
-            .map(|(result, normal)| value(result, normal));
-        let integral: f64 = at_points
-            .zip(weights())
-            .map(|(value, weight)| value * weight)
-            .sum();
-        Spread {
-            min: at_walls().fold(f64::INFINITY, f64::min),
-            mean: integral / area,
-            max: at_walls().fold(f64::NEG_INFINITY, f64::max),
-        }
-    };
-    let shear = |result: &FacetResult, normal: DVec3| {
-        (result.traction - result.normal_traction * normal).length()
-    };
-    let is_below = |i: usize| points[i].state == FacetState::BelowCutoff;
-    let of_fracture = (0..facets.elements.len()).filter(|&f| facets.fracture[f] == fracture);
-    let below = of_fracture
-        .clone()
-        .filter(|&f| facets.elements.range(f).any(is_below));
-    let slip = spread(&|result, _| result.slip.length());
-    let open_area = area_where(&|result| result.state == FacetState::Open);
-    let force: DVec3 = results().zip(weights()).map(|(r, w)| w * r.traction).sum();
-    FractureSummary {
-        facets: of_fracture.clone().count(),
-        area,
-        aperture: spread(&|result, _| result.aperture),
-        normal_traction: spread(&|result, _| result.normal_traction),
-        shear_traction: spread(&shear),
-        slip,
-        slip_max: slip.max.max(0.0),
-        force: force.to_array(),
-        open_area,
-        sliding_area: area_where(&|result| result.state == FacetState::Slipping),
-        closed_area: area - open_area,
-        below_cutoff_area: area_where(&|result| result.state == FacetState::BelowCutoff),
-        below_cutoff_facets: below.count(),
-        overlap_area: area_where(&|result| result.aperture < 0.0),
-        undetermined: Undetermined::default(),
-        aperture_uncertainty: None,
-        slip_uncertainty: None,
     }
 }

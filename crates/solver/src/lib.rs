@@ -20,8 +20,8 @@
 //! | `newton` | load steps: guess, iteration, tests, division of a step |
 //! | `estimate` | errors of stresses and of mean jumps, sizes of cells that would mend them |
 //!
-//! `solution` derives fields from a state, `resultants` what whole parts feel, `memory` counts what a run keeps beside its linear
-//! solver.
+//! `solution` derives fields from a state, `resultants` what whole parts feel and do, `memory`
+//! counts what a run keeps beside its linear solver.
 //!
 //! The laws of the fractures live in the [`Interface`]: it takes them over from the problem, and
 //! [`System::set_laws`] replaces them.

@@ -1,4 +1,4 @@
-//! What whole parts of a body feel and do: forces on the parts of its surface, motions of its blocks.
+//! What whole parts of a body feel and do: forces on parts of its surface, motions of its blocks.
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::trace;
