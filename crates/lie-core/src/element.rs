@@ -51,7 +51,6 @@ pub fn rule(shape: Shape) -> &'static ElementRule {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::reference_nodes;
 
     fn all() -> impl Iterator<Item = Shape> {
         Shape::CELLS.into_iter().chain(Shape::FACETS)
@@ -68,7 +67,7 @@ mod tests {
     #[test]
     fn shape_functions_are_one_at_their_node_and_zero_at_the_others() {
         for shape in all() {
-            for (node, at) in reference_nodes(shape).into_iter().enumerate() {
+            for (node, at) in shape.reference_nodes().into_iter().enumerate() {
                 for (other, value) in rule(shape).basis.values(at).into_iter().enumerate() {
                     let expected = f64::from(u8::from(node == other));
                     assert!((value - expected).abs() < 1e-13, "{shape:?} {node} {other}");
@@ -91,7 +90,7 @@ mod tests {
     #[test]
     fn shape_functions_reproduce_linear_fields() {
         for shape in all() {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             for at in inside(shape) {
                 let values = rule(shape).basis.values(at);
                 let sum: DVec3 = nodes.iter().zip(values).map(|(x, value)| *x * value).sum();
@@ -123,7 +122,7 @@ mod tests {
     #[test]
     fn traces_on_faces_are_the_shape_functions_of_the_facet() {
         for shape in Shape::CELLS {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             for face in shape.faces() {
                 for at in inside(face.shape) {
                     let of_facet = rule(face.shape).basis.values(at);
@@ -146,7 +145,7 @@ mod tests {
     #[test]
     fn faces_point_outwards() {
         for shape in Shape::CELLS {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             let middle: DVec3 = nodes.iter().sum::<DVec3>() / nodes.len() as f64;
             for face in shape.faces() {
                 let corners: Vec<DVec3> = face

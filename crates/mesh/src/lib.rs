@@ -32,6 +32,7 @@ mod mesh;
 mod orient;
 mod pairing;
 mod quarter_points;
+mod refine;
 mod roles;
 mod sectors;
 mod shape;
