@@ -97,10 +97,10 @@ fn read(
 ) -> Result<Draft, Vec<Defect>> {
     let scratch = output.unfinished("");
     let Some(scene) = scene else {
-        return read_mesh(input, &scratch, gmsh);
+        return read_mesh(input, 0, &scratch, gmsh);
     };
     let file = mesh_file(scene, output, None, gmsh, &mut ())?;
-    read_mesh(&file.path, &scratch, gmsh)
+    read_mesh(&file.path, scene.refine, &scratch, gmsh)
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.

@@ -50,6 +50,8 @@ pub fn rule(shape: Shape) -> &'static ElementRule {
 
 #[cfg(test)]
 mod tests {
+    use kluft_mesh::{Draft, Elements};
+
     use super::*;
 
     fn all() -> impl Iterator<Item = Shape> {
@@ -138,6 +140,48 @@ mod tests {
                         "{shape:?} {face:?}"
                     );
                 }
+            }
+        }
+    }
+
+    /// One cell, refined once: its nodes.
+    fn refined(shape: Shape, nodes: &[DVec3]) -> Vec<DVec3> {
+        let all: Vec<u32> = (0..nodes.len() as u32).collect();
+        let mut draft = Draft {
+            nodes: nodes.iter().map(DVec3::to_array).collect(),
+            node_tags: (1..=nodes.len() as u64).collect(),
+            group_sets: vec![Vec::new()],
+            ..Draft::default()
+        };
+        draft.cells.elements = Elements::new();
+        draft.cells.elements.push(shape, &all);
+        draft.cells.tags = vec![1];
+        draft.cells.group_set = vec![0];
+        draft.refine(1).expect("one cell");
+        draft.nodes.into_iter().map(DVec3::from).collect()
+    }
+
+    /// The nodes of a refined curved cell are where its shape functions have those of the refined
+    /// reference cell.
+    #[test]
+    fn refined_cells_lie_on_the_map_of_their_parent() {
+        let wave = |x: DVec3| {
+            let phase = x.dot(DVec3::new(7.0, 5.0, 3.0)) + 1.0;
+            0.05 * DVec3::new(phase.sin(), (2.0 * phase).cos(), (3.0 * phase).sin())
+        };
+        for shape in Shape::CELLS {
+            let reference = shape.reference_nodes();
+            let curved: Vec<DVec3> = reference.iter().map(|&x| x + wave(x)).collect();
+            let mapped = refined(shape, &reference).into_iter().map(|at| {
+                let values = rule(shape).basis.values(at);
+                values.iter().zip(&curved).map(|(v, x)| *v * *x).sum()
+            });
+            let mapped: Vec<DVec3> = mapped.collect();
+            let found = refined(shape, &curved);
+            assert_eq!(found.len(), mapped.len(), "{shape:?}");
+            for x in found {
+                let near = mapped.iter().any(|at| at.distance(x) < 1e-14 * 8.0);
+                assert!(near, "{shape:?}: {x}");
             }
         }
     }

@@ -59,6 +59,34 @@ fn edited(edits: &[(&str, &str)]) -> Result<Scene, Vec<Defect>> {
 }
 
 #[test]
+fn refinement_is_a_small_number_and_no_friend_of_adaptive_meshes() {
+    let plain = ("weld = true\nrefine = 0", "refine = 2");
+    let fixed = (
+        "adapt = { tolerance = 0.05, max_unknowns = 1e5, max_rounds = 3 }",
+        "",
+    );
+    assert_eq!(edited(&[plain, fixed]).expect("a scene").refine, 2);
+    let said = |edits: &[(&str, &str)]| {
+        let defects = edited(edits).expect_err("refused");
+        assert_eq!(defects.len(), 1, "{defects:?}");
+        defects[0].to_string()
+    };
+    let both = said(&[plain]);
+    for part in ["`refine` and `adapt`", "divide them again", "keep one"] {
+        assert!(both.contains(part), "{both}");
+    }
+    for (value, part) in [
+        ("6", "from 0 to 5"),
+        ("0.5", "whole number"),
+        ("-1", "from 0"),
+    ] {
+        let wrong = format!("refine = {value}");
+        let said = said(&[("refine = 0", &wrong), fixed]);
+        assert!(said.contains(part), "{said}");
+    }
+}
+
+#[test]
 fn a_scene_with_units_is_the_scene_in_si_units() {
     let with_units = edited(&[
         ("young_modulus = 50e9", "young_modulus = \"50 GPa\""),
