@@ -117,7 +117,7 @@ fn a_uniform_stress_stays_uniform() {
 }
 
 /// gmsh divides the same mesh into as many cells, some octahedra along other diagonals: apertures
-/// differ by less than they differ from those of the coarse mesh.
+/// differ by less than half of what they differ from those of the coarse mesh.
 #[test]
 fn gmsh_refines_to_the_same_counts_and_nearly_the_same_apertures() {
     let bench = Bench::new(BOX);
@@ -141,7 +141,7 @@ fn gmsh_refines_to_the_same_counts_and_nearly_the_same_apertures() {
     for kind in 0..2 {
         let by_diagonals = (own[kind] - other[kind]).abs();
         let by_size = (own[kind] - before[kind]).abs();
-        assert!(by_diagonals < 0.3 * by_size, "{before:?} {own:?} {other:?}");
+        assert!(by_diagonals < 0.5 * by_size, "{before:?} {own:?} {other:?}");
     }
 }
 
@@ -168,9 +168,9 @@ fn an_inspection_counts_the_refined_mesh_and_its_cells_stay_good() {
             assert_eq!(factor * before, after);
         }
         let [finer_worst, finer_mean] = quality(&found);
-        // The inner tetrahedra are less regular: so much, and no more from the second time on.
-        assert!(finer_worst > 0.6 * worst, "{finer_worst} after {worst}");
-        assert!(finer_mean > 0.85 * mean, "{finer_mean} after {mean}");
+        // The inner tetrahedra are less regular: so much, and hardly more from then on.
+        assert!(finer_worst > 0.75 * worst, "{finer_worst} after {worst}");
+        assert!(finer_mean > 0.95 * mean, "{finer_mean} after {mean}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! Surfaces that look curved although their facets are flat.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::draft::Draft;
 use crate::facet_area_vector;
@@ -34,17 +35,18 @@ impl Draft {
                 is_bent[other] = true;
             }
         }
-        let holds = |group: usize, facet: usize| {
-            let set = &self.group_sets[self.facets.group_set[facet] as usize];
-            set.contains(&group)
-        };
-        let mostly_bent = |group: &usize| {
-            let own = (0..facets.len()).filter(|&facet| holds(*group, facet));
-            let (count, bent) = own.fold((0, 0), |(count, bent), facet| {
-                (count + 1, bent + usize::from(is_bent[facet]))
-            });
-            2 * bent > count
-        };
+        let mut counts = vec![[0_usize; 2]; self.group_sets.len()];
+        for (&set, &is_bent) in self.facets.group_set.iter().zip(&is_bent) {
+            counts[set as usize][usize::from(is_bent)] += 1;
+        }
+        let mut of_groups = vec![[0_usize; 2]; self.groups.len()];
+        for (set, counts) in self.group_sets.iter().zip(counts) {
+            for &group in set {
+                of_groups[group][0] += counts[0];
+                of_groups[group][1] += counts[1];
+            }
+        }
+        let mostly_bent = |&group: &usize| of_groups[group][1] > of_groups[group][0];
         (0..self.groups.len()).filter(mostly_bent).collect()
     }
 
@@ -62,7 +64,7 @@ impl Draft {
             })
         });
         let mut edges: Vec<_> = edges.collect();
-        edges.sort_unstable();
+        edges.par_sort_unstable();
         edges
     }
 }
