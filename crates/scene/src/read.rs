@@ -183,13 +183,7 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<Mes
     }
     let adapt = section.section("adapt").and_then(read_adapt);
     if adapt.is_some() && refine > 0 {
-        section.refuse(
-            "refine",
-            "`refine` and `adapt` are both given: the sizes that `adapt` asks gmsh for are those of \
-             the cells that the error was estimated on, and `refine` would divide them again"
-                .into(),
-            "keep one of them: `adapt` chooses sizes by the error, `refine` divides every cell",
-        );
+        refuse_both(&section);
     }
     let mesh = match (geometry, file) {
         (Some(geometry), None) => Some(MeshSource::Geometry {
@@ -229,6 +223,15 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<Mes
     };
     section.finish();
     mesh
+}
+
+/// Refuses to refine what follows the error.
+fn refuse_both(section: &Section<'_, '_>) {
+    let problem = "`refine` and `adapt` are both given: the sizes that `adapt` asks gmsh for are \
+                   those of the cells that the error was estimated on, and `refine` would divide \
+                   them again";
+    let remedy = "keep one of them: `adapt` chooses sizes by the error, `refine` divides all cells";
+    section.refuse("refine", problem.into(), remedy);
 }
 
 fn read_adapt(section: Section<'_, '_>) -> Option<Adapt> {

@@ -80,7 +80,8 @@ impl Draft {
         let defects = short.map(|(what, tag, _)| {
             let problem =
                 format!("the {what} {tag} leaves no numbers of 64 bits for those of a finer mesh");
-            let remedy = "number nodes and elements from 1 on (gmsh: RenumberMeshNodes; RenumberMeshElements;)";
+            let remedy = "number nodes and elements from 1 on (gmsh: RenumberMeshNodes; \
+                          RenumberMeshElements;)";
             Defect::new(&self.source, problem, remedy)
         });
         let defects: Vec<Defect> = defects.collect();
