@@ -54,14 +54,26 @@ pub struct Inspection {
 /// Numbers of the mesh.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct MeshCounts {
-    /// Nodes in the file.
+    /// Nodes.
     pub nodes: usize,
     /// Cells.
     pub cells: usize,
-    /// Surface elements in the file.
+    /// Surface elements.
     pub facets: usize,
     /// Lowest and highest coordinates (m).
     pub bounds: Option<[Place; 2]>,
+}
+
+impl MeshCounts {
+    /// What a draft holds.
+    pub fn of(draft: &Draft) -> Self {
+        Self {
+            nodes: draft.nodes.len(),
+            cells: draft.cells.elements.len(),
+            facets: draft.facets.elements.len(),
+            bounds: None,
+        }
+    }
 }
 
 /// A physical group.
@@ -344,12 +356,7 @@ impl Inspection {
             kluft: env!("CARGO_PKG_VERSION"),
             input: input.display().to_string(),
             title: scene.map(|scene| scene.title.clone()),
-            mesh: MeshCounts {
-                nodes: draft.nodes.len(),
-                cells: draft.cells.elements.len(),
-                facets: draft.facets.elements.len(),
-                bounds: None,
-            },
+            mesh: MeshCounts::of(draft),
             ..Self::default()
         }
     }

@@ -23,9 +23,9 @@ use crate::printing;
 use crate::stdout::print;
 use crate::threads::{pool, thread_count};
 use kluft_run::{MESH, Output, folder_for, inputs, mesh_file, read_mesh};
-use kluft_scene::{MeshSource, Scene, bind, in_terms_of_scene, join, roles};
+use kluft_scene::{JoinedDraft, MeshSource, Scene, bind, in_terms_of_scene, join, refine, roles};
 
-use findings::Inspection;
+use findings::{Inspection, MeshCounts};
 
 /// The files that an inspection writes beside a mesh.
 const GRID: &str = "inspect.vtu";
@@ -97,10 +97,10 @@ fn read(
 ) -> Result<Draft, Vec<Defect>> {
     let scratch = output.unfinished("");
     let Some(scene) = scene else {
-        return read_mesh(input, &scratch, gmsh);
+        return read_mesh(input, 0, &scratch, gmsh);
     };
     let file = mesh_file(scene, output, None, gmsh, &mut ())?;
-    read_mesh(&file.path, &scratch, gmsh)
+    read_mesh(&file.path, scene.refine, &scratch, gmsh)
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.
@@ -113,26 +113,8 @@ fn look(
     inspection.warnings.extend(groups::missing(&draft));
     let faces = Faces::of(&draft);
     inspection.groups = groups::list(&draft, &faces.inner_surfaces(&draft), None, scene);
-    let (draft, faces) = match joined(draft, faces, scene, inspection) {
-        Ok(joined) => joined,
-        Err(defects) => return defects,
-    };
-    let inner = faces.inner_surfaces(&draft);
-    let surface_roles = match scene {
-        None => Ok(groups::guess(&draft, &inner)),
-        Some(scene) => roles(scene, &draft, &inner).map(|found| {
-            inspection.warnings.extend(found.warnings);
-            found.of_group
-        }),
-    };
-    let surface_roles = match surface_roles {
-        Ok(found) => found,
-        Err(defects) => return defects,
-    };
-    inspection.groups = groups::list(&draft, &inner, Some(&surface_roles), scene);
-    let mesh = match Mesh::build_on(draft, faces, &surface_roles) {
+    let mesh = match mesh(draft, faces, scene, inspection) {
         Ok(mesh) => mesh,
-        Err(defects) if scene.is_some() => return in_terms_of_scene(defects),
         Err(defects) => return defects,
     };
     let survey = Survey::of(&mesh);
@@ -154,6 +136,31 @@ fn look(
     defects
 }
 
+/// The mesh as the scene wants it: joined, refined and checked.
+fn mesh(
+    draft: Draft,
+    faces: Faces,
+    scene: Option<&Scene>,
+    inspection: &mut Inspection,
+) -> Result<Mesh, Vec<Defect>> {
+    let mut joined = joined(draft, faces, scene, inspection)?;
+    let inner = joined.faces.inner_surfaces(&joined.draft);
+    let Some(scene) = scene else {
+        let roles = groups::guess(&joined.draft, &inner);
+        inspection.groups = groups::list(&joined.draft, &inner, Some(&roles), None);
+        return Mesh::build_on(joined.draft, joined.faces, &roles);
+    };
+    let found = roles(scene, &joined.draft, &inner)?;
+    inspection.warnings.extend(found.warnings);
+    let list = |draft: &Draft| groups::list(draft, &inner, Some(&found.of_group), Some(scene));
+    inspection.groups = list(&joined.draft);
+    joined = refine(scene, joined, &found.of_group).map_err(in_terms_of_scene)?;
+    inspection.groups = list(&joined.draft);
+    inspection.mesh = MeshCounts::of(&joined.draft);
+    let built = Mesh::build_on(joined.draft, joined.faces, &found.of_group);
+    built.map_err(in_terms_of_scene)
+}
+
 /// Tells where outer faces lie on one another, and joins what the scene wants joined. A mesh alone
 /// is looked at as it is.
 fn joined(
@@ -161,14 +168,15 @@ fn joined(
     faces: Faces,
     scene: Option<&Scene>,
     inspection: &mut Inspection,
-) -> Result<(Draft, Faces), Vec<Defect>> {
+) -> Result<JoinedDraft, Vec<Defect>> {
     doubled::tell(&faces.doubled_surfaces(&draft), scene.is_none(), inspection);
     match scene {
-        None => Ok((draft, faces.let_touch())),
-        Some(scene) => {
-            let joined = join(scene, draft, faces)?;
-            Ok((joined.draft, joined.faces))
-        }
+        None => Ok(JoinedDraft {
+            draft,
+            faces: faces.let_touch(),
+            decisions: Vec::new(),
+        }),
+        Some(scene) => join(scene, draft, faces),
     }
 }
 

@@ -104,7 +104,9 @@ pub(super) fn closest_setting(study: &Study, found: &Assessment, tolerance: f64)
     }
     match next(study, found, tolerance) {
         Some(next) => text + "\nnext: " + &next,
-        None => text + "\nnext: add finer meshes to [study] meshes, or smaller [study] tolerances",
+        None => {
+            text + "\nnext: add finer meshes to [study] meshes, smaller [study] tolerances or more [study] refinements"
+        }
     }
 }
 
@@ -125,7 +127,7 @@ pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
     format!(
         "the scene has no closed form for it, and without one errors need three meshes solved with the same \
          order, law, facet rule and solver (the study has {count}); add meshes to [study] meshes, \
-         or tolerances, or an [oracle.NAME]"
+         or tolerances or refinements, or an [oracle.NAME]"
     )
 }
 

@@ -14,9 +14,10 @@ use kluft_scene::refused_keys;
 const SIZES: [f64; 3] = [2.0, 1.4, 1.0];
 
 /// Keys of `[study]` that hold lists.
-const LISTS: [&str; 7] = [
+const LISTS: [&str; 8] = [
     "meshes",
     "tolerances",
+    "refinements",
     "orders",
     "quarter_points",
     "closures",
@@ -26,10 +27,13 @@ const LISTS: [&str; 7] = [
 
 /// Reads what `[study]` sweeps; `asked` is the same table as values.
 pub(super) fn read(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<SweepDimension> {
-    let meshes = match tolerances(section, scene) {
-        adaptive if adaptive.is_empty() => meshes(section, scene),
-        adaptive => adaptive,
-    };
+    let lists = [
+        refinements(section, scene),
+        tolerances(section, scene),
+        meshes(section, scene),
+    ];
+    let given = lists.into_iter().find(|list| !list.is_empty());
+    let meshes = given.unwrap_or_default();
     let orders = orders(section, scene);
     let fronts = fronts(section, &orders, scene);
     let mut dimensions = vec![
@@ -188,6 +192,37 @@ fn tolerances(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
         )
     };
     tolerances.into_iter().map(choice).collect()
+}
+
+/// The mesh of the scene with its cells divided again and again: nested meshes.
+fn refinements(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {
+    let times = section.numbers("refinements").unwrap_or_default();
+    if times.iter().any(|times| times.fract() != 0.0) {
+        let remedy = "write refinements = [0, 1, 2]";
+        let problem = "cells are divided a whole number of times".into();
+        section.refuse("refinements", problem, remedy);
+    }
+    for other in ["meshes", "tolerances"] {
+        if section.has("refinements") && section.has(other) {
+            let problem = format!("both `{other}` and `refinements` are given in [study]");
+            let remedy = "keep one: `refinements` divides the cells of the one mesh of the scene";
+            section.refuse("refinements", problem, remedy);
+        }
+    }
+    let own = scene.get("mesh").and_then(|mesh| mesh.get("refine"));
+    let own = own.and_then(Value::as_integer).unwrap_or(0) as f64;
+    let sizes = own_sizes(scene);
+    // Of a mesh whose cell size has no name, a share of it.
+    let size = sizes.first().map_or(1.0, |(_, size)| *size);
+    let choice = |times: f64| Choice {
+        number: Some(size / times.exp2()),
+        cost: 8.0_f64.powf(times - own),
+        ..Choice::new(
+            &format!("refine={times}"),
+            vec![Edit::set(&["mesh", "refine"], times as i64)],
+        )
+    };
+    times.into_iter().map(choice).collect()
 }
 
 fn orders(section: &Section<'_, '_>, scene: &Table) -> Vec<Choice> {

@@ -159,6 +159,29 @@ fn what_gmsh_cracked_gives_the_apertures_of_the_whole_mesh() {
 }
 
 #[test]
+fn a_cracked_mesh_is_refined_as_the_whole_one() {
+    let bench = Bench::cracked();
+    let joint = format!("[fracture.joint]\n{LAW}");
+    let solved = |name: &str, mesh: &str, fracture: &str| {
+        let mesh = format!("{mesh}\nrefine = 1");
+        let summary = bench.solved(name, &crack_scene(&mesh, fracture));
+        let decisions = summary["decisions"].to_string();
+        let divided = "each cell divided into 8, once: ";
+        assert!(decisions.contains(divided), "{decisions}");
+        summary
+    };
+    let whole = solved("whole", "file = \"whole.msh\"", &joint);
+    assert_eq!(whole["fractures"]["joint"]["facets"], 200);
+    let welded = solved("welded", "file = \"cracked.msh\"\nweld = true", &joint);
+    assert_eq!(welded["mesh"], whole["mesh"]);
+    assert_same(&measures(&welded, "joint"), &measures(&whole, "joint"));
+    let taken = format!("[fracture.crack]\nbetween = [\"rock\", \"rock\"]\n{LAW}");
+    let taken = solved("taken", "file = \"cracked.msh\"", &taken);
+    assert_eq!(taken["mesh"], whole["mesh"]);
+    assert_same(&measures(&taken, "crack"), &measures(&whole, "joint"));
+}
+
+#[test]
 fn what_gmsh_cracked_is_refused_without_a_word_in_the_scene() {
     let bench = Bench::cracked();
     let mesh = "file = \"cracked.msh\"";

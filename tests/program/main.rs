@@ -19,6 +19,7 @@ mod network_seeds;
 mod one_answer;
 mod pressed_joints;
 mod read_back;
+mod refine;
 mod renumbered;
 mod results;
 mod resume;

@@ -27,7 +27,7 @@ pub struct Basis {
 
 impl Basis {
     pub(crate) fn of(shape: Shape) -> Self {
-        let nodes = reference_nodes(shape);
+        let nodes = shape.reference_nodes();
         let monomials = monomials(shape);
         let count = nodes.len();
         assert_eq!(monomials.len(), count, "one monomial a node in a {shape:?}");
@@ -143,56 +143,3 @@ fn monomials(shape: Shape) -> Vec<Monomial> {
 
 /// `xy / (1 - z)` times 1, `x` and `y`.
 const BILINEAR: [Monomial; 3] = [[1, 1, 0, 1], [2, 1, 0, 1], [1, 2, 0, 1]];
-
-/// Reference coordinates of the nodes. Triangles and tetrahedra: unit corners; quadrangles and
-/// hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids: `[-1, 1]^2` below the
-/// apex at `z = 1`.
-pub(crate) fn reference_nodes(shape: Shape) -> Vec<DVec3> {
-    let mut nodes = reference_corners(shape);
-    let corners = nodes.clone();
-    let mut middle = |members: &[usize]| {
-        let sum: DVec3 = members.iter().map(|&corner| corners[corner]).sum();
-        nodes.push(sum / members.len() as f64);
-    };
-    if shape.is_quadratic() {
-        for &[a, b] in shape.edges() {
-            middle(&[a as usize, b as usize]);
-        }
-        match shape {
-            Shape::Quad9 => middle(&[0, 1, 2, 3]),
-            Shape::Pyramid14 => middle(&[0, 1, 2, 3]),
-            Shape::Prism18 => [[0, 1, 3, 4], [0, 2, 3, 5], [1, 2, 4, 5]]
-                .iter()
-                .for_each(|f| middle(f)),
-            Shape::Hex27 => {
-                let faces = [
-                    [0, 1, 2, 3],
-                    [0, 1, 4, 5],
-                    [0, 3, 4, 7],
-                    [1, 2, 5, 6],
-                    [2, 3, 6, 7],
-                    [4, 5, 6, 7],
-                ];
-                faces.iter().for_each(|face| middle(face));
-                middle(&[0, 1, 2, 3, 4, 5, 6, 7]);
-            }
-            _ => {}
-        }
-    }
-    nodes
-}
-
-fn reference_corners(shape: Shape) -> Vec<DVec3> {
-    let square = |z: f64| {
-        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z))
-    };
-    let triangle = |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z));
-    match shape.corner_count() {
-        3 => triangle(0.0).to_vec(),
-        4 if shape.dimension() == 2 => square(0.0).to_vec(),
-        4 => vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
-        5 => [square(0.0).as_slice(), &[DVec3::Z]].concat(),
-        6 => [triangle(-1.0), triangle(1.0)].concat(),
-        _ => [square(-1.0), square(1.0)].concat(),
-    }
-}

@@ -50,8 +50,9 @@ pub fn rule(shape: Shape) -> &'static ElementRule {
 
 #[cfg(test)]
 mod tests {
+    use kluft_mesh::{Draft, Elements};
+
     use super::*;
-    use crate::basis::reference_nodes;
 
     fn all() -> impl Iterator<Item = Shape> {
         Shape::CELLS.into_iter().chain(Shape::FACETS)
@@ -68,7 +69,7 @@ mod tests {
     #[test]
     fn shape_functions_are_one_at_their_node_and_zero_at_the_others() {
         for shape in all() {
-            for (node, at) in reference_nodes(shape).into_iter().enumerate() {
+            for (node, at) in shape.reference_nodes().into_iter().enumerate() {
                 for (other, value) in rule(shape).basis.values(at).into_iter().enumerate() {
                     let expected = f64::from(u8::from(node == other));
                     assert!((value - expected).abs() < 1e-13, "{shape:?} {node} {other}");
@@ -91,7 +92,7 @@ mod tests {
     #[test]
     fn shape_functions_reproduce_linear_fields() {
         for shape in all() {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             for at in inside(shape) {
                 let values = rule(shape).basis.values(at);
                 let sum: DVec3 = nodes.iter().zip(values).map(|(x, value)| *x * value).sum();
@@ -123,7 +124,7 @@ mod tests {
     #[test]
     fn traces_on_faces_are_the_shape_functions_of_the_facet() {
         for shape in Shape::CELLS {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             for face in shape.faces() {
                 for at in inside(face.shape) {
                     let of_facet = rule(face.shape).basis.values(at);
@@ -143,10 +144,52 @@ mod tests {
         }
     }
 
+    /// One cell, refined once: its nodes.
+    fn refined(shape: Shape, nodes: &[DVec3]) -> Vec<DVec3> {
+        let all: Vec<u32> = (0..nodes.len() as u32).collect();
+        let mut draft = Draft {
+            nodes: nodes.iter().map(DVec3::to_array).collect(),
+            node_tags: (1..=nodes.len() as u64).collect(),
+            group_sets: vec![Vec::new()],
+            ..Draft::default()
+        };
+        draft.cells.elements = Elements::new();
+        draft.cells.elements.push(shape, &all);
+        draft.cells.tags = vec![1];
+        draft.cells.group_set = vec![0];
+        draft.refine(1).expect("one cell");
+        draft.nodes.into_iter().map(DVec3::from).collect()
+    }
+
+    /// The nodes of a refined curved cell are where its shape functions have those of the refined
+    /// reference cell.
+    #[test]
+    fn refined_cells_lie_on_the_map_of_their_parent() {
+        let wave = |x: DVec3| {
+            let phase = x.dot(DVec3::new(7.0, 5.0, 3.0)) + 1.0;
+            0.05 * DVec3::new(phase.sin(), (2.0 * phase).cos(), (3.0 * phase).sin())
+        };
+        for shape in Shape::CELLS {
+            let reference = shape.reference_nodes();
+            let curved: Vec<DVec3> = reference.iter().map(|&x| x + wave(x)).collect();
+            let mapped = refined(shape, &reference).into_iter().map(|at| {
+                let values = rule(shape).basis.values(at);
+                values.iter().zip(&curved).map(|(v, x)| *v * *x).sum()
+            });
+            let mapped: Vec<DVec3> = mapped.collect();
+            let found = refined(shape, &curved);
+            assert_eq!(found.len(), mapped.len(), "{shape:?}");
+            for x in found {
+                let near = mapped.iter().any(|at| at.distance(x) < 1e-14 * 8.0);
+                assert!(near, "{shape:?}: {x}");
+            }
+        }
+    }
+
     #[test]
     fn faces_point_outwards() {
         for shape in Shape::CELLS {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             let middle: DVec3 = nodes.iter().sum::<DVec3>() / nodes.len() as f64;
             for face in shape.faces() {
                 let corners: Vec<DVec3> = face

@@ -191,12 +191,11 @@ fn gathered<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::reference_nodes;
 
     const AT_NODES: [FacetQuadrature; 2] = [FacetQuadrature::Nodal, FacetQuadrature::Control];
 
     fn weights_are(shape: Shape, quadrature: FacetQuadrature, expected: &[f64]) {
-        let points = facet_points(shape, &reference_nodes(shape), quadrature);
+        let points = facet_points(shape, &shape.reference_nodes(), quadrature);
         let whole: f64 = points.iter().map(|point| point.area.z).sum();
         assert_eq!(points.len(), expected.len());
         for (point, expected) in points.iter().zip(expected) {
@@ -249,7 +248,7 @@ mod tests {
     fn a_uniform_traction_reaches_the_nodes_exactly() {
         for shape in Shape::FACETS {
             let bend = |x: DVec3| x + 0.2 * DVec3::new(x.x * x.y, 0.5 * x.y * x.y, x.x * x.x - x.y);
-            let nodes: Vec<DVec3> = reference_nodes(shape).into_iter().map(bend).collect();
+            let nodes: Vec<DVec3> = shape.reference_nodes().into_iter().map(bend).collect();
             let exact = load_areas(shape, &nodes);
             for quadrature in AT_NODES {
                 let mut sums = vec![DVec3::ZERO; nodes.len()];
@@ -269,7 +268,7 @@ mod tests {
     #[test]
     fn a_linear_traction_reaches_the_nodes_exactly() {
         for shape in Shape::FACETS {
-            let nodes = reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             let moments = |quadrature: FacetQuadrature| {
                 let mut sums = vec![DVec3::ZERO; nodes.len()];
                 for point in facet_points(shape, &nodes, quadrature) {

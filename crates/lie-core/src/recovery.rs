@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn corner_functions_reproduce_places() {
         for shape in Shape::CELLS {
-            let nodes = crate::basis::reference_nodes(shape);
+            let nodes = shape.reference_nodes();
             for fine in &recovery_rule(shape).fine {
                 let terms = nodes.iter().zip(&fine.corners);
                 let place: DVec3 = terms.map(|(x, share)| *x * *share).sum();

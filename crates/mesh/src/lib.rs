@@ -1,7 +1,7 @@
 //! Shape and tags of a meshed, fractured body; no physics and no file formats.
 //!
-//! A [`Draft`] is what a file holds. [`Mesh::build`] checks it and answers either with every
-//! [`Defect`] at once or with a [`Mesh`], which promises:
+//! A [`Draft`] is what a file holds; it may be joined and refined. [`Mesh::build`] checks it and
+//! answers either with every [`Defect`] at once or with a [`Mesh`], which promises:
 //!
 //! - every cell has a positive volume, no two cells share more than a face;
 //! - no two outer faces lie on one another, unless [`Faces::let_touch`] says so: rock that touches
@@ -32,6 +32,7 @@ mod mesh;
 mod orient;
 mod pairing;
 mod quarter_points;
+mod refine;
 mod roles;
 mod sectors;
 mod shape;

@@ -1,4 +1,6 @@
-//! Shapes of cells and facets: how many nodes, and which of them span each face.
+//! Shapes of cells and facets: how many nodes, where they lie, and which of them span each face.
+
+use glam::DVec3;
 
 /// The shape of a cell or a facet, named after its family and number of nodes. Node order is
 /// gmsh's: corners first, then the middles of edges, of faces, of the cell.
@@ -120,6 +122,66 @@ impl Shape {
             5 => &PYRAMID_EDGES,
             6 => &PRISM_EDGES,
             _ => &HEXAHEDRON_EDGES,
+        }
+    }
+
+    /// The corners between which a node lies: itself, the ends of an edge, the corners of a face or
+    /// all of them.
+    pub(crate) fn members(self, local: usize) -> Vec<u8> {
+        let corners = self.corner_count();
+        if local < corners {
+            return vec![local as u8];
+        }
+        if let Some(edge) = self.edges().get(local - corners) {
+            return edge.to_vec();
+        }
+        let mut faces = self.faces().iter();
+        let face = faces.find(|face| face.nodes.contains(&(local as u8)));
+        face.map_or_else(
+            || (0..corners as u8).collect(),
+            |face| face.corners().to_vec(),
+        )
+    }
+
+    /// The second-order shape of the same family with all middles of edges, quadrangles and
+    /// hexahedra; its node order continues that of the others.
+    pub(crate) fn complete(self) -> Self {
+        match self {
+            Tri3 | Tri6 => Tri6,
+            Quad4 | Quad8 | Quad9 => Quad9,
+            Tet4 | Tet10 => Tet10,
+            Hex8 | Hex20 | Hex27 => Hex27,
+            Prism6 | Prism15 | Prism18 => Prism18,
+            Pyramid5 | Pyramid13 | Pyramid14 => Pyramid14,
+        }
+    }
+
+    /// Reference coordinates of the nodes. Triangles and tetrahedra: unit corners; quadrangles and
+    /// hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids: `[-1, 1]^2` below the
+    /// apex at `z = 1`. All other nodes lie in the middle of corners.
+    pub fn reference_nodes(self) -> Vec<DVec3> {
+        let corners = self.reference_corners();
+        let middle = |local: usize| {
+            let members = self.members(local);
+            let sum: DVec3 = members.iter().map(|&corner| corners[corner as usize]).sum();
+            sum / members.len() as f64
+        };
+        (0..self.node_count()).map(middle).collect()
+    }
+
+    fn reference_corners(self) -> Vec<DVec3> {
+        let square = |z: f64| {
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z))
+        };
+        let triangle =
+            |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z));
+        match self.corner_count() {
+            3 => triangle(0.0).to_vec(),
+            4 if self.dimension() == 2 => square(0.0).to_vec(),
+            4 => vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+            5 => [square(0.0).as_slice(), &[DVec3::Z]].concat(),
+            6 => [triangle(-1.0), triangle(1.0)].concat(),
+            _ => [square(-1.0), square(1.0)].concat(),
         }
     }
 

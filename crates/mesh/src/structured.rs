@@ -109,7 +109,7 @@ fn raise(draft: &mut Draft, shape: Shape) {
         let corners = linear.elements.nodes_of(cell);
         let nodes: Vec<u32> = (0..shape.node_count())
             .map(|local| {
-                let members = members(shape, local);
+                let members = shape.members(local);
                 let mut key: Vec<u32> = members.iter().map(|&m| corners[m as usize]).collect();
                 key.sort_unstable();
                 if let [corner] = key[..] {
@@ -137,27 +137,6 @@ fn middle_node(draft: &mut Draft, corners: &[u32]) -> u32 {
     let middle = [0, 1, 2].map(|axis| share * sum(axis));
     draft.nodes.push(middle);
     draft.nodes.len() as u32 - 1
-}
-
-/// The corners between which a node of a shape lies: itself, an edge, a face or all of them.
-fn members(shape: Shape, local: usize) -> Vec<u8> {
-    let corners = shape.corner_count();
-    if local < corners {
-        return vec![local as u8];
-    }
-    for face in shape.faces() {
-        let own = face.corners();
-        let place = face.nodes.iter().position(|&node| node as usize == local);
-        match place {
-            Some(place) if place < 2 * own.len() => {
-                let edge = place - own.len();
-                return vec![own[edge], own[(edge + 1) % own.len()]];
-            }
-            Some(_) => return own.to_vec(),
-            None => {}
-        }
-    }
-    (0..corners as u8).collect()
 }
 
 /// Gives each facet the nodes of the cell face it lies on.

@@ -42,26 +42,44 @@ pub fn inputs<'a>(file: &'a Path, scene: Option<&'a Scene>) -> Vec<&'a Path> {
 /// take that, others more.
 const LEAST_OF_CELL: usize = 400;
 
-/// Reads a mesh, unless it is certain that there is no memory for it; what gmsh has to convert goes
-/// through the folder `scratch`.
+/// Reads a mesh, unless it is certain that there is no memory for it as the scene refines it; what
+/// gmsh has to convert goes through the folder `scratch`.
 ///
 /// # Errors
 /// As [`load_msh`], and a mesh that is too large for this process.
-pub fn read_mesh(path: &Path, scratch: &Path, gmsh: &GmshOptions) -> Result<Draft, Vec<Defect>> {
+pub fn read_mesh(
+    path: &Path,
+    refine: u32,
+    scratch: &Path,
+    gmsh: &GmshOptions,
+) -> Result<Draft, Vec<Defect>> {
     let available = memory::available_bytes().unwrap_or(usize::MAX);
     // A file that is not there is refused by who reads it.
     let length = std::fs::metadata(path).map_or(0, |file| file.len() as usize);
-    check_memory(path, "to be read", length, available)?;
+    check_memory(&path.display().to_string(), "to be read", length, available)?;
     let draft = load_msh(path, scratch, gmsh)?;
-    let cells = draft.cells.elements.len();
-    let available = memory::available_bytes().unwrap_or(usize::MAX);
-    let what = format!("for its {cells} cells");
-    check_memory(path, &what, LEAST_OF_CELL * cells, available)?;
+    check_cells(&draft, refine)?;
     Ok(draft)
 }
 
+/// Refuses a mesh for whose cells, divided so many times, there is certainly no memory.
+///
+/// # Errors
+/// If there is none.
+pub fn check_cells(draft: &Draft, refine: u32) -> Result<(), Vec<Defect>> {
+    let available = memory::available_bytes().unwrap_or(usize::MAX);
+    let cells = draft.refined_cells(refine);
+    let needed = (LEAST_OF_CELL as u64).saturating_mul(cells);
+    let what = match refine {
+        0 => format!("for its {cells} cells"),
+        times => format!("for its {cells} cells with `refine = {times}`"),
+    };
+    let needed = usize::try_from(needed).unwrap_or(usize::MAX);
+    check_memory(&draft.source, &what, needed, available)
+}
+
 fn check_memory(
-    path: &Path,
+    place: &str,
     what: &str,
     needed: usize,
     available: usize,
@@ -74,12 +92,9 @@ fn check_memory(
         needed as f64 / 1e6,
         available as f64 / 1e6
     );
-    let remedy = "mesh coarser (a larger h), or raise the limit of memory (ulimit -v, container)";
-    Err(vec![Defect::new(
-        path.display().to_string(),
-        problem,
-        remedy,
-    )])
+    let remedy = "mesh coarser (a larger h), refine less often, or raise the limit of memory \
+                  (ulimit -v, container)";
+    Err(vec![Defect::new(place, problem, remedy)])
 }
 
 /// The mesh file of a scene; gmsh makes it if the scene names a geometry.
@@ -136,11 +151,22 @@ mod tests {
 
     #[test]
     fn a_mesh_without_room_is_refused_by_name() {
-        let path = Path::new("a/b.msh");
-        check_memory(path, "to be read", 5, 5).expect("it fits");
-        let defects = check_memory(path, "for its 9 cells", 3 << 30, 1 << 30).expect_err("large");
+        let place = "a/b.msh";
+        check_memory(place, "to be read", 5, 5).expect("it fits");
+        let defects = check_memory(place, "for its 9 cells", 3 << 30, 1 << 30).expect_err("large");
         let said = defects[0].to_string();
         for part in ["a/b.msh: ", "for its 9 cells", "may take 1", "coarser"] {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+    }
+
+    #[test]
+    fn what_refinement_makes_of_a_mesh_counts() {
+        let draft = kluft_mesh::structured::tetrahedra([2, 1, 1], [1.0; 3], &[]);
+        check_cells(&draft, 2).expect("768 cells");
+        let defects = check_cells(&draft, 15).expect_err("8^15 times 12 cells");
+        let said = defects[0].to_string();
+        for part in ["422212465065984 cells", "`refine = 15`", "refine less"] {
             assert!(said.contains(part), "{part}: {said}");
         }
     }

@@ -181,12 +181,16 @@ impl<'a> Run<'a> {
     ) -> Result<Draft, Vec<Defect>> {
         let Some(file) = file else {
             return match std::mem::replace(&mut self.request.mesh, MeshInput::OfScene) {
-                MeshInput::Draft(draft) => Ok(*draft),
+                MeshInput::Draft(draft) => {
+                    prepare::check_cells(&draft, self.request.scene.refine)?;
+                    Ok(*draft)
+                }
                 MeshInput::OfScene => Err(Vec::new()),
             };
         };
         let scratch = self.output.unfinished("");
-        let draft = prepare::read_mesh(&file.path, &scratch, &self.request.gmsh)?;
+        let scene = self.request.scene;
+        let draft = prepare::read_mesh(&file.path, scene.refine, &scratch, &self.request.gmsh)?;
         let fingerprint = fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {

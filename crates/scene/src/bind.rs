@@ -10,6 +10,7 @@ use crate::conditions::{FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
+use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
@@ -33,16 +34,18 @@ impl Scene {
     /// Every defect of the mesh, and everything in the scene that does not fit it.
     pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let faces = Faces::of(&draft);
-        let JoinedDraft {
-            draft,
-            faces,
-            mut decisions,
-        } = join(self, draft, faces)?;
+        let joined = join(self, draft, faces)?;
+        let inner = joined.faces.inner_surfaces(&joined.draft);
         let Roles {
             of_group,
             decisions: unused,
             mut warnings,
-        } = roles(self, &draft, &faces.inner_surfaces(&draft))?;
+        } = roles(self, &joined.draft, &inner)?;
+        let JoinedDraft {
+            draft,
+            faces,
+            mut decisions,
+        } = refine(self, joined, &of_group).map_err(in_terms_of_scene)?;
         decisions.extend(unused);
         let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
         let mut binding = bind(self, mesh)?;

@@ -106,7 +106,11 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         .as_ref()
         .and_then(|section| section.flag("quarter_points"));
     let weld = section.as_ref().and_then(|section| section.flag("weld"));
-    let mesh = section.and_then(|section| read_mesh(section, folder));
+    let refine = section
+        .as_ref()
+        .and_then(|section| section.number("refine"));
+    let refine = refine.map_or(0, |times| times as u32);
+    let mesh = section.and_then(|section| read_mesh(section, folder, refine));
     root.require("rock");
     let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
     let rocks = rocks.collect();
@@ -146,6 +150,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fixed_points,
         quarter_points: quarter_points.unwrap_or(true),
         weld: weld.unwrap_or(false),
+        refine,
         mesh: mesh?,
         // After everything has been read.
         warnings: source.take_warnings(),
@@ -164,7 +169,7 @@ fn entry<'a, 'i, T>(
     value.map(|value| Named { name, place, value })
 }
 
-fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
+fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<MeshSource> {
     let geometry = read_path(&section, "geometry", folder);
     let file = read_path(&section, "file", folder);
     let parameters = section.free_numbers("parameters");
@@ -177,6 +182,9 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
         );
     }
     let adapt = section.section("adapt").and_then(read_adapt);
+    if adapt.is_some() && refine > 0 {
+        refuse_both(&section);
+    }
     let mesh = match (geometry, file) {
         (Some(geometry), None) => Some(MeshSource::Geometry {
             geometry,
@@ -215,6 +223,15 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path) -> Option<MeshSource> {
     };
     section.finish();
     mesh
+}
+
+/// Refuses to refine what follows the error.
+fn refuse_both(section: &Section<'_, '_>) {
+    let problem = "`refine` and `adapt` are both given: the sizes that `adapt` asks gmsh for are \
+                   those of the cells that the error was estimated on, and `refine` would divide \
+                   them again";
+    let remedy = "keep one of them: `adapt` chooses sizes by the error, `refine` divides all cells";
+    section.refuse("refine", problem.into(), remedy);
 }
 
 fn read_adapt(section: Section<'_, '_>) -> Option<Adapt> {

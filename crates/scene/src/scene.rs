@@ -74,6 +74,8 @@ pub struct Scene {
     pub quarter_points: bool,
     /// Whether nodes at one place become one node.
     pub weld: bool,
+    /// How many times each cell is divided into eight.
+    pub refine: u32,
     /// Rocks by physical volume.
     pub rocks: Vec<Named<Rock>>,
     /// Fractures by physical surface.

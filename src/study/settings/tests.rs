@@ -112,6 +112,28 @@ fn tolerances_are_meshes() {
 }
 
 #[test]
+fn refinements_are_nested_meshes() {
+    let plan = plan("[study]\nrefinements = [2, 0, 1]\norders = [1, 2]\n");
+    assert_eq!(plan.settings.len(), 6);
+    let dimension = &plan.dimensions[0];
+    assert_eq!(dimension.kind, SweepKind::Mesh);
+    let of_choices: Vec<_> = dimension
+        .choices
+        .iter()
+        .map(|choice| (choice.label.as_str(), choice.number, choice.cost))
+        .collect();
+    let expected = [
+        ("refine=2", Some(0.025), 64.0),
+        ("refine=0", Some(0.1), 1.0),
+        ("refine=1", Some(0.05), 8.0),
+    ];
+    assert_eq!(of_choices, expected);
+    let scene = scene(&plan, "refine=2, order 1");
+    assert_eq!(scene["mesh"]["refine"].as_integer(), Some(2));
+    assert_eq!(scene["mesh"]["parameters"]["h"].as_float(), Some(0.1));
+}
+
+#[test]
 fn closures_by_name_drop_the_keys_that_they_refuse() {
     let plan = plan(
         "[study]\nclosures = ['contact', 'hyperbolic', { label = 'cut', closure = 'logarithmic', cutoff_aperture = 1e-5 }]\n",
@@ -194,6 +216,13 @@ fn slips_are_found_before_anything_is_run() {
             "[study]\nmeshes = [{ h = 1 }]\ntolerances = [0.1]",
             "keep one",
         ),
+        ("[study]\nrefinements = [6]", "from 0 to 5"),
+        ("[study]\nrefinements = [0.5]", "whole number"),
+        ("[study]\nrefinements = []", "empty"),
+        (
+            "[study]\nmeshes = [{ h = 1 }]\nrefinements = [1]",
+            "keep one",
+        ),
         ("[study]\nquarter_points = [true]", "orders = [2]"),
         ("[study]\norders = [2]\nquarter_points = [1]", "true"),
         ("[study]\norders = [2]\nquarter_points = []", "empty"),
@@ -253,6 +282,8 @@ fn a_scene_of_a_mesh_file_has_no_meshes_to_sweep() {
         let defects = read(&format!("[study]\n{study}\n")).expect_err(study);
         assert!(defects[0].problem.contains("mesh file"), "{defects:?}");
     }
+    let refined = read("[study]\nrefinements = [0, 1]\n").expect("a plan");
+    assert_eq!(refined.dimensions[0].choices[1].number, Some(0.5));
     assert_eq!(
         read("[study]\nclosures = ['linear', 'contact']\n")
             .expect("a plan")

@@ -52,6 +52,13 @@ pub static MESH: KeySection = KeySection {
             says: "Whether nodes at one place become one node; without it rock that touches without sharing nodes is refused",
         },
         Key {
+            name: "refine",
+            kind: Kind::Whole(Range::Within(0.0, 5.0)),
+            need: Need::Default("0"),
+            example: "2",
+            says: "How many times each cell is divided into eight, fractures and groups with it; not with `adapt`",
+        },
+        Key {
             name: "adapt",
             kind: Kind::Table(&ADAPT),
             need: Need::Without("one mesh, as the geometry says"),

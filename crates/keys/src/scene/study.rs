@@ -27,6 +27,13 @@ pub static STUDY: KeySection = KeySection {
             says: "Tolerances of meshes that follow the estimated error, instead of `meshes`",
         },
         Key {
+            name: "refinements",
+            kind: Kind::Numbers(quantity(Dimension::One, Range::Within(0.0, 5.0))),
+            need: AS_THE_SCENE,
+            example: "[0, 1, 2]",
+            says: "How many times the cells of the one mesh of the scene are divided, instead of `meshes`",
+        },
+        Key {
             name: "orders",
             kind: Kind::Numbers(quantity(Dimension::One, Range::Within(1.0, 2.0))),
             need: AS_THE_SCENE,

@@ -59,6 +59,34 @@ fn edited(edits: &[(&str, &str)]) -> Result<Scene, Vec<Defect>> {
 }
 
 #[test]
+fn refinement_is_a_small_number_and_no_friend_of_adaptive_meshes() {
+    let plain = ("weld = true\nrefine = 0", "refine = 2");
+    let fixed = (
+        "adapt = { tolerance = 0.05, max_unknowns = 1e5, max_rounds = 3 }",
+        "",
+    );
+    assert_eq!(edited(&[plain, fixed]).expect("a scene").refine, 2);
+    let said = |edits: &[(&str, &str)]| {
+        let defects = edited(edits).expect_err("refused");
+        assert_eq!(defects.len(), 1, "{defects:?}");
+        defects[0].to_string()
+    };
+    let both = said(&[plain]);
+    for part in ["`refine` and `adapt`", "divide them again", "keep one"] {
+        assert!(both.contains(part), "{both}");
+    }
+    for (value, part) in [
+        ("6", "from 0 to 5"),
+        ("0.5", "whole number"),
+        ("-1", "from 0"),
+    ] {
+        let wrong = format!("refine = {value}");
+        let said = said(&[("refine = 0", &wrong), fixed]);
+        assert!(said.contains(part), "{said}");
+    }
+}
+
+#[test]
 fn a_scene_with_units_is_the_scene_in_si_units() {
     let with_units = edited(&[
         ("young_modulus = 50e9", "young_modulus = \"50 GPa\""),
@@ -150,20 +178,20 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
     let warnings = scene.expect("a scene").warnings;
     for (warning, says) in warnings.iter().zip([
         [
-            "scene.toml:13: `young_modulus` = 50 in [rock.default]",
+            "scene.toml:14: `young_modulus` = 50 in [rock.default]",
             "50 GPa = 5e10 Pa",
         ],
-        ["scene.toml:15: `density` = 2.7", "2.7 g/cm3 = 2700 kg/m3"],
+        ["scene.toml:16: `density` = 2.7", "2.7 g/cm3 = 2700 kg/m3"],
         [
-            "scene.toml:23: `aperture` = 0.2 in [fracture.default]",
+            "scene.toml:24: `aperture` = 0.2 in [fracture.default]",
             "0.2 mm",
         ],
         [
-            "scene.toml:28: `aperture` = 0.2 in [fracture.joint]",
+            "scene.toml:29: `aperture` = 0.2 in [fracture.joint]",
             "0.2 mm",
         ],
         [
-            "scene.toml:58: `gravity` = 981 in [body]",
+            "scene.toml:59: `gravity` = 981 in [body]",
             "981 cm/s2 = 9.81 m/s2",
         ],
     ]) {
