@@ -18,6 +18,7 @@
 //! | `system` | numbering ([`Discretisation`]), the discrete problem ([`System`]), its [`State`] |
 //! | `linear` | solvers for the tangent on top of [`kluft_algebra`], their cost and choice |
 //! | `newton` | load steps: guess, iteration, tests, division of a step |
+//! | `flow` | pressures in the fractures: numbering, conductance, networks, steady flow |
 //! | `estimate` | errors of stresses and of mean jumps, sizes of cells that would mend them |
 //!
 //! `solution` derives fields from a state, `memory` counts what a run keeps beside its linear
@@ -28,6 +29,7 @@
 
 mod assembly;
 mod estimate;
+mod flow;
 mod linear;
 mod memory;
 mod newton;
@@ -40,6 +42,9 @@ pub use assembly::facet_point::FacetPoint;
 pub use assembly::interface::Interface;
 pub use assembly::loads::{CaseLoads, Loads};
 pub use estimate::{Estimator, MeanError, StressError, target_sizes};
+pub use flow::{
+    ConditionFlow, FlowBalance, FlowFields, FlowNetwork, FlowState, FlowSystem, NO_PRESSURE,
+};
 pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
 pub use linear::{
     Condensed, Direct, ExtraMemory, Iterative, LinearMethod, LinearSolution, NonsymmetricSolver,
@@ -50,8 +55,8 @@ pub use newton::{
     determinacy, unobserved,
 };
 pub use problem::{
-    Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,
-    Support, SurfaceLoad,
+    Cases, Condition, Conduit, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
+    Fracture, InitialStress, Load, Problem, Profile, Schedule, Step, Support, SurfaceLoad,
 };
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use space::pattern::{CellOfSlot, Pattern};
