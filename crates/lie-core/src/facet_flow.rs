@@ -1,8 +1,8 @@
 //! Flow along one facet: what a pressure at its corners drives through them.
 //!
-//! Pressure is linear on triangles and bilinear on quadrangles, on facets of second order too: their
-//! corners carry it, and the straight lines between them. With the shape functions `N_i` of the
-//! corners and gradients along the facet,
+//! Pressure is linear on triangles and bilinear on quadrangles, on facets of second order too, of
+//! which the corners carry it, and the straight lines between them. With the shape functions `N_i`
+//! of the corners and gradients along the facet,
 //!
 //! ```text
 //! k_ij = int grad N_i . grad N_j dA,    Q_i = T sum_j k_ij (phi_j - phi_i)

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::checkpoint;
+use crate::flow::SOURCES;
 
 /// The files that the collections, the summary and the report of an inspection name, and these
 /// themselves. What nothing names is not ours.
@@ -30,6 +31,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
             .is_some_and(|seconds| seconds > 0.0)
         {
             names.push("mesh.msh".into());
+        }
+        if summary["flow"].is_object() {
+            names.push(SOURCES.into());
         }
         if summary["meshes"]
             .as_array()

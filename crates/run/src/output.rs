@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use tempfile::TempDir;
 
 use crate::checkpoint::{self, StepFiles};
+use crate::flow::SOURCES;
 use crate::former;
 
 /// The collections of the grids of all load steps.
@@ -211,7 +212,9 @@ impl Output {
             return Ok(());
         };
         let mut names: Vec<&String> = folder.own().iter().collect();
-        names.retain(|name| *name == checkpoint::NAME || former::is_step(name));
+        names.retain(|name| {
+            [checkpoint::NAME, SOURCES].contains(&name.as_str()) || former::is_step(name)
+        });
         // The checkpoint first, so that none ever continues steps that are gone, then the
         // collections, so that none ever lists a grid that is gone.
         names.sort_by_key(|name| (*name != checkpoint::NAME, !name.ends_with(".pvd")));

@@ -159,11 +159,11 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
             "0.2 mm",
         ],
         [
-            "scene.toml:28: `aperture` = 0.2 in [fracture.joint]",
+            "scene.toml:29: `aperture` = 0.2 in [fracture.joint]",
             "0.2 mm",
         ],
         [
-            "scene.toml:58: `gravity` = 981 in [body]",
+            "scene.toml:63: `gravity` = 981 in [body]",
             "981 cm/s2 = 9.81 m/s2",
         ],
     ]) {

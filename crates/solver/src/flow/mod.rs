@@ -19,6 +19,7 @@
 //! | `networks` | what hangs together hydraulically, and what has no steady state |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
+//! | `walls` | the push of the fluid on the walls of fractures |
 //! | `fields` | pressure, hydraulic aperture and flux for results |
 
 mod balance;
@@ -30,6 +31,7 @@ mod nodal;
 mod numbering;
 mod solve;
 mod steady;
+mod walls;
 mod wells;
 
 pub use balance::{ConditionFlow, FlowBalance};

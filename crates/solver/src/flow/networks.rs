@@ -15,9 +15,6 @@ const GIVE_PRESSURE: &str = "give a pressure somewhere on these fractures, or se
 /// Rates that add up to less than this share of their sizes cancel.
 const CANCELLING: f64 = 1e-12;
 
-/// Names of fractures that a message lists at most.
-const LISTED: usize = 8;
-
 /// Conducting fractures between which fluid can pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlowNetwork {
@@ -169,16 +166,11 @@ fn rates_into(
 }
 
 fn defect(names: &[&str], problem: String) -> Defect {
-    let shown = names[..names.len().min(LISTED)].join("`, `");
-    let more = match names.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
     let word = if names.len() == 1 {
         "fracture"
     } else {
         "fractures"
     };
-    let place = format!("{word} `{shown}`{more}");
+    let place = format!("{word} `{}`", names.join("`, `"));
     Defect::new(place, problem, GIVE_PRESSURE).with_code(NO_PRESSURE)
 }

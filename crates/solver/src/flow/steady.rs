@@ -29,11 +29,11 @@ pub struct FlowSystem<'a> {
 
 impl<'a> FlowSystem<'a> {
     /// The flow in fractures of these apertures (m), one for each entry of the flat node list of
-    /// the facets of the mesh.
+    /// the facets of the mesh. It has a solution if [`Self::undriven`] names nothing.
     ///
     /// # Errors
-    /// Fractures that conduct nothing, conditions that meet no fracture or contradict each other,
-    /// and networks without a pressure.
+    /// Fractures that conduct nothing, and conditions that meet no fracture or contradict each
+    /// other.
     pub fn of(mesh: &'a Mesh, flow: &'a Flow, apertures: &[f64]) -> Result<Self, Vec<Defect>> {
         let nodes = FlowNodes::of(mesh, flow);
         let conductance = Conductance::of(mesh, flow, &nodes, apertures);
@@ -43,11 +43,6 @@ impl<'a> FlowSystem<'a> {
         }
         let conditions = nodal::conditions(mesh, flow, &nodes, &conductance)?;
         let (networks, network_of_row) = networks::find(mesh, &nodes, &conditions);
-        let defects =
-            networks::without_pressure(mesh, flow, &networks, &conditions, &network_of_row);
-        if !defects.is_empty() {
-            return Err(defects);
-        }
         let mut is_given = vec![false; nodes.len()];
         for entry in &conditions {
             if let Nodal::Given(rows) = &entry.nodal {
@@ -66,6 +61,17 @@ impl<'a> FlowSystem<'a> {
             network_of_row,
             factor: None,
         })
+    }
+
+    /// Networks whose pressure nothing determines, each with its fractures.
+    pub fn undriven(&self) -> Vec<Defect> {
+        networks::without_pressure(
+            self.mesh,
+            self.flow,
+            &self.networks,
+            &self.conditions,
+            &self.network_of_row,
+        )
     }
 
     /// Factorises the matrix, once for all loads.
