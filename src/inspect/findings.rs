@@ -7,6 +7,7 @@ use glam::DVec3;
 use kluft_mesh::{Defect, Draft};
 use serde::Serialize;
 
+use kluft_run::Hydraulics;
 use kluft_scene::Scene;
 
 /// A position (m).
@@ -35,6 +36,9 @@ pub struct Inspection {
     pub unresolved_patches: Vec<PatchFinding>,
     /// Parts of the rock that fractures cut apart.
     pub blocks: Vec<BlockFinding>,
+    /// Which fractures fluid can pass between, if there is a fluid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hydraulics: Option<Hydraulics>,
     /// Quality of the cells.
     pub cells: Option<CellFindings>,
     /// Unknowns.

@@ -6,6 +6,7 @@ mod findings;
 mod gather;
 mod grid;
 mod groups;
+mod hydraulics;
 mod text;
 mod walls;
 
@@ -22,8 +23,10 @@ use crate::input::{expect_scene, is_mesh};
 use crate::printing;
 use crate::stdout::print;
 use crate::threads::{pool, thread_count};
-use kluft_run::{MESH, Output, folder_for, inputs, mesh_file, read_mesh};
-use kluft_scene::{JoinedDraft, MeshSource, Scene, bind, in_terms_of_scene, join, refine, roles};
+use kluft_run::{MESH, Output, RunFlow, folder_for, inputs, mesh_file, read_mesh};
+use kluft_scene::{
+    Binding, JoinedDraft, MeshSource, Scene, bind, in_terms_of_scene, join, refine, roles,
+};
 
 use findings::{Inspection, MeshCounts};
 
@@ -128,8 +131,11 @@ fn look(
     };
     match bind(scene, mesh) {
         Ok(binding) => {
+            defects.extend(connect(&binding, inspection));
+            if !scene.is_rigid() {
+                defects.extend(weigh(&binding.problem, &survey, inspection));
+            }
             inspection.warnings.extend(binding.warnings);
-            defects.extend(weigh(&binding.problem, &survey, inspection));
         }
         Err(found) => defects.extend(found),
     }
@@ -191,6 +197,20 @@ fn weigh(problem: &Problem, survey: &Survey, inspection: &mut Inspection) -> Vec
     let workload = Workload::of(problem);
     cost::predict(&problem.mesh, discretisation.as_ref(), workload, inspection);
     defects
+}
+
+/// Tells which fractures fluid can pass between, and what drives it there.
+fn connect(binding: &Binding, inspection: &mut Inspection) -> Vec<Defect> {
+    let Some(flow) = &binding.flow else {
+        return Vec::new();
+    };
+    match RunFlow::of(&binding.problem, flow) {
+        Ok(made) => {
+            inspection.hydraulics = Some(made.hydraulics());
+            in_terms_of_scene(made.system().undriven())
+        }
+        Err(defects) => in_terms_of_scene(defects),
+    }
 }
 
 /// Prints the report and keeps it as `inspect.json`.

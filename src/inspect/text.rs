@@ -9,6 +9,7 @@ use super::findings::{
     BlockFinding, CellFinding, FractureFinding, GroupFinding, Inspection, Place, SectorCounts,
     SolverFinding,
 };
+use super::hydraulics;
 
 /// Lists longer than this are cut; `--json` has all of them.
 const SHOWN: usize = 12;
@@ -30,6 +31,10 @@ pub fn of(inspection: &Inspection) -> String {
     contacts(out, inspection);
     patches(out, inspection);
     blocks(out, inspection);
+    if let Some(found) = &inspection.hydraulics {
+        head_line(out, &hydraulics::head(found));
+        list(out, &hydraulics::networks(found), String::clone);
+    }
     cells(out, inspection);
     unknowns(out, inspection);
     for solver in &inspection.solvers {

@@ -167,7 +167,7 @@ fn read_description(
     overrides: &Overrides,
     defects: &mut Vec<Defect>,
 ) -> Option<Input> {
-    let clock = check_conditions(source, root);
+    let setting = check_conditions(source, root);
     let domain = read_domain(root, overrides.domain);
     let sizes = read_sizes(root, overrides);
     let seed = read_seed(root).unwrap_or(0);
@@ -175,7 +175,7 @@ fn read_description(
     let mut sets = Vec::new();
     let mut given = Vec::new();
     for (name, section) in root.named_sections("fracture_set") {
-        let read = read_set((source, clock), section, name, folder, seed, domain);
+        let read = read_set((source, setting), section, name, folder, seed, domain);
         match read {
             Ok(Some((set, mut fractures))) => {
                 sets.push(set);

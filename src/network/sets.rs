@@ -11,7 +11,7 @@ use kluft_network::{
 use super::keys::{read_orientation, read_seed, read_sides, read_text};
 use super::passages::{Passage, passage};
 use kluft_scene::reader::{Section, Source};
-use kluft_scene::{Clock, read_fracture};
+use kluft_scene::{Setting, read_fracture};
 
 /// A set of fractures.
 pub(super) struct Set {
@@ -37,7 +37,7 @@ type SetAndFractures = Option<(Set, Vec<InputFracture>)>;
 
 /// Reads a set and draws its fractures; defects of the list it names are the error.
 pub(super) fn read_set(
-    (source, clock): (&Source<'_>, Clock),
+    (source, setting): (&Source<'_>, Setting),
     section: Section<'_, '_>,
     name: String,
     folder: &Path,
@@ -47,7 +47,7 @@ pub(super) fn read_set(
     if let Err((problem, remedy)) = check_name(&name) {
         source.report(&section.at, problem, remedy);
     }
-    read_fracture(&section, clock);
+    read_fracture(&section, setting);
     let list = section.text("list").map(|list| folder.join(list));
     let is_random = ["p32", "count", "orientation", "size"]
         .into_iter()

@@ -6,6 +6,7 @@ mod book;
 mod doubled;
 mod doubts;
 mod examples;
+mod flow;
 mod harness;
 mod history;
 mod inspect;

@@ -12,7 +12,7 @@
 //! | `lists`, `ownership`, `vectors`, `small`, `dense_kernels` | compressed rows, who owns which rows, sums over vectors, small dense blocks, dense kernels on threads of their own |
 //! | `block_matrix`, `block_rows`, `interface` | a block matrix, its view row by row, and what an interface adds to it |
 //! | `conjugate_gradients`, `gmres` | iterations, with any preconditioner |
-//! | `cholesky/`, `schur` | nested dissection, symbolic analysis, factor, substitution; the dense problem that is left of it |
+//! | `cholesky/`, `schur` | nested dissection, symbolic analysis, factor, substitution, of blocks and of scalars; the dense problem that is left of it |
 //! | `multigrid/` | smoothed aggregation, a preconditioner |
 //!
 //! # Example
@@ -79,7 +79,7 @@ mod vectors;
 
 pub use block_matrix::{BlockMatrix, BlockPattern};
 pub use block_rows::BlockRows;
-pub use cholesky::{Analysis, Cholesky, NodeOrder};
+pub use cholesky::{Analysis, Cholesky, NodeOrder, ScalarCholesky, ScalarMatrix};
 pub use conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
     conjugate_gradients,

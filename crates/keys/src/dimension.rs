@@ -17,6 +17,10 @@ pub enum Dimension {
     Density,
     /// Metres per second squared.
     Acceleration,
+    /// Pascal seconds.
+    Viscosity,
+    /// Cubic metres per second.
+    VolumeRate,
     /// Area per volume, 1/m.
     PerLength,
     /// Degrees.
@@ -34,7 +38,7 @@ pub(crate) type Exponents = [i32; 3];
 
 impl Dimension {
     /// All that a unit can have.
-    pub(crate) const WITH_UNITS: [Self; 10] = [
+    pub(crate) const WITH_UNITS: [Self; 12] = [
         Self::One,
         Self::Length,
         Self::Stress,
@@ -42,6 +46,8 @@ impl Dimension {
         Self::EnergyPerArea,
         Self::Density,
         Self::Acceleration,
+        Self::Viscosity,
+        Self::VolumeRate,
         Self::PerLength,
         Self::Angle,
         Self::Memory,
@@ -57,6 +63,8 @@ impl Dimension {
             Self::EnergyPerArea => "an energy per area",
             Self::Density => "a density",
             Self::Acceleration => "an acceleration",
+            Self::Viscosity => "a viscosity",
+            Self::VolumeRate => "a rate of volume",
             Self::PerLength => "an area per volume",
             Self::Angle => "an angle",
             Self::Memory => "an amount of memory",
@@ -75,6 +83,8 @@ impl Dimension {
             Self::EnergyPerArea => "J/m2",
             Self::Density => "kg/m3",
             Self::Acceleration => "m/s2",
+            Self::Viscosity => "Pa s",
+            Self::VolumeRate => "m3/s",
             Self::PerLength => "1/m",
             Self::Angle => "degrees",
             Self::Memory => "bytes",
@@ -93,6 +103,8 @@ impl Dimension {
             Self::EnergyPerArea => &["J/m2", "kJ/m2", "N/m"],
             Self::Density => &["kg/m3", "g/cm3", "t/m3"],
             Self::Acceleration => &["m/s2", "cm/s2"],
+            Self::Viscosity => &["Pa s", "mPa s"],
+            Self::VolumeRate => &["m3/s", "dm3/s", "cm3/s"],
             Self::PerLength => &["1/m", "m2/m3", "1/km"],
             Self::Angle => &["degrees", "deg", "rad"],
             Self::Memory => &["B", "kB", "MB", "GB", "TB", "MiB", "GiB"],
@@ -109,6 +121,8 @@ impl Dimension {
             Self::EnergyPerArea => Some([0, 1, -2]),
             Self::Density => Some([-3, 1, 0]),
             Self::Acceleration => Some([1, 0, -2]),
+            Self::Viscosity => Some([-1, 1, -1]),
+            Self::VolumeRate => Some([3, 0, -1]),
             Self::PerLength => Some([-1, 0, 0]),
             Self::One | Self::Angle | Self::Memory | Self::Time | Self::OfKey => None,
         }

@@ -2,17 +2,20 @@
 
 mod closure;
 mod conditions;
+mod fluid;
 mod fracture;
 mod load;
 mod mesh;
 mod oracle;
 mod rock;
+mod shared;
 mod solver;
 mod study;
 mod warnings;
 
 pub use closure::{ClosureLaw, LAWS};
 pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
+pub use fluid::{FLUID, FLUID_PROFILE, SOURCE};
 pub use fracture::{CLOSURES, FRACTURE};
 pub use load::{LOAD, PHASE};
 pub use mesh::{ADAPT, MESH};
@@ -38,7 +41,7 @@ pub static ROOT: KeySection = KeySection {
             says: "Where the mesh comes from",
         },
         Key {
-            need: Need::Required,
+            need: Need::Unless("there is `[fluid]`, and the rock is rigid"),
             ..ROCKS
         },
         Key {
@@ -51,6 +54,20 @@ pub static ROOT: KeySection = KeySection {
         BOUNDARIES,
         FIXED_POINTS,
         BODIES,
+        Key {
+            name: "fluid",
+            kind: Kind::Table(&FLUID),
+            need: Need::Without("nothing flows"),
+            example: "[fluid]",
+            says: "A fluid that flows in the fractures",
+        },
+        Key {
+            name: "source",
+            kind: Kind::Listed(&SOURCE),
+            need: Need::Without("none"),
+            example: "[[source]]",
+            says: "Boreholes",
+        },
         INITIAL_STRESSES,
         LOADS,
         SOLVING,

@@ -169,7 +169,7 @@ fn slips_are_refused() {
         ("young_modulus = 50e9", "young_modulus = -1"),
         ("young_modulus = 50e9", "young_modulus = \"much\""),
         ("young_modulus = 50e9", "young_modulus = \"50e9\""),
-        ("young_modulus = 50e9", ""),
+        ("viscosity = 1e-3", ""),
         ("poisson_ratio = 0.25", "poisson_ratio = 0.5"),
         ("order = 1", "order = 3"),
         ("order = 1", "order = 1.5"),

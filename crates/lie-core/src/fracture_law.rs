@@ -1,6 +1,6 @@
 //! Closure, shear and friction of a fracture together.
 
-use crate::closure::{Closure, Tension};
+use crate::closure::{Closure, ClosureKind, Tension};
 
 /// Coulomb friction: the shear traction is at most `c - tan(phi) sigma_n`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,14 @@ impl FractureLaw {
             shear_stiffness,
             friction: None,
         }
+    }
+
+    /// A fracture whose walls never move from their aperture (m): their stiffness is infinite.
+    pub fn rigid(aperture: f64) -> Self {
+        Self::elastic(
+            Closure::new(aperture, f64::INFINITY, ClosureKind::Linear),
+            f64::INFINITY,
+        )
     }
 
     /// Whether traction is proportional to the jump.

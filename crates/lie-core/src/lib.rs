@@ -12,6 +12,7 @@
 //! | opening `w_n` | `w . n` (m), positive when the walls part |
 //! | slip `w_s` | `w - w_n n` (m) |
 //! | aperture `b` | `b0 + w_n` (m) |
+//! | fluid pressure `p` | compression positive (Pa) |
 //!
 //! # The closure law
 //!
@@ -29,6 +30,8 @@ mod closure;
 mod element;
 pub mod enrichment;
 mod facet;
+mod facet_flow;
+mod flow;
 mod fracture_law;
 mod joint_state;
 pub mod kernel;
@@ -48,6 +51,8 @@ pub use closure::{
 };
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};
+pub use facet_flow::FacetFlow;
+pub use flow::{Conduction, HydraulicAperture, Roughness};
 pub use fracture_law::{FractureLaw, Friction};
 pub use joint_state::{JointHistory, JointState, TrialState};
 pub use recovery::{FinePoint, RecoveryRule, recovery_rule};

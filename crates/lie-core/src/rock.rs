@@ -17,6 +17,20 @@ pub struct Rock {
 }
 
 impl Rock {
+    /// Rock that nothing deforms: its stiffness is infinite. Elements take none of it.
+    pub fn rigid(density: f64) -> Self {
+        Self {
+            young_modulus: f64::INFINITY,
+            poisson_ratio: 0.0,
+            density,
+        }
+    }
+
+    /// Whether nothing deforms it.
+    pub fn is_rigid(&self) -> bool {
+        self.young_modulus == f64::INFINITY
+    }
+
     /// Lamé's constants `(lambda, mu)` (Pa).
     pub fn lame(&self) -> (f64, f64) {
         let (e, nu) = (self.young_modulus, self.poisson_ratio);

@@ -32,8 +32,9 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
     let mut aim = adapt.tolerance;
     for number in 1..=adapt.max_rounds {
         let start = std::time::Instant::now();
-        let problem = run.prepare(None)?;
-        let (unknowns, accuracy) = run.trial(&problem)?;
+        let binding = run.prepare(None)?;
+        let (unknowns, accuracy) = run.trial(&binding)?;
+        let problem = &binding.problem;
         let error = accuracy.to_meet();
         let seconds = start.elapsed().as_secs_f64();
         run.observer.note(

@@ -1,12 +1,10 @@
 //! What the program decided, in words.
 
 use kluft_scene::SolverEntry;
-use kluft_solver::{
-    LinearMethod, NewtonSettings, Plan, Prediction, Problem, Schedule, Step, Support,
-};
+use kluft_solver::{Flow, LinearMethod, Plan, Prediction, Problem, Schedule, Step, Support};
 
-/// How much model a problem needs.
-pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
+/// How much model a problem needs; `path` is how exactly its path is to be followed.
+pub fn of_problem(problem: &Problem, flow: Option<&Flow>, path: f64) -> Vec<String> {
     let mut lines = Vec::new();
     let names = |holds: &dyn Fn(&lie_core::FractureLaw) -> bool| -> String {
         let pairs = problem.mesh.fractures.iter().zip(&problem.fractures);
@@ -36,7 +34,7 @@ pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
             ));
         }
     }
-    if nothing_acts(problem) {
+    if flow.is_none() && nothing_acts(problem) {
         lines.push("nothing acts: no load, no pressure, no prescribed displacement".into());
     }
     if let Some(rock) = locking(problem) {
@@ -47,9 +45,8 @@ pub fn of_problem(problem: &Problem, settings: &NewtonSettings) -> Vec<String> {
     }
     let path_dependent = names(&lie_core::FractureLaw::is_path_dependent);
     if !path_dependent.is_empty() {
-        let accuracy = settings.path;
         lines.push(format!(
-            "{path_dependent} can slip or break: the path of the loads matters, steps are divided until jumps agree to {accuracy} of the largest"
+            "{path_dependent} can slip or break: the path of the loads matters, steps are divided until jumps agree to {path} of the largest"
         ));
     } else if problem.schedule.steps.len() > 1 {
         let why = "no law has friction: the end state does not depend on the load steps";

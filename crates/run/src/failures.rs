@@ -111,6 +111,28 @@ fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
     )
 }
 
+/// Why a flow could not be solved.
+pub fn flow_failure(failure: &LinearFailure) -> String {
+    match failure {
+        LinearFailure::OutOfMemory => {
+            "the factor of the flow does not fit in memory; mesh fractures coarser (a larger h)"
+                .into()
+        }
+        LinearFailure::NotFinite => {
+            "a number of the flow is not finite; check the units of apertures, viscosity, pressures \
+             and rates"
+                .into()
+        }
+        LinearFailure::Indefinite(_) => {
+            "the matrix of the flow is not positive definite: transmissivities lie too far apart"
+                .into()
+        }
+        LinearFailure::Stalled(_) | LinearFailure::Analysis(_) => {
+            format!("the flow could not be solved: {failure:?}")
+        }
+    }
+}
+
 /// Why a linear system could not be solved.
 pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFailure) -> String {
     match failure {

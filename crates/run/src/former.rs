@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::checkpoint;
+use crate::flow::SOURCES;
 
 /// The files that the collections, the summary and the report of an inspection name, and these
 /// themselves. What nothing names is not ours.
@@ -28,6 +29,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
         let seconds = |stage: &str| summary["seconds"][stage].as_f64().unwrap_or(0.0);
         if seconds("mesh") + seconds("mesh_spared") > 0.0 {
             names.push("mesh.msh".into());
+        }
+        if summary["flow"].is_object() {
+            names.push(SOURCES.into());
         }
         if summary["meshes"]
             .as_array()

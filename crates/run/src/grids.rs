@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use kluft_io::{Field, Grid, Values};
+use kluft_mesh::Mesh;
 use kluft_solver::{FacetResult, Solution, System};
 
 use crate::accuracy::Accuracy;
@@ -41,23 +42,11 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
 /// are those of the nodes of the facets.
 pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Accuracy) -> Grid {
     let mesh = &system.problem().mesh;
-    let elements = &mesh.facets.elements;
     let vectors =
         |of: fn(&FacetResult) -> DVec3| results.iter().map(move |result| of(result).to_array());
-    let normals = mesh
-        .facet_areas()
-        .into_iter()
-        .map(|area| area.normalize().to_array());
-    let mut grid = Grid {
-        points: elements
-            .nodes
-            .iter()
-            .map(|&node| mesh.nodes[node as usize].to_array())
-            .collect(),
-        shapes: elements.shapes.clone(),
-        offsets: elements.offsets.clone(),
-        nodes: (0..elements.nodes.len() as u32).collect(),
-        point_fields: vec![
+    let mut grid = facet_grid(
+        mesh,
+        vec![
             real_field("aperture", results.iter().map(|result| [result.aperture])),
             real_field("opening", results.iter().map(|result| [result.opening])),
             real_field("slip", vectors(|result| result.slip)),
@@ -69,14 +58,7 @@ pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Ac
             ),
             integer_field("state", results.iter().map(|result| result.state as i32)),
         ],
-        cell_fields: vec![
-            real_field("normal", normals),
-            integer_field(
-                "fracture",
-                mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
-            ),
-        ],
-    };
+    );
     if let Some(jumps) = &accuracy.jumps {
         let of_facets = mesh.facets.fracture.iter();
         let of_facets = of_facets.map(|&fracture| [jumps.aperture[fracture as usize]]);
@@ -84,6 +66,33 @@ pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Ac
         grid.cell_fields.push(field);
     }
     grid
+}
+
+/// The facets with their normals and fractures, each with points of its own, and fields there.
+pub fn facet_grid(mesh: &Mesh, point_fields: Vec<Field>) -> Grid {
+    let elements = &mesh.facets.elements;
+    let normals = mesh
+        .facet_areas()
+        .into_iter()
+        .map(|area| area.normalize().to_array());
+    Grid {
+        points: elements
+            .nodes
+            .iter()
+            .map(|&node| mesh.nodes[node as usize].to_array())
+            .collect(),
+        shapes: elements.shapes.clone(),
+        offsets: elements.offsets.clone(),
+        nodes: (0..elements.nodes.len() as u32).collect(),
+        point_fields,
+        cell_fields: vec![
+            real_field("normal", normals),
+            integer_field(
+                "fracture",
+                mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
+            ),
+        ],
+    }
 }
 
 /// A field of `N` numbers a point or cell.

@@ -4,7 +4,8 @@ use glam::DVec3;
 use kluft_io::printable::cell;
 use kluft_solver::{BlockMotion, Step, SurfaceResultant};
 
-use crate::summary::{FractureSummary, Spread};
+use crate::spread::Spread;
+use crate::summary::FractureSummary;
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "history.csv";

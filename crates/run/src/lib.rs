@@ -8,6 +8,8 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `flow`, `flow_summary` | the flow of a run, and its numbers |
+//! | `rigid`, `fluid_step` | flow alone in rigid rock; what a fluid adds in rock that deforms |
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
 //! | `output`, `grids`, `checkpoint`, `resume`, `former` | files |
@@ -36,6 +38,9 @@ mod crack_front;
 mod decisions;
 mod doubts;
 mod failures;
+mod flow;
+mod flow_summary;
+mod fluid_step;
 mod former;
 mod fractures;
 mod grids;
@@ -49,12 +54,18 @@ mod output;
 mod prepare;
 mod request;
 mod resume;
+mod rigid;
 mod run;
+mod spread;
 mod stages;
 mod steps;
 mod summary;
 mod undetermined;
 
+pub use flow::RunFlow;
+pub use flow_summary::{
+    ConduitSummary, FlowSummary, Hydraulics, NetworkSummary, SourceFlow, StepFlow,
+};
 pub use grids::{integer_field, real_field};
 pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};
@@ -63,4 +74,5 @@ pub use output::Output;
 pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;
-pub use summary::{FractureSummary, Spread, StepMeasures, StepSummary, Summary, Undetermined};
+pub use spread::Spread;
+pub use summary::{FractureSummary, StepMeasures, StepSummary, Summary, Undetermined};

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use tempfile::TempDir;
 
 use crate::checkpoint::{self, StepFiles};
+use crate::flow::SOURCES;
 use crate::former;
 use crate::history;
 
@@ -273,7 +274,7 @@ impl Output {
 
 /// Whether a file belongs to one run and must not outlive it.
 fn is_of_run(name: &str) -> bool {
-    [checkpoint::NAME, history::NAME].contains(&name) || former::is_step(name)
+    [checkpoint::NAME, history::NAME, SOURCES].contains(&name) || former::is_step(name)
 }
 
 fn list<'a>(

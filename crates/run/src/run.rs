@@ -6,6 +6,7 @@ use kluft_scene::MeshSource;
 use crate::adapt::{self, SIZES};
 use crate::checkpoint;
 use crate::failures;
+use crate::flow::SOURCES;
 use crate::history;
 use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
@@ -65,6 +66,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     };
     let mut names = vec!["summary.json", history::NAME, checkpoint::NAME];
     names.extend(COLLECTIONS);
+    names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
     if let (MeshSource::Geometry { adapt, .. }, MeshInput::OfScene) =
         (&request.scene.mesh, &request.mesh)
     {
@@ -86,8 +88,11 @@ fn solve(
     if !mesh_is_kept {
         adapt::search(run)?;
     }
-    let problem = run.prepare(former.as_ref())?;
-    run.solve(&problem, former)
+    let binding = run.prepare(former.as_ref())?;
+    match &binding.flow {
+        Some(flow) if run.request.scene.is_rigid() => run.solve_flow(&binding.problem, flow),
+        _ => run.solve(&binding, former),
+    }
 }
 
 fn what_is_left(former: Option<&FormerRun>, output: &Output) -> String {

@@ -145,32 +145,32 @@ impl<'a> Run<'a> {
     }
 
     /// Tells what came out of the last stage, and how long it took.
-    fn note_timed(&mut self, kind: &str, text: &str) {
+    pub fn note_timed(&mut self, kind: &str, text: &str) {
         let text = format!("{text} ({:.2} s)", self.took.as_secs_f64());
         self.observer.note(kind, &text);
     }
 
-    /// From the scene to a checked problem.
+    /// From the scene to a checked problem, whose decisions are taken over.
     ///
     /// # Errors
     /// Defects of geometry, mesh and scene, and a mesh that is not the one of the former run.
-    pub fn prepare(&mut self, former: Option<&FormerRun>) -> Result<Problem, Interruption> {
+    pub fn prepare(&mut self, former: Option<&FormerRun>) -> Result<Binding, Interruption> {
         let file = match &self.request.mesh {
             MeshInput::OfScene => Some(self.mesh_file(former)?),
             MeshInput::Draft(_) => None,
         };
-        let binding = self.stage(Stage::Read, |run| {
+        let mut binding = self.stage(Stage::Read, |run| {
             let draft = run.draft(file.as_ref(), former)?;
             run.bind(draft)
         })?;
-        self.oracles = binding.oracles;
+        self.oracles = std::mem::take(&mut binding.oracles);
         let mesh = &self.summary.mesh;
         let size = format!(
             "{} nodes, {} cells, {} fracture facets, at most {} sectors at a node",
             mesh.nodes, mesh.cells, mesh.fracture_facets, mesh.max_sectors
         );
         self.note_timed("read", &size);
-        Ok(binding.problem)
+        Ok(binding)
     }
 
     /// The mesh as read; one in memory is taken.

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use kluft_io::{Grid, write_atomically};
+use kluft_scene::Binding;
 use kluft_solver::{
     Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord, System,
     block_motions, determinacy, solution, surface_resultants,
@@ -15,6 +16,8 @@ use crate::checkpoint::{self, Progress};
 use crate::decisions;
 use crate::doubts;
 use crate::failures;
+use crate::flow::RunFlow;
+use crate::fluid_step;
 use crate::fractures::fractures;
 use crate::grids::{fracture_grid, rock_grid};
 use crate::history::{self, Entry, History};
@@ -29,6 +32,7 @@ use crate::undetermined;
 /// A run that has a system and a solver.
 struct Prepared<'s, 'p> {
     system: &'s System<'p>,
+    flow: Option<&'s RunFlow<'p>>,
     newton: Newton,
     state: State,
     /// Made with the first results, so that it takes no memory from the first solve.
@@ -41,13 +45,16 @@ impl Run<'_> {
     ///
     /// # Errors
     /// As [`Self::solve`].
-    pub fn trial(&mut self, problem: &Problem) -> Result<(usize, Accuracy), Interruption> {
-        let system = self.assemble(problem)?;
+    pub fn trial(&mut self, binding: &Binding) -> Result<(usize, Accuracy), Interruption> {
+        let problem = &binding.problem;
+        let mut system = self.assemble(problem)?;
+        self.let_flow(binding, &mut system)?;
         let plan = self.plan(&system, None)?;
         let mut prepared = Prepared {
             newton: self.set_up(&system, plan)?,
             state: system.initial_state(),
             system: &system,
+            flow: None,
             estimator: None,
         };
         for index in 0..problem.schedule.steps.len() {
@@ -68,12 +75,14 @@ impl Run<'_> {
     /// cannot be written.
     pub fn solve(
         &mut self,
-        problem: &Problem,
+        binding: &Binding,
         former: Option<FormerRun>,
     ) -> Result<(), Interruption> {
-        let system = self.assemble(problem)?;
+        let problem = &binding.problem;
+        let mut system = self.assemble(problem)?;
+        let flow = self.let_flow(binding, &mut system)?;
         let plan = self.plan(&system, former.as_ref())?;
-        self.decide(problem);
+        self.decide(binding);
         let unbalanced = doubts::of_initial_stress(self.request.scene, &system);
         self.doubts.extend(unbalanced);
         self.summary.warnings.clone_from(&self.doubts);
@@ -81,6 +90,7 @@ impl Run<'_> {
             None => self.begin(&system, plan)?,
             Some(former) => self.go_on(&system, plan, former.progress)?,
         };
+        prepared.flow = flow.as_ref();
         for index in self.finished.len()..problem.schedule.steps.len() {
             let record = self.solve_step(&mut prepared, index)?;
             self.finished.push((&record).into());
@@ -91,10 +101,11 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn decide(&mut self, problem: &Problem) {
+    fn decide(&mut self, binding: &Binding) {
         let settings = newton_settings(&self.request.scene.solver);
         self.summary.decisions.push(self.choice.1.clone());
-        let of_problem = decisions::of_problem(problem, &settings);
+        let of_problem =
+            decisions::of_problem(&binding.problem, binding.flow.as_ref(), settings.path);
         self.summary.decisions.extend(of_problem);
         for decision in &self.summary.decisions {
             self.observer.note("decided", decision);
@@ -115,6 +126,7 @@ impl Run<'_> {
             newton: self.set_up(system, plan)?,
             state: system.initial_state(),
             system,
+            flow: None,
             estimator: None,
         })
     }
@@ -152,6 +164,7 @@ impl Run<'_> {
             state: solved(state, system)?,
             newton,
             system,
+            flow: None,
             estimator: None,
         })
     }
@@ -216,6 +229,7 @@ impl Run<'_> {
         let oracles = if is_last { &self.oracles[..] } else { &[] };
         self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
         self.summary.measures.push(energy(accuracy.energy));
+        let flow = self.take_flow(system.problem(), prepared.flow)?;
         let scene = self.request.scene;
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
@@ -229,6 +243,9 @@ impl Run<'_> {
                 let mut grid = fracture_grid(system, &nodes, &accuracy);
                 let field = facets.as_deref().map(undetermined::field);
                 grid.cell_fields.extend(field);
+                if let Some(flow) = &flow {
+                    fluid_step::add_to(&mut grid, flow, &nodes);
+                }
                 grid
             };
             if !run.request.keep_results {
@@ -241,6 +258,7 @@ impl Run<'_> {
             run.keep(rock, fractures);
             written
         })?;
+        self.write_sources(system.problem())?;
         Ok(())
     }
 
@@ -277,7 +295,7 @@ impl Run<'_> {
     }
 
     /// Keeps the results of the load step that was solved last.
-    fn keep(&mut self, rock: Grid, fracture_grid: Grid) {
+    pub fn keep(&mut self, rock: Grid, fracture_grid: Grid) {
         let Some(summary) = self.summary.steps.last() else {
             return;
         };

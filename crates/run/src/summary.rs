@@ -7,18 +7,9 @@ use kluft_mesh::Defect;
 use kluft_solver::{Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
+use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
-
-/// Smallest, area-weighted mean and largest value of a field over a fracture.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
-    /// Smallest.
-    pub min: f64,
-    /// Mean.
-    pub mean: f64,
-    /// Largest.
-    pub max: f64,
-}
+use crate::spread::Spread;
 
 /// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -115,9 +106,12 @@ pub struct StepSummary {
     /// Its phase, if the scene names phases.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
-    /// How it was solved.
+    /// How it was solved; none in rigid rock.
     #[serde(flatten)]
-    pub measures: StepMeasures,
+    pub measures: Option<StepMeasures>,
+    /// The flow at its end, if there is a fluid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<StepFlow>,
 }
 
 /// How a load step was solved.
@@ -143,10 +137,19 @@ impl StepSummary {
     /// A load step and how it was solved.
     pub fn of(step: &Step, measures: StepMeasures) -> Self {
         Self {
+            measures: Some(measures),
+            ..Self::without_measures(step)
+        }
+    }
+
+    /// A load step alone.
+    pub fn without_measures(step: &Step) -> Self {
+        Self {
             load: step.load.single_factor(),
             time: step.load.time,
             phase: step.phase.clone(),
-            measures,
+            measures: None,
+            flow: None,
         }
     }
 }
@@ -213,6 +216,9 @@ pub struct Summary {
     /// The fractures after the last converged step, by name.
     #[serde(serialize_with = "as_map")]
     pub fractures: Vec<(String, FractureSummary)>,
+    /// The flow after the last converged step, if there is a fluid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<FlowSummary>,
     /// Estimated error of the stress in the rock, as a share of it in the energy norm.
     pub stress_error: f64,
     /// Numbers by which runs are compared, after the last converged step.

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
-use kluft_solver::{Condition, FixedPoint, Problem};
+use kluft_solver::{Condition, FixedPoint, Flow, Problem};
 use lie_core::Rock;
 
+use crate::bind_flow::bind_flow;
 use crate::cases::{Bound, schedule};
-use crate::conditions::{FixedPointEntry, FractureEntry};
+use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
@@ -19,6 +20,8 @@ use crate::scene::{Named, Scene};
 pub struct Binding {
     /// The problem.
     pub problem: Problem,
+    /// The flow in its fractures, if there is one.
+    pub flow: Option<Flow>,
     /// One line a decision, for the user.
     pub decisions: Vec<String>,
     /// What is possible but hardly meant, one line each.
@@ -63,7 +66,7 @@ impl Scene {
 ///
 /// # Errors
 /// Volumes without or with several rocks, gravity without density, fixed points that are not in
-/// the body.
+/// the body, and boreholes that hit no fracture.
 pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut decisions = Vec::new();
@@ -72,7 +75,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     }
     let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
     let fractures = bind_fractures(scene, &mesh, &mut decisions);
-    if scene.body.gravity != DVec3::ZERO {
+    if scene.body.gravity != DVec3::ZERO && !scene.is_rigid() {
         defects.extend(missing_densities(scene));
     }
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
@@ -80,28 +83,26 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     if !defects.is_empty() {
         return Err(defects);
     }
-    let conditions = scene.boundaries.iter().filter_map(|entry| {
-        let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
-        let condition = Condition {
-            boundary,
-            load: entry.value.load,
-            support: entry.value.support,
-        };
-        Some((entry, condition))
-    });
-    let (boundaries, conditions) = conditions.unzip();
+    let (boundaries, conditions) = bind_boundaries(scene, &mesh);
     let (fixed_entries, fixed_points) = fixed_points.into_iter().unzip();
     let bound = Bound {
         boundaries,
         fixed_points: fixed_entries,
         fractures,
+        sources: scene.sources.iter().collect(),
     };
     let mut idle = Vec::new();
+    let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
+    let flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
+    let rocks = scene.rocks.iter().map(|entry| entry.value);
     let problem = Problem {
         conditions,
-        rocks: scene.rocks.iter().map(|entry| entry.value).collect(),
+        rocks: match scene.rocks.is_empty() {
+            true => vec![Rock::rigid(0.0)],
+            false => rocks.collect(),
+        },
         rock_of_cell,
-        schedule: schedule(scene, &bound, &mut decisions, &mut idle),
+        schedule,
         fractures: bound
             .fractures
             .iter()
@@ -116,9 +117,27 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     Ok(Binding {
         warnings: [warnings(scene, &problem), idle].concat(),
         problem,
+        flow,
         decisions,
         oracles,
     })
+}
+
+/// What acts on and holds the outer surface.
+fn bind_boundaries<'a>(
+    scene: &'a Scene,
+    mesh: &Mesh,
+) -> (Vec<&'a Named<BoundaryEntry>>, Vec<Condition>) {
+    let conditions = scene.boundaries.iter().filter_map(|entry| {
+        let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
+        let condition = Condition {
+            boundary,
+            load: entry.value.load,
+            support: entry.value.support,
+        };
+        Some((entry, condition))
+    });
+    conditions.unzip()
 }
 
 fn quarter_points(moved: usize) -> Option<String> {
@@ -202,6 +221,8 @@ fn rock_defect(
         names => format!("physical volume `{}`", names.join("`, `")),
     };
     match (found, default) {
+        // Rigid rock needs no section.
+        ([], None) if scene.rocks.is_empty() => None,
         ([], None) => Some(Defect::new(
             volume,
             "no rock is given for it",

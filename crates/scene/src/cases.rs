@@ -4,6 +4,7 @@ use kluft_keys::section_head;
 use kluft_solver::{Cases, Load, Schedule, Step, Support};
 
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, is_moved};
+use crate::fluid::SourceEntry;
 use crate::history::{LoadHistory, StepEnd, Timetable};
 use crate::scene::{Named, Scene};
 use crate::warning::Doubt;
@@ -16,6 +17,7 @@ pub(crate) struct Bound<'a> {
     pub(crate) boundaries: Vec<&'a Named<BoundaryEntry>>,
     pub(crate) fractures: Vec<&'a Named<FractureEntry>>,
     pub(crate) fixed_points: Vec<&'a Named<FixedPointEntry>>,
+    pub(crate) sources: Vec<&'a Named<SourceEntry>>,
 }
 
 /// The schedule of a scene; what the user should know of it goes to `decisions`, histories that
@@ -66,11 +68,13 @@ impl Found {
             let value = &entry.value;
             let moves = matches!(value.support, Some(Support::Displacement(d)) if is_moved(&d));
             let name = section_head("boundary", &entry.name);
-            self.case(value.load.is_some() || moves, &value.history, name)
+            let acts = value.load.is_some() || moves || value.fluid.is_some();
+            self.case(acts, &value.history, name)
         });
         let conditions = conditions.collect();
         let fractures = bound.fractures.iter().map(|entry| {
-            let acts = entry.value.fracture.fluid_pressure != 0.0;
+            let value = &entry.value;
+            let acts = value.fracture.fluid_pressure != 0.0 || value.given_pressure.is_some();
             let name = section_head("fracture", &entry.name);
             self.case(acts, &entry.value.history, name)
         });
@@ -79,10 +83,15 @@ impl Found {
             let acts = is_moved(&entry.value.displacement);
             self.case(acts, &entry.value.history, entry.name.clone())
         });
+        let fixed_points = fixed_points.collect();
+        let sources = bound.sources.iter();
+        let sources =
+            sources.map(|entry| self.case(true, &entry.value.history, entry.name.clone()));
         Cases {
             conditions,
             fractures,
-            fixed_points: fixed_points.collect(),
+            fixed_points,
+            sources: sources.collect(),
             gravity: {
                 let acts = scene.body.gravity != glam::DVec3::ZERO;
                 self.case(acts, &scene.body.history, "[body]".into())

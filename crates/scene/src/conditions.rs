@@ -1,11 +1,13 @@
 //! Conditions of a scene: what acts on faces, nodes and the whole rock.
 
 use glam::DVec3;
-use kluft_solver::{Fracture, Support, SurfaceLoad};
+use kluft_solver::{Conduit, FlowDrive, Fracture, Support, SurfaceLoad};
 
+use crate::fluid::read_boundary_fluid;
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
 use crate::reader::Section;
+use crate::setting::Setting;
 
 /// What acts on a part of the outer surface.
 #[derive(Debug, Clone)]
@@ -14,7 +16,9 @@ pub struct BoundaryEntry {
     pub load: Option<SurfaceLoad>,
     /// Its support.
     pub support: Option<Support>,
-    /// How both change with time.
+    /// What drives the fluid there.
+    pub fluid: Option<FlowDrive>,
+    /// How all change with time.
     pub history: Option<LoadHistory>,
 }
 
@@ -25,6 +29,10 @@ pub struct FractureEntry {
     pub between: Option<[String; 2]>,
     /// Its law and what fills it.
     pub fracture: Fracture,
+    /// How it conducts; none if nothing flows in the scene.
+    pub conduit: Option<Conduit>,
+    /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
+    pub given_pressure: Option<f64>,
     /// How the fluid pressure changes with time.
     pub history: Option<LoadHistory>,
 }
@@ -49,13 +57,42 @@ pub struct FixedPointEntry {
     pub history: Option<LoadHistory>,
 }
 
-/// Reads what acts on a part of the outer surface.
-pub(crate) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<BoundaryEntry> {
+/// Reads what acts on a part of the outer surface; rigid rock has no use for loads and supports.
+pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Option<BoundaryEntry> {
+    let fluid = read_boundary_fluid(section, setting);
+    let (load, support) = match setting.is_rigid() {
+        true => (None, None),
+        false => (read_load(section), read_support(section)),
+    };
+    let names = ["traction", "pressure", "symmetry", "displacement"];
+    let says_nothing = match setting.is_rigid() {
+        true => section.table().iter().next().is_none(),
+        false => fluid.is_none() && !names.into_iter().any(|name| section.has(name)),
+    };
+    if says_nothing {
+        section.refuse(
+            "traction",
+            format!("{} says nothing", section.title),
+            "add traction, pressure, displacement, symmetry or fluid_pressure, or remove the section",
+        );
+    }
+    let moves = matches!(support, Some(Support::Displacement(components)) if is_moved(&components));
+    let scaled = Scaled {
+        is_there: load.is_some() || moves || fluid.is_some(),
+        what: "a traction, a pressure, a displacement other than 0 or a fluid_pressure",
+    };
+    Some(BoundaryEntry {
+        load,
+        support,
+        fluid,
+        history: read_history(section, setting.clock, scaled),
+    })
+}
+
+fn read_load(section: &Section<'_, '_>) -> Option<SurfaceLoad> {
     let traction = section.vector("traction");
     let pressure = section.number("pressure");
-    let symmetry = section.flag("symmetry");
-    let displacement = section.section("displacement").map(read_components);
-    let load = match (traction, pressure) {
+    match (traction, pressure) {
         (Some(traction), None) => Some(SurfaceLoad::Traction(traction.into())),
         (None, Some(pressure)) => Some(SurfaceLoad::Pressure(pressure)),
         (Some(_), Some(_)) => {
@@ -68,8 +105,13 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<B
             None
         }
         (None, None) => None,
-    };
-    let support = match (symmetry, displacement) {
+    }
+}
+
+fn read_support(section: &Section<'_, '_>) -> Option<Support> {
+    let symmetry = section.flag("symmetry");
+    let displacement = section.section("displacement").map(read_components);
+    match (symmetry, displacement) {
         (Some(true), None) => Some(Support::Symmetry),
         (Some(true), Some(_)) => {
             let remedy = "keep one; symmetry already holds the normal direction";
@@ -81,25 +123,7 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, clock: Clock) -> Option<B
             None
         }
         (_, components) => components.map(Support::Displacement),
-    };
-    let names = ["traction", "pressure", "symmetry", "displacement"];
-    if !names.into_iter().any(|name| section.has(name)) {
-        section.refuse(
-            "traction",
-            format!("{} says nothing", section.title),
-            "add traction, pressure, displacement or symmetry, or remove the section",
-        );
     }
-    let moves = matches!(support, Some(Support::Displacement(components)) if is_moved(&components));
-    let scaled = Scaled {
-        is_there: load.is_some() || moves,
-        what: "a traction, a pressure or a displacement other than 0",
-    };
-    Some(BoundaryEntry {
-        load,
-        support,
-        history: read_history(section, clock, scaled),
-    })
 }
 
 fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {

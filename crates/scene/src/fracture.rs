@@ -1,19 +1,21 @@
 //! What a scene may say of a fracture.
 
 use kluft_keys::Range;
-use kluft_solver::Fracture;
-use lie_core::{Closure, ClosureKind, FractureLaw, Friction, Tension};
+use kluft_solver::{Conduit, Fracture};
+use lie_core::{Closure, ClosureKind, FractureLaw, Friction, HydraulicAperture, Tension};
 
 use crate::conditions::FractureEntry;
-use crate::load::{Clock, Scaled, read_history};
+use crate::fluid::read_conduit;
+use crate::load::{Scaled, read_history};
 use crate::reader::Section;
 use crate::roles::DEFAULT;
+use crate::setting::Setting;
 
 /// Reads a section on a fracture of a scene: its law, and where it is.
 pub(crate) fn read_placed_fracture(
     section: &Section<'_, '_>,
     name: &str,
-    clock: Clock,
+    setting: Setting,
 ) -> Option<FractureEntry> {
     let between = section.pair("between");
     if between.is_some() && name == DEFAULT {
@@ -23,12 +25,61 @@ pub(crate) fn read_placed_fracture(
             "give the fracture between these volumes a name: [fracture.NAME]",
         );
     }
-    let entry = read_fracture(section, clock)?;
+    let entry = read_fracture(section, setting)?;
     Some(FractureEntry { between, ..entry })
 }
 
 /// Reads what a section says of a fracture, wherever it is.
-pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<FractureEntry> {
+pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<FractureEntry> {
+    let conduit = read_conduit(section, setting);
+    let law = match setting.is_rigid() {
+        true => read_rigid_law(section, conduit),
+        false => read_law(section),
+    };
+    let is_open = matches!(conduit, Some(Conduit::Open(_)));
+    // Nothing moves the walls of a sealed fracture in rigid rock.
+    let has_use = is_open || !setting.is_rigid();
+    let fluid_pressure = match has_use {
+        true => section.number("fluid_pressure"),
+        false => None,
+    };
+    let scaled = Scaled {
+        is_there: has_use && section.has("fluid_pressure"),
+        what: "a fluid_pressure",
+    };
+    let history = read_history(section, setting.clock, scaled);
+    Some(FractureEntry {
+        between: None,
+        fracture: Fracture {
+            law: law?,
+            fluid_pressure: match is_open {
+                true => 0.0,
+                false => fluid_pressure.unwrap_or(0.0),
+            },
+        },
+        conduit,
+        given_pressure: fluid_pressure.filter(|_| is_open),
+        history,
+    })
+}
+
+/// The law of walls in rigid rock, of which the aperture is all that counts.
+fn read_rigid_law(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option<FractureLaw> {
+    let hydraulic = match conduit {
+        Some(Conduit::Open(HydraulicAperture::Constant(constant))) => Some(constant),
+        _ => None,
+    };
+    let is_sealed = conduit == Some(Conduit::Sealed);
+    if hydraulic.is_none() && !is_sealed {
+        section.require("aperture");
+    }
+    let aperture = section.number("aperture");
+    let aperture = aperture.or(hydraulic).or(is_sealed.then_some(0.0));
+    aperture.map(FractureLaw::rigid)
+}
+
+/// The law of walls that move.
+fn read_law(section: &Section<'_, '_>) -> Option<FractureLaw> {
     let closure = section.choice("closure");
     let is_known = closure.is_some() || !section.has("closure");
     let closure = closure.unwrap_or("linear");
@@ -53,12 +104,6 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
     let tension = read_tension(section, normal_stiffness);
     let friction = read_friction(section);
     let shear_stiffness = read_shear_stiffness(section, contact);
-    let fluid_pressure = section.number("fluid_pressure");
-    let scaled = Scaled {
-        is_there: section.has("fluid_pressure"),
-        what: "a fluid_pressure",
-    };
-    let history = read_history(section, clock, scaled);
     if contact {
         refuse_in_contact(section);
     }
@@ -72,19 +117,12 @@ pub fn read_fracture(section: &Section<'_, '_>, clock: Clock) -> Option<Fracture
             tension,
         }
     };
-    let fracture = Fracture {
-        law: FractureLaw {
-            closure,
-            shear_stiffness: shear_stiffness?,
-            friction,
-        },
-        fluid_pressure: fluid_pressure.unwrap_or(0.0),
+    let law = FractureLaw {
+        closure,
+        shear_stiffness: shear_stiffness?,
+        friction,
     };
-    is_known.then_some(FractureEntry {
-        between: None,
-        fracture,
-        history,
-    })
+    is_known.then_some(law)
 }
 
 /// Keys that a closure law refuses; `has_friction` tells whether the fracture has friction.

@@ -5,24 +5,29 @@
 //! problem that a solver takes. Values are in SI units.
 
 mod bind;
+mod bind_flow;
 mod cases;
 mod conditions;
 mod doubts;
+mod fluid;
 mod fracture;
 mod history;
 mod join;
 mod load;
 mod oracle;
+mod profile;
 mod read;
 pub mod reader;
 mod refine;
 mod remedies;
 mod roles;
 mod scene;
+mod setting;
 mod warning;
 
 pub use bind::{Binding, bind};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+pub use fluid::SourceEntry;
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
 pub use join::{JoinedDraft, join};
@@ -33,4 +38,5 @@ pub use refine::refine;
 pub use remedies::in_terms_of_scene;
 pub use roles::{Roles, roles};
 pub use scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
+pub use setting::{FluidUse, Setting};
 pub use warning::Doubt;

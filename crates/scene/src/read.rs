@@ -4,15 +4,18 @@ use std::path::{Path, PathBuf};
 
 use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
-use kluft_solver::{InitialStress, Profile};
+use kluft_solver::{Fluid, InitialStress};
 use lie_core::{FacetQuadrature, Rock};
 
-use crate::conditions::{read_body, read_boundary, read_fixed_point};
+use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, read_fixed_point};
+use crate::fluid::{SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
+use crate::profile::read_profile;
 use crate::reader::{Section, Source};
 use crate::scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
+use crate::setting::{FluidUse, Setting};
 
 impl Scene {
     /// Reads a scene file; paths in it are relative to its folder.
@@ -72,17 +75,21 @@ impl Scene {
 }
 
 /// Finds the defects of everything in a scene that speaks of neither mesh nor fractures; another
-/// file may hold those sections for a scene to be made from it. Returns whether its load steps have
-/// times.
-pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Clock {
+/// file, without a fluid, may hold those sections for a scene to be made from it. Returns what they
+/// mean for its fractures.
+pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Setting {
     let (_, clock) = read_timetable(root);
+    let setting = Setting {
+        clock,
+        fluid: FluidUse::None,
+    };
     root.text("title");
     for (name, section) in root.named_sections("rock") {
-        entry(source, name, section, read_rock);
+        entry(source, name, section, |section| read_rock(section, setting));
     }
     for (name, section) in root.named_sections("boundary") {
         entry(source, name, section, |section| {
-            read_boundary(section, clock)
+            read_boundary(section, setting)
         });
     }
     for section in root.listed_sections("fixed_point") {
@@ -93,12 +100,16 @@ pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Clock {
     read_body(root, clock);
     root.section("initial_stress").map(read_initial_stress);
     read_solver(root);
-    clock
+    setting
 }
 
 fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Option<Scene> {
     let named = |key: &'static str| root.named_sections(key).into_iter();
     let (timetable, clock) = read_timetable(root);
+    let setting = Setting {
+        clock,
+        fluid: fluid_use(root),
+    };
     let title = root.text("title").unwrap_or("untitled").to_owned();
     root.require("mesh");
     let section = root.section("mesh");
@@ -111,32 +122,34 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         .and_then(|section| section.number("refine"));
     let refine = refine.map_or(0, |times| times as u32);
     let mesh = section.and_then(|section| read_mesh(section, folder, refine));
-    root.require("rock");
-    let rocks = named("rock").filter_map(|(name, s)| entry(source, name, s, read_rock));
+    match setting.is_rigid() {
+        true => refuse_in_rigid_rock(root),
+        false => root.require("rock"),
+    }
+    let rocks =
+        named("rock").filter_map(|(name, s)| entry(source, name, s, |s| read_rock(s, setting)));
     let rocks = rocks.collect();
     let fractures = named("fracture").filter_map(|(name, s)| {
         let called = name.clone();
-        entry(source, name, s, |s| read_placed_fracture(s, &called, clock))
+        entry(source, name, s, |s| {
+            read_placed_fracture(s, &called, setting)
+        })
     });
     let fractures = fractures.collect();
     let boundaries = named("boundary")
-        .filter_map(|(name, s)| entry(source, name, s, |s| read_boundary(s, clock)));
+        .filter_map(|(name, s)| entry(source, name, s, |s| read_boundary(s, setting)));
     let boundaries = boundaries.collect();
-    let fixed_points = root
-        .listed_sections("fixed_point")
-        .into_iter()
-        .filter_map(|section| {
-            let name = section.title.clone();
-            entry(source, name, section, |s| read_fixed_point(s, clock))
-        })
-        .collect();
+    let body = read_body(root, clock);
     // Of `kluft study`, which reads it.
     root.section("study");
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
     Some(Scene {
         oracles,
-        body: read_body(root, clock),
+        fluid: read_named_fluid(root, &body),
+        body,
+        sources: read_sources(source, root, setting),
+        fixed_points: read_fixed_points(source, root, clock),
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         timetable,
         solver: read_solver(root),
@@ -147,7 +160,6 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         rocks,
         fractures,
         boundaries,
-        fixed_points,
         quarter_points: quarter_points.unwrap_or(true),
         weld: weld.unwrap_or(false),
         refine,
@@ -256,7 +268,73 @@ fn read_path(section: &Section<'_, '_>, key: &'static str, folder: &Path) -> Opt
     Some(folder.join(path))
 }
 
-fn read_rock(section: &Section<'_, '_>) -> Option<Rock> {
+fn read_fixed_points(
+    source: &Source<'_>,
+    root: &Section<'_, '_>,
+    clock: Clock,
+) -> Vec<Named<FixedPointEntry>> {
+    let sections = root.listed_sections("fixed_point").into_iter();
+    let entries = sections.filter_map(|section| {
+        let name = section.title.clone();
+        entry(source, name, section, |s| read_fixed_point(s, clock))
+    });
+    entries.collect()
+}
+
+/// The fluid with its place.
+fn read_named_fluid(root: &Section<'_, '_>, body: &BodyEntry) -> Option<Named<Fluid>> {
+    let section = root.section("fluid")?;
+    let (place, title) = (section.place(), section.title.clone());
+    let value = read_fluid(section, body.gravity)?;
+    Some(Named {
+        place: format!("{place} {title}"),
+        name: title,
+        value,
+    })
+}
+
+/// Boreholes, each under the name it has or else that of its section.
+fn read_sources(
+    source: &Source<'_>,
+    root: &Section<'_, '_>,
+    setting: Setting,
+) -> Vec<Named<SourceEntry>> {
+    let mut sources: Vec<Named<SourceEntry>> = Vec::new();
+    for section in root.listed_sections("source") {
+        let name = section.text("name").map(str::to_owned);
+        let name = name.unwrap_or_else(|| section.title.clone());
+        if sources.iter().any(|other| other.name == name) {
+            let problem = format!("two sources are called \"{name}\"");
+            section.refuse("name", problem, "give each a name of its own");
+        }
+        sources.extend(entry(source, name, section, |s| read_source(s, setting)));
+    }
+    sources
+}
+
+/// Sections that speak of what cannot happen in rigid rock.
+fn refuse_in_rigid_rock(root: &Section<'_, '_>) {
+    for key in ["fixed_point", "initial_stress", "oracle", "solver"] {
+        if root.has(key) {
+            root.refuse(
+                key,
+                format!("`{key}` has no effect in rigid rock: no rock has a young_modulus"),
+                "remove it, or add young_modulus to [rock]",
+            );
+        }
+    }
+    if let Some(mesh) = root.section("mesh").filter(|mesh| mesh.has("adapt")) {
+        let problem = "no error of a mesh in rigid rock is estimated: no rock has a young_modulus";
+        let remedy = "remove adapt, or add young_modulus to [rock]";
+        mesh.refuse("adapt", problem.into(), remedy);
+    }
+}
+
+fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<Rock> {
+    if setting.is_rigid() {
+        let density = section.number("density");
+        return Some(Rock::rigid(density.unwrap_or(0.0)));
+    }
     section.require("young_modulus");
     section.require("poisson_ratio");
     let young_modulus = section.number("young_modulus");
@@ -273,27 +351,6 @@ fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {
     let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| read_profile(&section, name));
     section.finish();
     InitialStress { components }
-}
-
-fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Profile {
-    if !section.is_table(name) {
-        return Profile {
-            value: section.number(name).unwrap_or(0.0),
-            ..Profile::default()
-        };
-    }
-    let Some(profile) = section.section(name) else {
-        return Profile::default();
-    };
-    profile.require("value");
-    let number = |key| profile.number(key).unwrap_or(0.0);
-    let read = Profile {
-        at: number("at"),
-        value: number("value"),
-        per_metre: number("per_metre"),
-    };
-    profile.finish();
-    read
 }
 
 fn read_solver(root: &Section<'_, '_>) -> SolverEntry {

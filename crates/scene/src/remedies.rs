@@ -3,7 +3,7 @@
 use kluft_mesh::{
     CONDITION_INSIDE, DOUBLED_NODES, Defect, FACES_NOT_MATCHING, FRACTURE_ON_DOUBLED_NODES,
 };
-use kluft_solver::UNHELD_BLOCK;
+use kluft_solver::{NO_PRESSURE, UNHELD_BLOCK};
 
 /// The same defects, each with the remedy as it is written in a scene where there is one.
 pub fn in_terms_of_scene(mut defects: Vec<Defect>) -> Vec<Defect> {
@@ -35,6 +35,10 @@ fn words(code: &str) -> Option<&'static str> {
         UNHELD_BLOCK => Some(
             "add a [boundary.NAME] with displacement or symmetry, a [[fixed_point]], or stiffness \
              on the fractures around it",
+        ),
+        NO_PRESSURE => Some(
+            "add fluid_pressure to a [boundary.NAME] that they meet or to one of them, a [[source]] \
+             with pressure, or sealed = true to them",
         ),
         _ => None,
     }

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use kluft_solver::{InitialStress, LinearMethod};
+use kluft_solver::{Fluid, InitialStress, LinearMethod};
 use lie_core::{FacetQuadrature, Rock};
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+use crate::fluid::SourceEntry;
 use crate::history::Timetable;
 use crate::oracle::Oracle;
 
@@ -86,6 +87,10 @@ pub struct Scene {
     pub fixed_points: Vec<Named<FixedPointEntry>>,
     /// What acts in all of the rock.
     pub body: BodyEntry,
+    /// What flows in the fractures.
+    pub fluid: Option<Named<Fluid>>,
+    /// Boreholes.
+    pub sources: Vec<Named<SourceEntry>>,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,
     /// Load steps.
@@ -98,4 +103,11 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// Names of the warnings that are not told.
     pub silenced: Vec<&'static str>,
+}
+
+impl Scene {
+    /// Whether the rock is rigid, and flow is all that happens.
+    pub fn is_rigid(&self) -> bool {
+        self.fluid.is_some() && self.rocks.iter().all(|entry| entry.value.is_rigid())
+    }
 }

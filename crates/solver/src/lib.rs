@@ -18,6 +18,7 @@
 //! | `system` | numbering ([`Discretisation`]), the discrete problem ([`System`]), its [`State`] |
 //! | `linear` | solvers for the tangent on top of [`kluft_algebra`], their cost and choice |
 //! | `newton` | load steps: guess, iteration, tests, division of a step |
+//! | `flow` | pressures in the fractures: numbering, conductance, networks, steady flow |
 //! | `estimate` | errors of stresses and of mean jumps, sizes of cells that would mend them |
 //!
 //! `solution` derives fields from a state, `resultants` what whole parts feel and do, `memory`
@@ -28,6 +29,7 @@
 
 mod assembly;
 mod estimate;
+mod flow;
 mod linear;
 mod memory;
 mod newton;
@@ -41,6 +43,9 @@ pub use assembly::facet_point::FacetPoint;
 pub use assembly::interface::Interface;
 pub use assembly::loads::{CaseLoads, Loads};
 pub use estimate::{Estimator, MeanError, StressError, target_sizes};
+pub use flow::{
+    ConditionFlow, FlowBalance, FlowFields, FlowNetwork, FlowState, FlowSystem, NO_PRESSURE,
+};
 pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
 pub use linear::{
     Condensed, Direct, ExtraMemory, Iterative, LinearMethod, LinearSolution, NonsymmetricSolver,
@@ -51,8 +56,8 @@ pub use newton::{
     determinacy, unobserved,
 };
 pub use problem::{
-    Cases, Condition, FixedPoint, Fracture, InitialStress, Load, Problem, Profile, Schedule, Step,
-    Support, SurfaceLoad,
+    Cases, Condition, Conduit, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
+    Fracture, InitialStress, Load, Problem, Profile, Schedule, Step, Support, SurfaceLoad,
 };
 pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
 pub use solution::{FacetResult, FacetState, Solution, solution};

@@ -2,6 +2,7 @@
 //!
 //! The cases start from a sound scene, `base.toml` on `base.msh`: two cells with a joint between.
 
+mod fluid;
 mod geometry;
 mod load;
 mod mesh;
@@ -170,6 +171,7 @@ fn judge_all(cases: &[Case]) {
 #[test]
 fn there_are_many_cases() {
     let groups = [
+        fluid::CASES,
         scene::CASES,
         values::CASES,
         load::CASES,

@@ -1,16 +1,11 @@
 //! Symbolic factorisation of the matrix, and what its factor will cost.
 
-use faer::Side;
-use faer::perm::PermRef;
 use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::SymbolicCholesky;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
 use glam::DMat3;
 
+use super::factor;
 use crate::dense_kernels::parallelism;
 use crate::failure::LinearFailure;
 
@@ -45,20 +40,11 @@ impl Analysis {
             })
             .collect();
         let (column_offset, row_index) = upper_triangle(row_offset, columns, &lower_blocks);
-        let (forward, inverse) = scalar_permutation(&order);
-        let size = 3 * order.len();
+        let forward = scalars(&order);
+        let size = forward.len();
         let shape =
             SymbolicSparseColMatRef::new_checked(size, size, &column_offset, None, &row_index);
-        let symbolic = factorize_symbolic_cholesky(
-            shape,
-            Side::Upper,
-            SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size)),
-            CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..Default::default()
-            },
-        )
-        .map_err(|error| LinearFailure::Analysis(format!("{error:?}")))?;
+        let symbolic = factor::symbolic(shape, &forward)?;
         Ok(Self {
             blocks: columns.len(),
             symbolic,
@@ -70,10 +56,7 @@ impl Analysis {
     }
 
     pub(super) fn supernodal(&self) -> &SymbolicSupernodalCholesky<usize> {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic,
-            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("supernodes were asked for"),
-        }
+        factor::supernodal(&self.symbolic)
     }
 
     /// The scalar pattern of the upper triangle.
@@ -148,13 +131,8 @@ fn upper_triangle(
     (column_offset, row_index)
 }
 
-/// The scalar permutation (new to old) of an order of 3-vectors, and its inverse.
-fn scalar_permutation(order: &[usize]) -> (Vec<usize>, Vec<usize>) {
-    let scalars = |&block: &usize| [3 * block, 3 * block + 1, 3 * block + 2];
-    let forward: Vec<usize> = order.iter().flat_map(scalars).collect();
-    let mut inverse = vec![0; forward.len()];
-    for (new, &old) in forward.iter().enumerate() {
-        inverse[old] = new;
-    }
-    (forward, inverse)
+/// The scalars of 3-vectors in an order.
+fn scalars(order: &[usize]) -> Vec<usize> {
+    let of_block = |&block: &usize| [3 * block, 3 * block + 1, 3 * block + 2];
+    order.iter().flat_map(of_block).collect()
 }

@@ -1,22 +1,22 @@
 //! Sparse Cholesky factorisation: ordering, symbolic analysis, factor, substitution.
 
 mod analysis;
+mod factor;
 mod ordering;
+mod scalar;
 mod substitution;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::Mat;
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::{Mat, Side};
 use glam::{DMat3, DVec3};
 
 use crate::block_rows::BlockRows;
-use crate::dense_kernels::parallelism;
 use crate::failure::LinearFailure;
 
 pub use analysis::Analysis;
 pub use ordering::NodeOrder;
+pub use scalar::{ScalarCholesky, ScalarMatrix};
 
 /// `A = L L^T`. The analysis is done once; values may change.
 pub struct Cholesky {
@@ -71,31 +71,14 @@ impl Cholesky {
     /// # Errors
     /// If the matrix is not positive definite or memory runs out.
     pub fn factorise(&mut self) -> Result<(), LinearFailure> {
-        let Analysis { symbolic, .. } = &self.analysis;
-        let shape = self.analysis.shape();
-        let length = symbolic.len_val();
-        self.factor.clear();
-        self.factor
-            .try_reserve_exact(length)
-            .map_err(|_| LinearFailure::OutOfMemory)?;
-        self.factor.resize(length, 0.0);
-        let par = parallelism();
-        let request = symbolic.factorize_numeric_llt_scratch::<f64>(par, faer::Spec::default());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| LinearFailure::OutOfMemory)?;
-        symbolic
-            .factorize_numeric_llt(
-                &mut self.factor,
-                SparseColMatRef::new(shape, &self.values),
-                Side::Upper,
-                LltRegularization::default(),
-                par,
-                MemStack::new(&mut memory),
-                faer::Spec::default(),
-            )
-            .map_err(|LltError::NonPositivePivot { index }| {
-                LinearFailure::Indefinite(self.analysis.order[index / 3])
-            })?;
-        Ok(())
+        let upper = SparseColMatRef::new(self.analysis.shape(), &self.values);
+        let done = factor::numeric(&self.analysis.symbolic, upper, &mut self.factor);
+        done.map_err(|failure| match failure {
+            LinearFailure::Indefinite(place) => {
+                LinearFailure::Indefinite(self.analysis.order[place / 3])
+            }
+            other => other,
+        })
     }
 
     /// Frees the values of the matrix; the factor stays.

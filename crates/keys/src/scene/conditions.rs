@@ -1,5 +1,7 @@
 //! What acts on faces, nodes and the whole rock.
 
+use super::fluid::{BOUNDARY_INFLOW, BOUNDARY_PRESSURE};
+use super::shared::{GROWS_ONCE, INITIAL, INITIAL_GRADIENT};
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
@@ -12,16 +14,10 @@ static GRAVITY: Plausible = Plausible {
     units: &["cm/s2", "mm/s2"],
 };
 
-/// Beyond this no rock is, and closure laws answer with numbers that overflow.
-const INITIAL: Range = Range::Within(-1e12, 1e12);
-const INITIAL_GRADIENT: Range = Range::Within(-1e9, 1e9);
-
-const GROWS_ONCE: Need = Need::Without("grows once");
-
 /// A part of the outer surface.
 pub static BOUNDARY: KeySection = KeySection {
     pattern: "[boundary.NAME]",
-    says: "The physical surface NAME; a load and a support may act together",
+    says: "The physical surface NAME; a load, a support and a fluid may act together",
     keys: &[
         Key {
             name: "traction",
@@ -51,12 +47,14 @@ pub static BOUNDARY: KeySection = KeySection {
             example: "true",
             says: "No displacement along the normal, a roller on any plane; instead of `displacement`",
         },
+        BOUNDARY_PRESSURE,
+        BOUNDARY_INFLOW,
         Key {
             name: "history",
             kind: Kind::History,
             need: GROWS_ONCE,
             example: "[[0, 0], [1, 1]]",
-            says: "Factor on its load and displacement at times",
+            says: "Factor on its load, its displacement and its fluid at times",
         },
     ],
     also: None,

@@ -1,5 +1,8 @@
 //! Fractures.
 
+use super::fluid::{
+    HYDRAULIC_APERTURE, JOINT_ROUGHNESS, RESIDUAL_HYDRAULIC_APERTURE, ROUGHNESS, SEALED,
+};
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
@@ -37,7 +40,7 @@ pub static FRACTURE: KeySection = KeySection {
         Key {
             name: "aperture",
             kind: watched(Dimension::Length, Range::NotNegative, &APERTURE),
-            need: Need::Required,
+            need: Need::Unless("the rock is rigid and there is a `hydraulic_aperture`"),
             example: "1e-4",
             says: "Aperture b0 without load, greater than 0; contact allows 0",
         },
@@ -48,14 +51,18 @@ pub static FRACTURE: KeySection = KeySection {
                 Range::NotNegative,
                 &NORMAL_STIFFNESS,
             ),
-            need: Need::Unless("the closure is `\"contact\"`, which has none"),
+            need: Need::Unless(
+                "the closure is `\"contact\"`, which has none, or the rock is rigid",
+            ),
             example: "1e11",
             says: "Stiffness K_n0 at b0; 0 is a free crack, whose walls may overlap",
         },
         Key {
             name: "shear_stiffness",
             kind: number(Dimension::StressPerLength, Range::NotNegative),
-            need: Need::Unless("there is friction (nothing moves before it slides) or contact"),
+            need: Need::Unless(
+                "there is friction (nothing moves before it slides) or contact, or the rock is rigid",
+            ),
             example: "1e10",
             says: "Stiffness K_s, constant",
         },
@@ -134,8 +141,13 @@ pub static FRACTURE: KeySection = KeySection {
             kind: number(Dimension::Stress, Range::Finite),
             need: Need::Default("0"),
             example: "2e6",
-            says: "Pressure on both walls, opening",
+            says: "Pressure on both walls, opening; with `[fluid]` given all over the fracture",
         },
+        HYDRAULIC_APERTURE,
+        RESIDUAL_HYDRAULIC_APERTURE,
+        ROUGHNESS,
+        JOINT_ROUGHNESS,
+        SEALED,
         Key {
             name: "history",
             kind: Kind::History,

@@ -34,14 +34,14 @@ pub static ROCK: KeySection = KeySection {
         Key {
             name: "young_modulus",
             kind: watched(Dimension::Stress, Range::Within(1.0, 1e15), &YOUNG),
-            need: Need::Required,
+            need: Need::Unless("there is `[fluid]`: all rock without it is rigid"),
             example: "50e9",
             says: "Young's modulus E",
         },
         Key {
             name: "poisson_ratio",
             kind: watched(Dimension::One, Range::Between(-1.0, 0.5), &POISSON),
-            need: Need::Required,
+            need: Need::Unless("the rock is rigid"),
             example: "0.25",
             says: "Poisson's ratio nu",
         },

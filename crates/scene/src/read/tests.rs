@@ -191,7 +191,7 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
             "0.2 mm",
         ],
         [
-            "scene.toml:59: `gravity` = 981 in [body]",
+            "scene.toml:64: `gravity` = 981 in [body]",
             "981 cm/s2 = 9.81 m/s2",
         ],
     ]) {

@@ -1,6 +1,7 @@
 //! Everything a solve needs: mesh, materials, conditions, load steps.
 
 mod conditions;
+mod flow;
 mod initial_stress;
 mod schedule;
 
@@ -9,6 +10,7 @@ use kluft_mesh::Mesh;
 use lie_core::{FacetQuadrature, FractureLaw, Rock};
 
 pub use conditions::{Condition, FixedPoint, Support, SurfaceLoad};
+pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid};
 pub use initial_stress::{InitialStress, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};
 

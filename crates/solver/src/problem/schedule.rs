@@ -94,6 +94,8 @@ pub struct Cases {
     pub fractures: Vec<usize>,
     /// Of each of [`crate::Problem::fixed_points`].
     pub fixed_points: Vec<usize>,
+    /// Of each borehole of the user's.
+    pub sources: Vec<usize>,
     /// Of gravity.
     pub gravity: usize,
 }
@@ -107,6 +109,11 @@ impl Cases {
     /// Load case of the fluid pressure in a fracture.
     pub fn of_fracture(&self, fracture: usize) -> usize {
         self.fractures.get(fracture).copied().unwrap_or(0)
+    }
+
+    /// Load case of a borehole.
+    pub fn of_source(&self, source: usize) -> usize {
+        self.sources.get(source).copied().unwrap_or(0)
     }
 
     /// Load case of a fixed point.

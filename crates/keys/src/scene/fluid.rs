@@ -1,0 +1,195 @@
+//! What flows in fractures, and where it is driven.
+
+use super::shared::{GROWS_ONCE, INITIAL, INITIAL_GRADIENT};
+use crate::dimension::Dimension;
+use crate::plausible::Plausible;
+use crate::range::Range;
+use crate::table::{Key, KeySection, Kind, Need, number, quantity, watched};
+
+static VISCOSITY: Plausible = Plausible {
+    low: 1e-6,
+    high: 10.0,
+    usual: (1e-5, 1e-1),
+    units: &["mPa s"],
+};
+
+static FLUID_DENSITY: Plausible = Plausible {
+    low: 0.1,
+    high: 3000.0,
+    usual: (500.0, 2000.0),
+    units: &["g/cm3"],
+};
+
+static WELL_RADIUS: Plausible = Plausible {
+    low: 1e-3,
+    high: 10.0,
+    usual: (0.02, 1.0),
+    units: &["mm", "cm"],
+};
+
+/// A fluid that flows in the fractures.
+pub static FLUID: KeySection = KeySection {
+    pattern: "[fluid]",
+    says: "A fluid that flows in the fractures; without this section nothing flows",
+    keys: &[
+        Key {
+            name: "viscosity",
+            kind: watched(Dimension::Viscosity, Range::Positive, &VISCOSITY),
+            need: Need::Required,
+            example: "1e-3",
+            says: "Viscosity mu; a fracture conducts b_h^3 / (12 mu)",
+        },
+        Key {
+            name: "density",
+            kind: watched(Dimension::Density, Range::Positive, &FLUID_DENSITY),
+            need: Need::Unless("there is no gravity"),
+            example: "1000",
+            says: "Mass per volume",
+        },
+    ],
+    also: None,
+};
+
+/// A borehole.
+pub static SOURCE: KeySection = KeySection {
+    pattern: "[[source]]",
+    says: "A borehole through the fractures at one place, by its rate or its pressure",
+    keys: &[
+        Key {
+            name: "name",
+            kind: Kind::Text,
+            need: Need::Without("source number 1, 2, ..."),
+            example: "\"injector\"",
+            says: "What messages and results call it",
+        },
+        Key {
+            name: "at",
+            kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
+            need: Need::Required,
+            example: "[0.0, 0.0, 0.0]",
+            says: "Where it is; the nearest node of a fracture is taken, and the run names it if it lies elsewhere",
+        },
+        Key {
+            name: "rate",
+            kind: number(Dimension::VolumeRate, Range::Finite),
+            need: Need::Or("pressure"),
+            example: "1e-3",
+            says: "What flows in; negative where it flows out",
+        },
+        Key {
+            name: "pressure",
+            kind: number(Dimension::Stress, INITIAL),
+            need: Need::Or("rate"),
+            example: "12e6",
+            says: "Pressure of the fluid at its wall",
+        },
+        Key {
+            name: "radius",
+            kind: watched(Dimension::Length, Range::Positive, &WELL_RADIUS),
+            need: Need::Required,
+            example: "0.1",
+            says: "Its radius, small beside the facets around it; the pressure at its wall depends on it",
+        },
+        Key {
+            name: "history",
+            kind: Kind::History,
+            need: GROWS_ONCE,
+            example: "[[0, 0], [1, 1]]",
+            says: "Factor on its rate or pressure at times",
+        },
+    ],
+    also: None,
+};
+
+/// A pressure that is linear in the elevation.
+pub static FLUID_PROFILE: KeySection = KeySection {
+    pattern: "[boundary.NAME.fluid_pressure]",
+    says: "A pressure `value + per_metre (z - at)` at the elevation z",
+    keys: &[
+        Key {
+            name: "value",
+            kind: number(Dimension::Stress, INITIAL),
+            need: Need::Required,
+            example: "1e6",
+            says: "Pressure at the elevation `at`",
+        },
+        Key {
+            name: "per_metre",
+            kind: number(Dimension::StressPerLength, INITIAL_GRADIENT),
+            need: Need::Default("0"),
+            example: "-9810",
+            says: "Increase with the elevation",
+        },
+        Key {
+            name: "at",
+            kind: number(Dimension::Length, Range::Finite),
+            need: Need::Default("0"),
+            example: "0.0",
+            says: "Elevation of `value`, positive upwards",
+        },
+    ],
+    also: None,
+};
+
+/// Where fractures meet a part of the outer surface.
+pub(super) const BOUNDARY_PRESSURE: Key = Key {
+    name: "fluid_pressure",
+    kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &FLUID_PROFILE),
+    need: Need::Without("closed to the fluid"),
+    example: "1e6",
+    says: "Pressure of the fluid where fractures meet the surface: constant, or linear in the elevation",
+};
+
+/// What enters the fractures through a part of the outer surface.
+pub(super) const BOUNDARY_INFLOW: Key = Key {
+    name: "fluid_inflow",
+    kind: number(Dimension::VolumeRate, Range::Finite),
+    need: Need::Without("closed to the fluid"),
+    example: "1e-3",
+    says: "What flows into the fractures that meet the surface, in all, shared by length times transmissivity; instead of `fluid_pressure`",
+};
+
+/// How a fracture conducts.
+pub(super) const HYDRAULIC_APERTURE: Key = Key {
+    name: "hydraulic_aperture",
+    kind: number(Dimension::Length, Range::Positive),
+    need: Need::Without("follows `aperture` in rigid rock; required in rock that deforms"),
+    example: "1e-4",
+    says: "Aperture b_h that the fluid sees, whatever the walls do; needs `[fluid]`",
+};
+
+/// What closed walls leave open.
+pub(super) const RESIDUAL_HYDRAULIC_APERTURE: Key = Key {
+    name: "residual_hydraulic_aperture",
+    kind: number(Dimension::Length, Range::NotNegative),
+    need: Need::Default("0"),
+    example: "1e-6",
+    says: "Hydraulic aperture r that closed walls leave, b_h^3 = e^3 + r^3; where there is no `hydraulic_aperture`",
+};
+
+/// How rough walls are, by a factor.
+pub(super) const ROUGHNESS: Key = Key {
+    name: "roughness",
+    kind: number(Dimension::One, Range::Within(1.0, 1e6)),
+    need: Need::Default("1"),
+    example: "1.5",
+    says: "Factor f by which rough walls lower the transmissivity, e^3 = b^3 / f",
+};
+
+/// How rough walls are, by Barton's coefficient.
+pub(super) const JOINT_ROUGHNESS: Key = Key {
+    name: "joint_roughness",
+    kind: number(Dimension::One, Range::Within(0.0, 20.0)),
+    need: Need::Without("`roughness`"),
+    example: "8",
+    says: "Barton's coefficient JRC instead: e = b^2 / JRC^2.5 in micrometres, at most b",
+};
+
+/// Whether a fracture conducts at all.
+pub(super) const SEALED: Key = Key {
+    name: "sealed",
+    kind: Kind::Flag,
+    need: Need::Default("false"),
+    example: "true",
+    says: "Whether nothing flows in it; fractures that cross it stay connected",
+};

@@ -1,0 +1,189 @@
+//! What a scene says of a fluid: what it is, how fractures conduct it, what drives it.
+
+use glam::DVec3;
+use kluft_solver::{Conduit, FlowDrive, Fluid, Profile};
+use lie_core::{HydraulicAperture, Roughness};
+
+use crate::history::LoadHistory;
+use crate::load::{Scaled, read_history};
+use crate::profile::read_profile;
+use crate::reader::Section;
+use crate::setting::{FluidUse, Setting};
+
+/// A borehole.
+#[derive(Debug, Clone)]
+pub struct SourceEntry {
+    /// Where it is (m).
+    pub at: DVec3,
+    /// Its radius (m).
+    pub radius: f64,
+    /// What it does.
+    pub drive: FlowDrive,
+    /// How that changes with time.
+    pub history: Option<LoadHistory>,
+}
+
+/// Keys of a fracture that speak of the fluid.
+const OF_FRACTURES: [&str; 5] = [
+    "hydraulic_aperture",
+    "residual_hydraulic_aperture",
+    "roughness",
+    "joint_roughness",
+    "sealed",
+];
+
+/// Whether a fluid flows in a scene, and in what rock: in rigid rock if no rock has a Young's
+/// modulus.
+pub(crate) fn fluid_use(root: &Section<'_, '_>) -> FluidUse {
+    if !root.has("fluid") {
+        return FluidUse::None;
+    }
+    let rocks = root.section("rock");
+    let mut rocks = rocks.iter().flat_map(|rocks| rocks.table().iter());
+    let deforms = rocks.any(|(_, rock)| {
+        let keys = rock.get_ref().as_table();
+        keys.is_some_and(|keys| keys.get("young_modulus").is_some())
+    });
+    match deforms {
+        true => FluidUse::InElasticRock,
+        false => FluidUse::InRigidRock,
+    }
+}
+
+/// Reads the fluid.
+pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<Fluid> {
+    section.require("viscosity");
+    if gravity != DVec3::ZERO {
+        section.require("density");
+    }
+    let viscosity = section.number("viscosity");
+    let density = section.number("density");
+    section.finish();
+    Some(Fluid {
+        viscosity: viscosity?,
+        density: density.unwrap_or(0.0),
+    })
+}
+
+/// Reads a borehole.
+pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option<SourceEntry> {
+    refuse_without_fluid(section, setting, &["rate", "pressure"]);
+    section.require("at");
+    section.require("radius");
+    let at = section.vector("at");
+    let radius = section.number("radius");
+    let drive = read_drive(section, ["pressure", "rate"]);
+    if drive.is_none() {
+        section.require("rate");
+    }
+    let scaled = Scaled {
+        is_there: section.has("rate") || section.has("pressure"),
+        what: "a rate or a pressure",
+    };
+    let history = read_history(section, setting.clock, scaled);
+    Some(SourceEntry {
+        at: at?.into(),
+        radius: radius?,
+        drive: drive?,
+        history,
+    })
+}
+
+/// Reads what drives the fluid at a part of the outer surface.
+pub(crate) fn read_boundary_fluid(
+    section: &Section<'_, '_>,
+    setting: Setting,
+) -> Option<FlowDrive> {
+    refuse_without_fluid(section, setting, &["fluid_pressure", "fluid_inflow"]);
+    read_drive(section, ["fluid_pressure", "fluid_inflow"])
+}
+
+/// A pressure or a rate.
+fn read_drive(section: &Section<'_, '_>, [pressure, rate]: [&'static str; 2]) -> Option<FlowDrive> {
+    if section.has(pressure) && section.has(rate) {
+        let problem = format!("both {pressure} and {rate} are given");
+        let remedy = "keep one: where the pressure is given the rate follows from it";
+        section.refuse(rate, problem, remedy);
+    }
+    if !section.has(pressure) {
+        return section.number(rate).map(FlowDrive::Rate);
+    }
+    section.number(rate);
+    let given: Profile = match pressure {
+        "fluid_pressure" => read_profile(section, pressure),
+        constant => Profile {
+            value: section.number(constant).unwrap_or(0.0),
+            ..Profile::default()
+        },
+    };
+    Some(FlowDrive::Pressure(given))
+}
+
+/// Reads how a fracture conducts; none if nothing flows in the scene.
+pub(crate) fn read_conduit(section: &Section<'_, '_>, setting: Setting) -> Option<Conduit> {
+    refuse_without_fluid(section, setting, &OF_FRACTURES);
+    if setting.fluid == FluidUse::None {
+        return None;
+    }
+    if section.flag("sealed") == Some(true) {
+        refuse_beside(section, "sealed = true", &OF_FRACTURES[..4]);
+        return Some(Conduit::Sealed);
+    }
+    if section.has("hydraulic_aperture") {
+        refuse_beside(section, "hydraulic_aperture", &OF_FRACTURES[1..4]);
+        let constant = section.number("hydraulic_aperture");
+        return constant.map(|constant| Conduit::Open(HydraulicAperture::Constant(constant)));
+    }
+    if setting.fluid == FluidUse::InElasticRock {
+        section.refuse(
+            "hydraulic_aperture",
+            format!(
+                "the walls of {} move, and flow that follows them is not computed",
+                section.title
+            ),
+            "add hydraulic_aperture = 1e-4 (m, constant), write sealed = true, or leave out \
+             young_modulus everywhere for flow in rigid rock",
+        );
+    }
+    let residual = section.number("residual_hydraulic_aperture");
+    Some(Conduit::Open(HydraulicAperture::OfWalls {
+        roughness: read_roughness(section),
+        residual: residual.unwrap_or(0.0),
+    }))
+}
+
+fn read_roughness(section: &Section<'_, '_>) -> Roughness {
+    let factor = section.number("roughness");
+    let coefficient = section.number("joint_roughness");
+    if section.has("roughness") && section.has("joint_roughness") {
+        section.refuse(
+            "joint_roughness",
+            "both roughness and joint_roughness are given".into(),
+            "keep one: a factor on the transmissivity, or Barton's coefficient",
+        );
+    }
+    match coefficient {
+        Some(coefficient) => Roughness::Coefficient(coefficient),
+        None => Roughness::Factor(factor.unwrap_or(1.0)),
+    }
+}
+
+/// Refuses keys that another one leaves without effect.
+fn refuse_beside(section: &Section<'_, '_>, other: &str, keys: &[&'static str]) {
+    for &key in keys.iter().filter(|key| section.has(key)) {
+        let problem = format!("`{key}` has no effect beside {other}");
+        section.refuse(key, problem, "keep one of them");
+    }
+}
+
+fn refuse_without_fluid(section: &Section<'_, '_>, setting: Setting, keys: &[&'static str]) {
+    for &key in keys.iter().filter(|key| section.has(key)) {
+        if setting.fluid == FluidUse::None {
+            section.refuse(
+                key,
+                format!("`{key}` is given, but there is no [fluid]"),
+                "add [fluid] with viscosity = 1e-3 (Pa s), or remove it",
+            );
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Fields of a flow for results.
+
+use glam::DVec3;
+use kluft_mesh::Mesh;
+use lie_core::Conduction;
+
+use super::solve::FlowState;
+use super::steady::FlowSystem;
+use crate::problem::{Conduit, Flow};
+
+/// Fields on the facets of all fractures; zero on those that are sealed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlowFields {
+    /// Pressure (Pa) at the nodes of the facets, in the order of their flat node list: between
+    /// corners the mean of them.
+    pub pressures: Vec<f64>,
+    /// Hydraulic aperture (m), in the same order.
+    pub hydraulic_apertures: Vec<f64>,
+    /// `b_h^3 / 12` of each facet (m^3), which the viscosity divides to the transmissivity.
+    pub transmissivities: Vec<f64>,
+    /// Mean flux along each facet (m^2/s).
+    pub fluxes: Vec<DVec3>,
+}
+
+impl FlowSystem<'_> {
+    /// The fields of a state, with the apertures (m) that the system was made with.
+    pub fn fields(&self, state: &FlowState, apertures: &[f64]) -> FlowFields {
+        let elements = &self.mesh.facets.elements;
+        let mut fields = FlowFields {
+            pressures: self.facet_pressures(state),
+            hydraulic_apertures: hydraulic_apertures(self.mesh, self.flow, apertures),
+            transmissivities: vec![0.0; elements.len()],
+            fluxes: vec![DVec3::ZERO; elements.len()],
+        };
+        for (index, &facet) in self.nodes.facets.iter().enumerate() {
+            let transmissivity = self.conductance.transmissivity[index];
+            let corners = self.nodes.corners.of(index).iter();
+            let own: Vec<f64> = corners.map(|&row| state.potentials[row as usize]).collect();
+            let gradient = self.conductance.stencils[index].mean_gradient(&own);
+            fields.transmissivities[facet as usize] = self.flow.fluid.viscosity * transmissivity;
+            fields.fluxes[facet as usize] = -transmissivity * gradient;
+        }
+        fields
+    }
+
+    /// Pressure (Pa) at the nodes of the facets, in the order of their flat node list.
+    pub fn facet_pressures(&self, state: &FlowState) -> Vec<f64> {
+        let elements = &self.mesh.facets.elements;
+        let mut pressures = vec![0.0; elements.nodes.len()];
+        for (index, &facet) in self.nodes.facets.iter().enumerate() {
+            let facet = facet as usize;
+            let corners = self.nodes.corners.of(index).iter();
+            let corners: Vec<f64> = corners.map(|&row| state.pressures[row as usize]).collect();
+            let own = &mut pressures[elements.range(facet)];
+            own[..corners.len()].copy_from_slice(&corners);
+            let between = own[corners.len()..].iter_mut();
+            let mut edges = elements.shapes[facet].edges().iter();
+            for value in between {
+                *value = match edges.next() {
+                    Some(&[a, b]) => 0.5 * (corners[a as usize] + corners[b as usize]),
+                    None => corners.iter().sum::<f64>() / corners.len() as f64,
+                };
+            }
+        }
+        pressures
+    }
+}
+
+fn hydraulic_apertures(mesh: &Mesh, flow: &Flow, apertures: &[f64]) -> Vec<f64> {
+    let facets = mesh.facets.fracture.iter().enumerate();
+    let of = |aperture: &f64, conduit: Conduit| match conduit {
+        Conduit::Sealed => 0.0,
+        Conduit::Open(hydraulic) => {
+            let Conduction {
+                hydraulic_aperture, ..
+            } = hydraulic.at(*aperture);
+            hydraulic_aperture
+        }
+    };
+    let fields = facets.flat_map(|(facet, &fracture)| {
+        let conduit = flow.conduits[fracture as usize];
+        let own = apertures[mesh.facets.elements.range(facet)].iter();
+        own.map(move |aperture| of(aperture, conduit))
+    });
+    fields.collect()
+}

@@ -1,0 +1,44 @@
+//! Flow in the fractures: one pressure a node, linear along facets.
+//!
+//! A node of conducting fractures has one pressure, whatever fractures meet there: the fluid passes
+//! from one to another without loss. With the potential `phi = p - rho g . x`, the transmissivities
+//! `T_f` of the facets and their stencils `k_ij` (see `lie_core::FacetFlow`),
+//!
+//! ```text
+//! sum_f T_f sum_j k_ij (phi_j - phi_i) = q_i
+//! ```
+//!
+//! is the rate that enters at node `i`: what a condition drives, and zero at all others. The sum of
+//! these equations is the mass balance.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `numbering` | the nodes that have a pressure |
+//! | `conductance` | transmissivities of facets, the matrix, rates of potentials |
+//! | `edges`, `wells`, `nodal` | conditions as they act on nodes |
+//! | `networks` | what hangs together hydraulically, and what has no steady state |
+//! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
+//! | `balance` | what enters, what leaves |
+//! | `walls` | the push of the fluid on the walls of fractures |
+//! | `fields` | pressure, hydraulic aperture and flux for results |
+
+mod balance;
+mod conductance;
+mod edges;
+mod fields;
+mod networks;
+mod nodal;
+mod numbering;
+mod solve;
+mod steady;
+mod walls;
+mod wells;
+
+pub use balance::{ConditionFlow, FlowBalance};
+pub use fields::FlowFields;
+pub use networks::{FlowNetwork, NO_PRESSURE};
+pub use solve::FlowState;
+pub use steady::FlowSystem;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,176 @@
+//! What hangs together hydraulically, and what has no steady state.
+
+use kluft_mesh::{Defect, DisjointSets, Mesh};
+
+use super::nodal::{Nodal, NodalCondition};
+use super::numbering::FlowNodes;
+use crate::problem::{Flow, FlowDrive};
+
+/// Code of the defect that no pressure is given to a network, see [`kluft_mesh::Defect::code`].
+pub const NO_PRESSURE: &str = "no-pressure";
+
+/// What to do about it. Whoever knows how conditions are written may put it more plainly.
+const GIVE_PRESSURE: &str = "give a pressure somewhere on these fractures, or seal them";
+
+/// Rates that add up to less than this share of their sizes cancel.
+const CANCELLING: f64 = 1e-12;
+
+/// Conducting fractures between which fluid can pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlowNetwork {
+    /// Indices into [`kluft_mesh::MeshData::fractures`], ascending.
+    pub fractures: Vec<u32>,
+    /// Number of its pressures.
+    pub nodes: usize,
+    /// What acts on it: indices into [`Flow::conditions`].
+    pub conditions: Vec<usize>,
+    /// Whether a pressure is given somewhere.
+    pub has_pressure: bool,
+}
+
+/// All networks, in the order of their lowest nodes, and the network of each pressure.
+pub(super) fn find(
+    mesh: &Mesh,
+    nodes: &FlowNodes,
+    conditions: &[NodalCondition],
+) -> (Vec<FlowNetwork>, Vec<u32>) {
+    let mut sets = DisjointSets::new(nodes.len());
+    for facet in 0..nodes.facets.len() {
+        let corners = nodes.corners.of(facet);
+        for &corner in &corners[1..] {
+            sets.join(corners[0], corner);
+        }
+    }
+    let mut networks: Vec<FlowNetwork> = Vec::new();
+    let mut of_row: Vec<u32> = vec![0; nodes.len()];
+    for row in 0..nodes.len() {
+        let root = sets.root(row as u32) as usize;
+        if root == row {
+            of_row[row] = networks.len() as u32;
+            networks.push(FlowNetwork {
+                fractures: Vec::new(),
+                nodes: 0,
+                conditions: Vec::new(),
+                has_pressure: false,
+            });
+        }
+        // The root is the lowest row, so it has its network already.
+        of_row[row] = of_row[root];
+        networks[of_row[row] as usize].nodes += 1;
+    }
+    for (index, &facet) in nodes.facets.iter().enumerate() {
+        let network = of_row[nodes.corners.of(index)[0] as usize] as usize;
+        let fracture = mesh.facets.fracture[facet as usize];
+        networks[network].fractures.push(fracture);
+    }
+    for network in &mut networks {
+        network.fractures.sort_unstable();
+        network.fractures.dedup();
+    }
+    for entry in conditions {
+        add_condition(entry, &of_row, &mut networks);
+    }
+    (networks, of_row)
+}
+
+fn add_condition(entry: &NodalCondition, of_row: &[u32], networks: &mut [FlowNetwork]) {
+    let (rows, gives_pressure): (Vec<usize>, bool) = match &entry.nodal {
+        Nodal::Given(rows) => (rows.clone(), true),
+        Nodal::Shared(shares) => (shares.iter().map(|(row, _)| *row).collect(), false),
+        Nodal::WellRate(well) => (vec![well.row], false),
+        Nodal::WellPressure(well) => (vec![well.row], true),
+    };
+    for row in rows {
+        let network = &mut networks[of_row[row] as usize];
+        network.has_pressure |= gives_pressure;
+        if !network.conditions.contains(&entry.condition) {
+            network.conditions.push(entry.condition);
+        }
+    }
+}
+
+/// Networks without a given pressure: those that rates drive, each by itself, and all that nothing
+/// drives in one.
+pub(super) fn without_pressure(
+    mesh: &Mesh,
+    flow: &Flow,
+    networks: &[FlowNetwork],
+    conditions: &[NodalCondition],
+    of_row: &[u32],
+) -> Vec<Defect> {
+    let mut defects = Vec::new();
+    let mut idle: Vec<&str> = Vec::new();
+    let mut idle_count = 0;
+    for (index, network) in networks.iter().enumerate() {
+        if network.has_pressure {
+            continue;
+        }
+        let names = network.fractures.iter();
+        let names: Vec<&str> = names
+            .map(|&fracture| mesh.fractures[fracture as usize].as_str())
+            .collect();
+        if network.conditions.is_empty() {
+            idle_count += 1;
+            idle.extend(names);
+            continue;
+        }
+        let sums = rates_into(flow, conditions, of_row, index);
+        let problem = match sums.0.abs() <= CANCELLING * sums.1 {
+            true => "no pressure is given: it is known up to a constant only".to_owned(),
+            false => format!(
+                "no pressure is given, and the rates add up to {:.6e} m3/s: there is no steady state",
+                sums.0
+            ),
+        };
+        defects.push(defect(&names, problem));
+    }
+    if idle_count > 0 {
+        idle.sort_unstable();
+        idle.dedup();
+        let problem = match idle_count {
+            1 => "nothing drives a flow, and no pressure is given".to_owned(),
+            count => format!(
+                "in {count} networks that do not hang together nothing drives a flow, and no pressure is given"
+            ),
+        };
+        defects.push(defect(&idle, problem));
+    }
+    defects
+}
+
+/// Sum of the rates into a network at load factor 1, and sum of their sizes (m^3/s).
+fn rates_into(
+    flow: &Flow,
+    conditions: &[NodalCondition],
+    of_row: &[u32],
+    network: usize,
+) -> (f64, f64) {
+    let mut sums = (0.0, 0.0);
+    for NodalCondition { condition, nodal } in conditions {
+        let FlowDrive::Rate(rate) = flow.conditions[*condition].drive else {
+            continue;
+        };
+        let inside = |row: usize| of_row[row] as usize == network;
+        let share: f64 = match nodal {
+            Nodal::Shared(shares) => {
+                let own = shares.iter().filter(|(row, _)| inside(*row));
+                own.map(|(_, share)| share).sum()
+            }
+            Nodal::WellRate(well) => f64::from(u8::from(inside(well.row))),
+            Nodal::Given(_) | Nodal::WellPressure(_) => 0.0,
+        };
+        sums.0 += share * rate;
+        sums.1 += (share * rate).abs();
+    }
+    sums
+}
+
+fn defect(names: &[&str], problem: String) -> Defect {
+    let word = if names.len() == 1 {
+        "fracture"
+    } else {
+        "fractures"
+    };
+    let place = format!("{word} `{}`", names.join("`, `"));
+    Defect::new(place, problem, GIVE_PRESSURE).with_code(NO_PRESSURE)
+}

@@ -1,0 +1,82 @@
+//! Boreholes: pressure at their wall beside pressure at their node.
+//!
+//! Around a hole of radius `r_w` the pressure falls with the logarithm of the distance, which a
+//! linear pressure on facets does not follow at the node itself: what it has there belongs to a
+//! radius `r_e` that depends on the mesh (Peaceman 1978). Nodes beside are right, so that with
+//! `Theta = sum_f T_f theta_f`, `theta_f` the angles of the facets at the node,
+//!
+//! ```text
+//! phi_j = phi_w - Q / Theta ln(r_j / r_w),    Q = sum_j K_ij (phi_j - phi_i)
+//! =>  Q = W (phi_w - phi_i),  W = Theta / ln(r_e / r_w),
+//!     ln r_e = sum_j (-K_ij / K_ii) ln r_j - Theta / K_ii
+//! ```
+//!
+//! On squares this is `r_e = h exp(-pi / 2)`, Peaceman's first estimate.
+
+use kluft_mesh::{Defect, Mesh};
+
+use super::conductance::Conductance;
+use super::numbering::FlowNodes;
+
+/// A borehole.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Well {
+    /// The pressure of its node.
+    pub(super) row: usize,
+    /// `W` (m^3/(Pa s)).
+    pub(super) conductance: f64,
+}
+
+/// The borehole of a radius (m) at a pressure; `name` is for messages.
+///
+/// # Errors
+/// If the mesh is so fine that the hole reaches beyond its node.
+pub(super) fn at(
+    mesh: &Mesh,
+    nodes: &FlowNodes,
+    conductance: &Conductance,
+    row: usize,
+    (radius, name): (f64, &str),
+) -> Result<Well, Defect> {
+    let angles = angles(mesh, nodes, conductance, row);
+    let (own, place) = (conductance.diagonal(row), nodes.node[row] as usize);
+    let distance = |column: usize| {
+        let other = mesh.nodes[nodes.node[column] as usize];
+        mesh.nodes[place].distance(other)
+    };
+    let others = conductance.matrix.row(row);
+    let others = others.filter(|(column, _)| *column != row);
+    let mean: f64 = others
+        .map(|(column, value)| -value / own * distance(column).ln())
+        .sum();
+    let equivalent = (mean - angles / own).exp();
+    if equivalent > radius {
+        return Ok(Well {
+            row,
+            conductance: angles / (equivalent / radius).ln(),
+        });
+    }
+    Err(Defect::new(
+        name,
+        format!(
+            "its radius of {radius} m is not small beside the facets around it: a borehole there is less than {equivalent:.4e} m in radius"
+        ),
+        "mesh coarser there, or cut the hole out of the geometry and give the pressure on its wall",
+    ))
+}
+
+/// `Theta` (m^3/(Pa s)).
+fn angles(mesh: &Mesh, nodes: &FlowNodes, conductance: &Conductance, row: usize) -> f64 {
+    let facets = nodes.around.of(row).iter();
+    let terms = facets.map(|&facet| {
+        let corners = nodes.corners.of(facet as usize);
+        let count = corners.len();
+        let local = corners.iter().position(|&corner| corner as usize == row);
+        let local = local.unwrap_or(0);
+        let place =
+            |corner: usize| mesh.nodes[nodes.node[corners[corner % count] as usize] as usize];
+        let (own, before, after) = (place(local), place(local + count - 1), place(local + 1));
+        conductance.transmissivity[facet as usize] * (before - own).angle_between(after - own)
+    });
+    terms.sum()
+}

@@ -1,0 +1,78 @@
+//! What flows in the fractures, and what drives it.
+
+use glam::DVec3;
+use lie_core::HydraulicAperture;
+
+use super::initial_stress::Profile;
+
+/// A fluid that fills fractures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fluid {
+    /// Viscosity (Pa s).
+    pub viscosity: f64,
+    /// Density (kg/m^3); 0 where gravity plays no part.
+    pub density: f64,
+}
+
+/// A fracture as the fluid sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Conduit {
+    /// Nothing flows in it. What crosses it flows across.
+    Sealed,
+    /// The fluid flows along it.
+    Open(HydraulicAperture),
+}
+
+/// Where the fluid is driven.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FlowPlace {
+    /// Where fractures meet a part of the outer surface: index into
+    /// [`kluft_mesh::MeshData::boundaries`].
+    Boundary(usize),
+    /// All of a fracture: index into [`kluft_mesh::MeshData::fractures`].
+    Fracture(usize),
+    /// A borehole through a node of fractures.
+    Well {
+        /// The node.
+        node: u32,
+        /// Its radius (m).
+        radius: f64,
+    },
+}
+
+/// How the fluid is driven, at load factor 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FlowDrive {
+    /// Its pressure (Pa), by elevation.
+    Pressure(Profile),
+    /// What enters in all (m^3/s); negative where it leaves.
+    Rate(f64),
+}
+
+/// A condition on the flow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlowCondition {
+    /// How the user calls it, for messages and results.
+    pub name: String,
+    /// Where it acts.
+    pub place: FlowPlace,
+    /// What it does.
+    pub drive: FlowDrive,
+    /// Its load case.
+    pub case: usize,
+}
+
+/// Flow in the fractures of a mesh. The rock conducts nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flow {
+    /// The fluid.
+    pub fluid: Fluid,
+    /// One entry for each of [`kluft_mesh::MeshData::fractures`].
+    pub conduits: Vec<Conduit>,
+    /// What drives it. Outer surfaces without a condition are closed.
+    pub conditions: Vec<FlowCondition>,
+    /// Acceleration of gravity (m/s^2).
+    pub gravity: DVec3,
+    /// Load case of gravity.
+    pub gravity_case: usize,
+}

@@ -1,0 +1,267 @@
+//! Flow in fractures: rates, pressures and fields beside closed forms, and what is refused.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::harness::{Workshop, files, kluft, summary};
+use crate::read_back::read_back;
+
+/// What stands in `sources.csv` behind its head: step, time, source, pressure, rate.
+fn sources(folder: &Path) -> Vec<(String, f64, f64)> {
+    let text = fs::read_to_string(folder.join("sources.csv")).expect("sources.csv");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("step,time,source,pressure,rate"));
+    let number = |text: &str| text.parse::<f64>().expect("a number");
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), 5, "{line}");
+        (cells[2].to_owned(), number(cells[3]), number(cells[4]))
+    };
+    lines.map(row).collect()
+}
+
+fn is_close(found: f64, expected: f64, tolerance: f64) {
+    let error = (found - expected).abs();
+    assert!(error <= tolerance * expected.abs(), "{found} {expected}");
+}
+
+/// The transmissivities of the star, and its rates: `q = T (p - sum T p / sum T)`.
+fn star() -> [(&'static str, f64, f64); 4] {
+    let ends = [
+        ("left", 1e-4, 3e5),
+        ("right", 2e-4, 1e5),
+        ("front", 0.5e-4, 0.0),
+        ("back", 1.5e-4, 2e5),
+    ];
+    let conducts = |width: f64| width.powi(3) / 12e-3;
+    let whole: f64 = ends.iter().map(|(_, width, _)| conducts(*width)).sum();
+    let sum: f64 = ends.iter().map(|(_, width, p)| conducts(*width) * p).sum();
+    is_close(sum / whole, 1.42e5, 1e-12);
+    ends.map(|(side, width, p)| (side, p, conducts(width) * (p - sum / whole)))
+}
+
+/// The pressures and rates of the star, by the names of its sides.
+fn check_star(out: &Path) {
+    let rows = sources(out);
+    assert_eq!(rows.len(), 4);
+    for (side, pressure, rate) in star() {
+        let name = format!("[boundary.{side}]");
+        let row = rows.iter().find(|row| row.0 == name).expect("a row");
+        is_close(row.1, pressure, 1e-14);
+        is_close(row.2, rate, 1e-11);
+    }
+}
+
+#[test]
+fn a_star_of_joints_has_its_rates() {
+    let workshop = Workshop::new("flow-star", &[]);
+    let one = workshop.solve("one", &["--threads", "1"]);
+    let two = workshop.solve("two", &["--threads", "2"]);
+    let (mut ones, mut twos) = (files(&one), files(&two));
+    let names: Vec<&str> = ones.keys().map(String::as_str).collect();
+    let promised = [
+        "fractures.pvd",
+        "fractures_0001.vtu",
+        "mesh.msh",
+        "rock.pvd",
+        "rock_0001.vtu",
+        "sources.csv",
+        "summary.json",
+    ];
+    assert_eq!(names, promised);
+    assert!(ones.remove("summary.json").is_some() && twos.remove("summary.json").is_some());
+    assert_eq!(ones, twos);
+    check_star(&one);
+    let said = summary(&one);
+    let flow = &said["steps"][0]["flow"];
+    assert!(
+        flow["mass_error"].as_f64().expect("a share") < 1e-12,
+        "{flow}"
+    );
+    assert_eq!(said["flow"]["networks"].as_array().map(Vec::len), Some(1));
+    let found = read_back(&one);
+    let fractures = &found["fractures"]["steps"][0];
+    let range = |field: &Value| ["min", "max"].map(|end| field[end][0].as_f64().expect("a number"));
+    let [low, high] = range(&fractures["point_data"]["pressure"]);
+    assert_eq!((low, high), (0.0, 3e5));
+    let [low, high] = range(&fractures["cell_data"]["transmissivity"]);
+    is_close(low, 0.125e-12 / 12.0, 1e-13);
+    is_close(high, 8e-12 / 12.0, 1e-13);
+}
+
+#[test]
+fn standing_water_stands() {
+    let out = Workshop::new("standing-water", &[("h = 0.5", "h = 0.3")]);
+    let out = out.solve("out", &[]);
+    let said = summary(&out);
+    let fractures = said["flow"]["fractures"].as_array().expect("fractures");
+    let of = |name: &str| {
+        fractures
+            .iter()
+            .find(|f| f["name"] == name)
+            .expect("a fracture")
+    };
+    let number = |value: &Value| value.as_f64().expect("a number");
+    is_close(number(&of("joint")["pressure"]["max"]), 9.81e4, 1e-13);
+    is_close(number(&of("bed")["pressure"]["mean"]), 5.886e4, 1e-13);
+    // e = 2500 / 8^2.5 um, and b_h^3 = e^3 + r^3.
+    let rough: f64 = 2500e-6 / 8_f64.powf(2.5);
+    let expected = (rough.powi(3) + 1e-18).cbrt();
+    is_close(
+        number(&of("bed")["hydraulic_aperture"]["mean"]),
+        expected,
+        1e-12,
+    );
+    for fracture in fractures {
+        // What a head of 1 m in 10 m would drive in the joint is some 6e-7 m2/s.
+        assert!(number(&fracture["flux_max"]) < 1e-20, "{fracture}");
+    }
+    assert_eq!(said["steps"][0]["flow"]["mass_error"], 0.0);
+}
+
+/// What makes the rock of the star elastic, and holds it.
+const ELASTIC: [(&str, &str); 5] = [
+    (
+        "[fluid]",
+        "[rock.default]\nyoung_modulus = 25e9\npoisson_ratio = 0.25\n\n[fluid]",
+    ),
+    (
+        "hydraulic_aperture = 1e-4",
+        "hydraulic_aperture = 1e-4\naperture = 1e-4\nnormal_stiffness = 1e11\nshear_stiffness = 5e10\nclosure = \"logarithmic\"",
+    ),
+    (
+        "hydraulic_aperture = 2e-4",
+        "hydraulic_aperture = 2e-4\naperture = 1e-4\nnormal_stiffness = 1e11\nshear_stiffness = 5e10\nclosure = \"logarithmic\"",
+    ),
+    (
+        "hydraulic_aperture = 0.5e-4",
+        "hydraulic_aperture = 0.5e-4\naperture = 1e-4\nnormal_stiffness = 1e11\nshear_stiffness = 5e10\nclosure = \"logarithmic\"",
+    ),
+    (
+        "hydraulic_aperture = 1.5e-4",
+        "hydraulic_aperture = 1.5e-4\naperture = 1e-4\nnormal_stiffness = 1e11\nshear_stiffness = 5e10\nclosure = \"logarithmic\"",
+    ),
+];
+
+fn elastic(more: &[(&str, &str)]) -> Workshop {
+    let held = [
+        (
+            "fluid_pressure = 3e5",
+            "fluid_pressure = 3e5\nsymmetry = true",
+        ),
+        (
+            "fluid_pressure = 1e5",
+            "fluid_pressure = 1e5\nsymmetry = true",
+        ),
+        (
+            "fluid_pressure = 0.0",
+            "fluid_pressure = 0.0\nsymmetry = true",
+        ),
+        (
+            "fluid_pressure = 2e5",
+            "fluid_pressure = 2e5\nsymmetry = true",
+        ),
+        (
+            "[boundary.left]",
+            "[[fixed_point]]\nat = [0, 0, 0]\ndisplacement = { z = 0.0 }\n\n[boundary.left]",
+        ),
+        ("h = 0.2", "h = 0.4"),
+    ];
+    let edits: Vec<(&str, &str)> = ELASTIC
+        .into_iter()
+        .chain(held)
+        .chain(more.iter().copied())
+        .collect();
+    Workshop::new("flow-star", &edits)
+}
+
+/// At constant hydraulic apertures the flow is that of rigid rock, and pushes the walls as a given
+/// pressure does.
+#[test]
+fn the_fluid_pushes_the_walls_of_joints() {
+    let out = elastic(&[]).solve("out", &[]);
+    check_star(&out);
+    let even = [
+        ("fluid_pressure = 3e5", "fluid_pressure = 2e5"),
+        ("fluid_pressure = 1e5", "fluid_pressure = 2e5"),
+        ("fluid_pressure = 0.0", "fluid_pressure = 2e5"),
+    ];
+    let workshop = elastic(&[]);
+    let text = fs::read_to_string(workshop.scene()).expect("the scene");
+    let flowing = even
+        .iter()
+        .fold(text.clone(), |text, (from, to)| text.replace(from, to));
+    // The same pressure given to each fracture, without a fluid.
+    let given = text
+        .lines()
+        .filter(|line| !line.contains("fluid") && !line.contains("viscosity"))
+        .map(|line| match line.starts_with("hydraulic_aperture") {
+            true => "fluid_pressure = 2e5",
+            false => line,
+        })
+        .collect::<Vec<_>>()
+        .join("\n");
+    let means = |name: &str, text: &str| {
+        fs::write(workshop.scene(), text).expect("written");
+        let said = summary(&workshop.solve(name, &[]));
+        ["west", "east", "south", "north"].map(|fracture| {
+            let aperture = &said["fractures"][fracture]["aperture"]["mean"];
+            aperture.as_f64().expect("a number")
+        })
+    };
+    let (flowing, given) = (means("flowing", &flowing), means("given", &given));
+    for (flowing, given) in flowing.into_iter().zip(given) {
+        assert!(given > 1.000_5e-4, "{given}");
+        is_close(flowing, given, 1e-11);
+    }
+}
+
+#[test]
+fn sources_are_told_at_the_end_of_every_load_step() {
+    let steps = ("[mesh]", "[load]\nsteps = [0.5, 1.0]\n\n[mesh]");
+    let rows = sources(&elastic(&[steps]).solve("out", &[]));
+    assert_eq!(rows.len(), 8);
+    for (half, full) in rows[..4].iter().zip(&rows[4..]) {
+        assert_eq!(half.0, full.0);
+        is_close(half.1, 0.5 * full.1, 1e-14);
+        is_close(half.2, 0.5 * full.2, 1e-11);
+    }
+}
+
+#[test]
+fn an_inspection_tells_what_connects() {
+    let workshop = Workshop::new(
+        "flow-star",
+        &[
+            ("hydraulic_aperture = 2e-4", "sealed = true"),
+            ("[boundary.right]\nfluid_pressure = 1e5\n\n", ""),
+        ],
+    );
+    let scene = workshop.scene();
+    let run = kluft(&["inspect".as_ref(), scene.as_os_str()]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    let flat = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    for said in [
+        "unknown pressures, 1 network",
+        "west, south, north (",
+        "driven by [boundary.back], [boundary.front], [boundary.left]",
+    ] {
+        assert!(flat.contains(said), "{said}: {}", run.out);
+    }
+    let text = fs::read_to_string(&scene).expect("the scene");
+    let parts = text.split("\n\n");
+    let idle: Vec<&str> = parts
+        .filter(|part| !part.contains("fluid_pressure"))
+        .collect();
+    fs::write(&scene, idle.join("\n\n")).expect("written");
+    let run = kluft(&["inspect".as_ref(), scene.as_os_str()]);
+    assert_eq!(run.code, Some(2));
+    for said in [
+        "fractures `north`, `south`, `west`: nothing drives a flow",
+        "add fluid_pressure to a [boundary.NAME]",
+    ] {
+        assert!(run.err.contains(said), "{said}: {}", run.err);
+    }
+}
