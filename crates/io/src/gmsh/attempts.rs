@@ -21,6 +21,28 @@ const HXT: Attempt = Attempt {
     options: &[(ALGORITHM, 10.0), ("Mesh.MaxNumThreads3D", 1.0)],
 };
 
+/// How a geometry of `kluft network` names the forms that it offers.
+const FORM: &str = "form";
+/// What `kluft network` writes in the first line.
+const MADE_BY: &str = "made by `kluft network`";
+/// The option of gmsh that chooses how surfaces are meshed; 5 is Delaunay.
+const ALGORITHM_2D: &str = "Mesh.Algorithm";
+/// Whole fractures with lines embedded in them, then fractures split along closed loops of lines,
+/// then polygons that OpenCASCADE cuts: no form wins always.
+const FORMS: [Attempt; 5] = [
+    way("whole fractures", &[(FORM, 0.0)]),
+    way("split fractures", &[(FORM, 1.0)]),
+    way(
+        "whole fractures, surfaces by Delaunay",
+        &[(FORM, 0.0), (ALGORITHM_2D, 5.0)],
+    ),
+    way(
+        "split fractures, surfaces by Delaunay",
+        &[(FORM, 1.0), (ALGORITHM_2D, 5.0)],
+    ),
+    way("fractures cut by OpenCASCADE", &[(FORM, 2.0)]),
+];
+
 /// One way to mesh a geometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Attempt {
@@ -30,15 +52,38 @@ pub(super) struct Attempt {
     pub(super) options: &'static [(&'static str, f64)],
 }
 
-/// The ways to try: gmsh's usual one, and another where that fails, unless the geometry, a file
-/// that it opens, or a parameter chooses.
+const fn way(name: &'static str, options: &'static [(&'static str, f64)]) -> Attempt {
+    Attempt { name, options }
+}
+
+/// The ways to try: the forms that a network offers, or gmsh's usual way and another where that
+/// fails; one way if the geometry, a file that it opens, or a parameter chooses.
 pub(super) fn attempts(scripts: &[PathBuf], parameters: &[(String, f64)]) -> &'static [Attempt] {
     let is_given = parameters.iter().any(|(name, _)| name == ALGORITHM);
     if is_given || scripts.iter().any(chooses) {
         &[AS_GIVEN]
+    } else if scripts.iter().any(offers_forms) && !is_any_given(parameters) {
+        &FORMS
     } else {
         &[AS_GIVEN, HXT]
     }
+}
+
+fn is_any_given(parameters: &[(String, f64)]) -> bool {
+    let given = |(name, _): &(String, f64)| [FORM, ALGORITHM_2D].contains(&name.as_str());
+    parameters.iter().any(given)
+}
+
+/// Whether a script is one of `kluft network` with forms to choose from.
+fn offers_forms(script: &PathBuf) -> bool {
+    let script = std::fs::read(script).unwrap_or_default();
+    let first = script
+        .split(|&byte| byte == b'\n')
+        .next()
+        .unwrap_or_default();
+    let is_network = memchr::memmem::find(first, MADE_BY.as_bytes()).is_some();
+    let is_form = |token| token == Token::Text(FORM.as_bytes());
+    is_network && Tokens::of(&script).any(|(_, token)| is_form(token))
 }
 
 fn chooses(script: &PathBuf) -> bool {

@@ -129,7 +129,7 @@ fn make(
     let number = failed.len();
     let failed = failed.iter().zip(attempts);
     let failed = failed.map(|(defect, way)| format!("{} failed: {}", way.name, defect.problem));
-    let used = (number > 0).then(|| format!("{} was used", attempts[number].name));
+    let used = (number > 0).then(|| format!("meshed in another way: {}", attempts[number].name));
     Ok(Meshed {
         warnings: failed.chain(used).chain(warnings).collect(),
         seconds: start.elapsed().as_secs_f64(),

@@ -318,7 +318,10 @@ fn where_the_usual_way_fails_another_is_tried() {
     let warnings = scene.mesh(&program, &[]).expect("a mesh");
     assert_eq!(
         warnings,
-        ["gmsh's usual way failed: gmsh: no luck", "HXT was used"]
+        [
+            "gmsh's usual way failed: gmsh: no luck",
+            "meshed in another way: HXT"
+        ]
     );
     let chosen = [("Mesh.Algorithm3D".to_owned(), 1.0)];
     let defects = scene.mesh(&program, &chosen).expect_err("no other way");
@@ -344,4 +347,24 @@ fn a_mesh_with_flat_cells_is_made_in_another_way() {
         warnings[0].contains("the cell has no volume"),
         "{warnings:?}"
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn the_forms_of_a_network_are_tried_in_turn() {
+    let network = format!(
+        "// made by `kluft network` from a.csv\nDefineConstant[ form = {{0, Name \"form\"}} ];\n{BOX}"
+    );
+    let scene = Scene::new("forms", &network);
+    let text = "case \"$*\" in *'form 1e0 '*) exec gmsh \"$@\";; esac\nkill -SEGV $$";
+    let warnings = scene.mesh(&player(&scene, text), &[]).expect("a mesh");
+    assert!(
+        warnings[0].starts_with("whole fractures failed"),
+        "{warnings:?}"
+    );
+    assert_eq!(warnings[1], "meshed in another way: split fractures");
+    let form = [("form".to_owned(), 0.0)];
+    scene
+        .mesh(&player(&scene, text), &form)
+        .expect_err("no other form");
 }
