@@ -3,6 +3,7 @@
 //! A fracture is a convex planar polygon. Whatever is done to one (clipping, snapping ends that
 //! nearly touch) happens within its plane, so planes never change. All lengths are in metres.
 
+mod arrangement;
 mod clip;
 mod fisher;
 mod fracture;
@@ -23,6 +24,7 @@ mod snap;
 mod statistics;
 mod stochastic;
 
+pub use arrangement::{Arrangement, Plane, Sheet};
 pub use clip::{Domain, FACES};
 pub use fisher::Fisher;
 pub use fracture::{CellSizes, InputFracture, NetworkFracture, Rejected};

@@ -99,7 +99,7 @@ fn clip_all(
     (fractures, rejected)
 }
 
-fn intersections(
+pub(crate) fn intersections(
     domain: &Domain,
     fractures: &[NetworkFracture],
 ) -> Vec<([usize; 2], Intersection)> {
@@ -110,6 +110,22 @@ fn intersections(
             let shared = intersection(&fractures[a].polygon, &fractures[b].polygon, tolerance)?;
             Some(([a, b], shared))
         })
+        .collect()
+}
+
+/// Pairs of fractures side by side in one plane.
+pub(crate) fn coplanar_neighbours(
+    domain: &Domain,
+    fractures: &[NetworkFracture],
+) -> Vec<[usize; 2]> {
+    let tolerance = domain.tolerance();
+    let pairs = close_pairs(fractures, tolerance).into_iter();
+    let is_flat = |a: &Polygon, b: &Polygon| {
+        let mut corners = b.corners().iter();
+        corners.all(|&corner| a.height(corner).abs() <= tolerance)
+    };
+    pairs
+        .filter(|[a, b]| is_flat(&fractures[*a].polygon, &fractures[*b].polygon))
         .collect()
 }
 
