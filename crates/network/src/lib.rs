@@ -8,6 +8,8 @@ mod clip;
 mod fisher;
 mod fracture;
 mod geo;
+mod geo_samples;
+mod geo_surfaces;
 mod geo_template;
 mod intersections;
 mod list;
@@ -24,7 +26,7 @@ mod snap;
 mod statistics;
 mod stochastic;
 
-pub use arrangement::{Arrangement, Plane, Sheet};
+pub use arrangement::{Arrangement, Face, Moved, Plane, Sheet, collapse, faces};
 pub use clip::{Domain, FACES};
 pub use fisher::Fisher;
 pub use fracture::{CellSizes, InputFracture, NetworkFracture, Rejected};
