@@ -142,8 +142,9 @@ Field[g] = Threshold;
 Field[g].InField = f;
 Field[g].SizeMin = h_fracture;
 Field[g].SizeMax = h;
-Field[g].DistMin = (h_fracture > 1.42 * <<spacing>>) ? h_fracture / 2 : 0.71 * <<spacing>>;
-Field[g].DistMax = Field[g].DistMin + Fabs(h - h_fracture) / growth;
+near = (h_fracture > 1.42 * <<spacing>>) ? h_fracture / 2 : 0.71 * <<spacing>>;
+Field[g].DistMin = near;
+Field[g].DistMax = near + Fabs(h - h_fracture) / growth;
 fields() = {g};
 //: intersections
 
@@ -164,8 +165,9 @@ Field[g] = Threshold;
 Field[g].InField = f;
 Field[g].SizeMin = h_intersection;
 Field[g].SizeMax = h;
-Field[g].DistMin = (h_intersection > <<line_spacing>>) ? h_intersection / 2 : <<line_spacing>> / 2;
-Field[g].DistMax = Field[g].DistMin + Fabs(h - h_intersection) / growth;
+near = (h_intersection > <<line_spacing>>) ? h_intersection / 2 : <<line_spacing>> / 2;
+Field[g].DistMin = near;
+Field[g].DistMax = near + Fabs(h - h_intersection) / growth;
 fields() += g;
 //: fractures
 f = newf;

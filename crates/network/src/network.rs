@@ -75,6 +75,11 @@ impl Network {
             arrangement,
         })
     }
+
+    /// Area of a fracture in the geometry (m^2).
+    pub fn area(&self, fracture: usize) -> f64 {
+        self.arrangement.sheets[fracture].area(&self.arrangement.points)
+    }
 }
 
 fn clip_all(

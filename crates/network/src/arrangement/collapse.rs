@@ -84,7 +84,7 @@ impl Collapsing<'_> {
     /// The surfaces that an edge is in.
     fn sheets_with(&self, ends: [usize; 2]) -> Vec<usize> {
         let both = self.on[ends[0]].intersection(&self.on[ends[1]]);
-        let has_it = |number: &&usize| self.arrangement.sheets[**number].edges().contains(&ends);
+        let has_it = |number: &&usize| self.arrangement.sheets[**number].has_edge(ends);
         both.filter(has_it).copied().collect()
     }
 

@@ -139,7 +139,7 @@ fn closed_walks(
                 sides.entry(ends).or_default().push(number);
             }
         }
-        let bridges: Vec<[usize; 2]> = sides
+        let bridges: BTreeSet<[usize; 2]> = sides
             .into_iter()
             .filter(|(_, walks)| walks.windows(2).any(|pair| pair[0] == pair[1]))
             .map(|(ends, _)| ends)

@@ -68,6 +68,11 @@ impl Sheet {
         rim.chain(self.traces.iter().copied()).collect()
     }
 
+    /// Whether an edge, with the smaller number first, is one of its edges.
+    pub(super) fn has_edge(&self, ends: [usize; 2]) -> bool {
+        self.traces.contains(&ends) || self.rim().any(|[a, b]| edge(a, b) == ends)
+    }
+
     /// All its points.
     pub fn points(&self) -> BTreeSet<usize> {
         let outline = self.outline.iter().copied();
