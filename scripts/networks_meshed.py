@@ -2,11 +2,10 @@
 """Measures which share of random networks gmsh meshes, in every form that a geometry offers.
 
 usage: scripts/networks_meshed.py [--program kluft] [--seeds 10] [--counts 100,300,1000]
-                                  [--forms 0,1,2] [--algorithms 6,5] [--limit 120]
+                                  [--forms 0,1,2] [--algorithms 6,5] [--cell 2] [--limit 120]
 
-The networks are those of `geometries/network-100` with other seeds, in cubes that keep their density,
-and cells of 0.8 m on fractures. Writes docs/performance/network-meshing.md; every line of it stands
-in the table as soon as it is measured.
+The networks are those of `geometries/network-100` with other seeds, in cubes that keep their
+density, and cells that are coarse for them. Writes docs/performance/network-meshing.md.
 """
 import argparse
 import pathlib
@@ -21,16 +20,16 @@ PAGE = ROOT / "docs/performance/network-meshing.md"
 FORMS = {0: "whole", 1: "split", 2: "OpenCASCADE"}
 
 
-def description(count, seed):
+def description(count, seed, cell):
     text = (ROOT / "geometries/network-100/network.toml").read_text()
     side = 20 * (count / 100) ** (1 / 3)
     steep = round(0.35 * count)
     for old, new in [
         ("seed = 4", f"seed = {seed}"),
         ("high = [20, 20, 20]", f"high = [{side:.6f}, {side:.6f}, {side:.6f}]"),
-        ("h = 0.42", "h = 1.5"),
-        ("h_fracture = 0.22", "h_fracture = 0.8"),
-        ("h_intersection = 0.2", "h_intersection = 0.8"),
+        ("h = 0.42", f"h = {2 * cell}"),
+        ("h_fracture = 0.22", f"h_fracture = {cell}"),
+        ("h_intersection = 0.2", f"h_intersection = {cell}"),
         ("count = 35", f"count = {steep}"),
         ("count = 30", f"count = {count - 2 * steep}"),
     ]:
@@ -39,12 +38,12 @@ def description(count, seed):
     return text
 
 
-def make(program, count, seed, folder):
+def make(options, count, seed, folder):
     """Seconds from the description to the geometry."""
-    (folder / "network.toml").write_text(description(count, seed))
+    (folder / "network.toml").write_text(description(count, seed, options.cell))
     start = time.perf_counter()
     subprocess.run(
-        [program, "network", folder / "network.toml", "-o", folder / "made", "-q"],
+        [options.program, "network", folder / "network.toml", "-o", folder / "made", "-q"],
         check=True,
         stdout=subprocess.DEVNULL,
     )
@@ -79,7 +78,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--program", default="kluft")
     parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--limit", type=float, default=120)
+    parser.add_argument("--limit", type=float, default=120, help="seconds for gmsh")
+    parser.add_argument("--cell", type=float, default=2.0, help="size on fractures, m")
     numbers = lambda text: [int(part) for part in text.split(",")]
     parser.add_argument("--counts", type=numbers, default=[100, 300, 1000])
     parser.add_argument("--forms", type=numbers, default=[0, 1, 2])
@@ -91,7 +91,7 @@ def main():
         for seed in range(1, options.seeds + 1):
             with tempfile.TemporaryDirectory() as name:
                 folder = pathlib.Path(name)
-                made.append(make(options.program, count, seed, folder))
+                made.append(make(options, count, seed, folder))
                 for form in options.forms:
                     for algorithm in options.algorithms:
                         seconds, wrong = mesh(folder, form, algorithm, options.limit)
@@ -117,7 +117,7 @@ def write(options, rows):
     text = f"""# Meshing of random networks
 
 Written by `scripts/networks_meshed.py`: networks as `geometries/network-100` in cubes that keep
-its density, cells of 0.8 m on fractures, {seeds}, at most {options.limit:.0f} s for gmsh. "To
+its density, cells of {options.cell} m on fractures, {seeds}, at most {options.limit:.0f} s for gmsh. "To
 the geometry" is `kluft network` from the description to the written file; "to the mesh" is gmsh
 alone, from the geometry to the written mesh; both are medians. A network counts as meshed when
 gmsh reports no error.

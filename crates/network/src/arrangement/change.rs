@@ -1,6 +1,7 @@
 //! A change of surfaces around one point, tried before it is made.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
@@ -8,6 +9,9 @@ use super::sheet::{Plane, Sheet, edge};
 
 /// Edges from one point at a smaller angle [sine] lie on each other.
 const APART: f64 = 1e-3;
+
+/// Angles below this [radians], of planes and of edges to the line of two planes, are none.
+const ON_LINE: f64 = 1e-6;
 
 /// Surfaces as they would be if a point moved.
 pub(super) struct Change<'a> {
@@ -96,6 +100,46 @@ impl Change<'_> {
             }
         }
         true
+    }
+
+    /// Whether two surfaces that share a point go on along the line of their planes without sharing
+    /// an edge there.
+    pub(super) fn overlap(&self, at: usize, [a, b]: [&Sheet; 2]) -> bool {
+        let along = a.plane.normal.cross(b.plane.normal);
+        if along.length() < ON_LINE {
+            return false;
+        }
+        let shares = |direction: DVec3| {
+            let mut edges = a.edges_at(at).into_iter();
+            edges.any(|other| {
+                b.has_edge(edge(at, other)) && (self.at(other) - self.at(at)).dot(direction) > 0.0
+            })
+        };
+        [along, -along].into_iter().any(|direction| {
+            self.goes_into(a, at, direction)
+                && self.goes_into(b, at, direction)
+                && !shares(direction)
+        })
+    }
+
+    /// Whether a direction in the plane of a surface leads from a point into it or along its rim.
+    fn goes_into(&self, sheet: &Sheet, at: usize, direction: DVec3) -> bool {
+        let Some(place) = sheet.outline.iter().position(|&point| point == at) else {
+            return true;
+        };
+        let count = sheet.outline.len();
+        let from = sheet.plane.flat(self.at(at));
+        let to = |place: usize| sheet.plane.flat(self.at(sheet.outline[place % count])) - from;
+        let (next, before) = (to(place + 1), to(place + count - 1));
+        let turn = |other: DVec2| {
+            let angle = libm::atan2(next.perp_dot(other), next.dot(other));
+            if angle < -ON_LINE {
+                angle + 2.0 * PI
+            } else {
+                angle
+            }
+        };
+        turn(sheet.plane.flat(self.at(at) + direction) - from) <= turn(before) + ON_LINE
     }
 
     /// Whether an edge between two points goes through a surface that neither is on.

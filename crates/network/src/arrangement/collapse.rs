@@ -287,7 +287,7 @@ impl Collapsing<'_> {
                 }
             }
         }
-        if !change.is_sound(CLEAR * self.short) || self.pierces(&change) {
+        if !change.is_sound(CLEAR * self.short) || self.overlaps(&change) || self.pierces(&change) {
             return false;
         }
         let sheets = change.sheets;
@@ -299,7 +299,31 @@ impl Collapsing<'_> {
         true
     }
 
-    /// Whether an outline that has moved goes through a fracture nearby.
+    /// Whether surfaces that share a point whose edges have changed overlap beyond it.
+    fn overlaps(&self, change: &Change) -> bool {
+        let rims = change.sheets.values().flat_map(Sheet::rim);
+        let at_moved = rims.filter(|ends| ends.contains(&change.moved));
+        let mut points: BTreeSet<usize> = at_moved.flatten().collect();
+        points.insert(change.moved);
+        points.into_iter().any(|point| {
+            let mut all: BTreeMap<usize, &Sheet> = self.on[point]
+                .iter()
+                .map(|&number| (number, &self.arrangement.sheets[number]))
+                .collect();
+            let changed = change.sheets.iter();
+            all.extend(changed.map(|(&number, sheet)| (number, sheet)));
+            all.retain(|_, sheet| sheet.has_point(point));
+            let pairs = all
+                .iter()
+                .flat_map(|a| all.range(a.0 + 1..).map(move |b| (a, b)));
+            let mut pairs = pairs.filter(|((a, _), (b, _))| {
+                change.sheets.contains_key(*a) || change.sheets.contains_key(*b)
+            });
+            pairs.any(|((_, a), (_, b))| change.overlap(point, [*a, *b]))
+        })
+    }
+
+    /// Whether an outline that has moved goes through a fracture nearby, or one nearby through it.
     fn pierces(&self, change: &Change) -> bool {
         let fractures = self.arrangement.sheets.len() - FACES.len();
         let mut changed = change
@@ -307,15 +331,20 @@ impl Collapsing<'_> {
             .iter()
             .filter(|(number, _)| **number < fractures);
         changed.any(|(number, sheet)| {
-            let mut moved = sheet.rim().filter(|ends| ends.contains(&change.moved));
-            moved.any(|ends| {
-                let others = self.near[*number].iter();
-                let mut others = others.filter(|other| !change.sheets.contains_key(other));
-                others.any(|&other| {
-                    let is_met = ends.iter().any(|&end| self.on[end].contains(&other));
-                    let other = &self.arrangement.sheets[other];
-                    !is_met && change.pierces(ends, &other.plane, &other.outline)
-                })
+            if !sheet.outline.contains(&change.moved) {
+                return false;
+            }
+            let others = self.near[*number].iter();
+            let mut others = others.filter(|other| !change.sheets.contains_key(other));
+            others.any(|other| {
+                let other = &self.arrangement.sheets[*other];
+                let goes_through = |ends: &[usize; 2], of: &Sheet| {
+                    let is_met = ends.iter().any(|&end| of.has_point(end));
+                    !is_met && change.pierces(*ends, &of.plane, &of.outline)
+                };
+                let mut moved = sheet.rim().filter(|ends| ends.contains(&change.moved));
+                moved.any(|ends| goes_through(&ends, other))
+                    || other.rim().any(|ends| goes_through(&ends, sheet))
             })
         })
     }

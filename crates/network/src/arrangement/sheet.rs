@@ -73,6 +73,22 @@ impl Sheet {
         self.traces.contains(&ends) || self.rim().any(|[a, b]| edge(a, b) == ends)
     }
 
+    /// Whether a point is one of its points.
+    pub(super) fn has_point(&self, point: usize) -> bool {
+        self.outline.contains(&point)
+            || self.contacts.contains(&point)
+            || self.traces.iter().any(|ends| ends.contains(&point))
+    }
+
+    /// The other ends of the edges at a point.
+    pub(super) fn edges_at(&self, point: usize) -> BTreeSet<usize> {
+        let edges = self.rim().chain(self.traces.iter().copied());
+        let at_point = edges.filter(|ends| ends.contains(&point));
+        at_point
+            .map(|[a, b]| if a == point { b } else { a })
+            .collect()
+    }
+
     /// All its points.
     pub fn points(&self) -> BTreeSet<usize> {
         let outline = self.outline.iter().copied();

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::arrange::Arrangement;
 use super::collapse::collapse;
 use super::faces::faces;
+use super::sheet::Sheet;
 use crate::clip::Domain;
 use crate::fracture::{CellSizes, InputFracture, NetworkFracture};
 use crate::network::{Network, coplanar_neighbours, intersections};
@@ -266,6 +267,44 @@ fn random_networks_keep_areas_and_lengths() {
             (found - expected).abs() < 1e-7 * expected,
             "{found} {expected}"
         );
+    }
+}
+
+/// Whether an edge of one outline goes through another surface beside all their common points.
+fn goes_through(made: &Arrangement, ends: [usize; 2], sheet: &Sheet) -> bool {
+    let points = sheet.points();
+    let [a, b] = ends.map(|end| made.points[end]);
+    let (from, to) = (sheet.plane.height(a), sheet.plane.height(b));
+    if ends.iter().any(|end| points.contains(end)) || from * to > 0.0 {
+        return false;
+    }
+    let at = sheet.plane.flat(a.lerp(b, from / (from - to)));
+    // The winding of the outline around the point: once, if it is inside.
+    let corners: Vec<DVec2> = sheet
+        .outline
+        .iter()
+        .map(|&point| sheet.plane.flat(made.points[point]) - at)
+        .collect();
+    let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
+    let turns: f64 = pairs.map(|(p, q)| p.angle_to(*q)).sum();
+    turns.abs() > 1.0
+}
+
+#[test]
+fn collapsing_leads_no_fracture_through_another() {
+    for seed in 0..20 {
+        let network = random_network(seed, 60, true);
+        let made = &network.arrangement;
+        let fractures = &made.sheets[..network.fractures.len()];
+        for (own, sheet) in fractures.iter().enumerate() {
+            for (number, other) in fractures.iter().enumerate() {
+                let mut rim = sheet.rim().filter(|_| number != own);
+                assert!(
+                    !rim.any(|ends| goes_through(made, ends, other)),
+                    "seed {seed}: {own} {number}"
+                );
+            }
+        }
     }
 }
 
