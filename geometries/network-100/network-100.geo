@@ -13,6 +13,7 @@ low() = {0.0, 0.0, 0.0};
 high() = {20.0, 20.0, 20.0};
 count = 100;
 area() = {0.5270773401261006, 6.450186546849016, 49.65531268340585, 0.8718363417002354, 34.79189186714748, 11.09275380102763, 0.3200963743364434, 47.70393635105322, 28.133434199474166, 54.40172695502779, 10.446226635749703, 1.0685351803526966, 1.2713953493381258, 149.66712598399934, 1.1757442424135993, 0.33287023167715013, 3.6848489001832387, 26.518700074130493, 40.71707212576068, 74.2900452804948, 28.59500326182858, 29.31725739030337, 15.585311388723445, 133.6239400869819, 45.068803128347454, 0.05394098281580863, 17.844834764847118, 11.690175439312503, 1.0237074676634434, 40.970569441756346, 20.13165834423704, 1.9524789264646552, 6.086110698018977, 23.438964653702527, 18.3202762498112, 38.419750831575, 0.13326968219499855, 34.98252009309289, 3.8646049148645423, 33.42952420795123, 50.90409529497817, 66.4526330272975, 41.56146124168358, 22.55017568177479, 0.2960418631066317, 12.105863271553496, 20.55192967535988, 1.850996891224235, 7.792978820563778, 20.66471233542196, 20.687651694801406, 13.153665115044117, 59.749409335757775, 17.85951617173624, 0.5626427266501384, 1.175681988732191, 34.89227992770228, 0.43569910499788533, 12.710499032576092, 20.514100591939826, 9.2594261664139, 1.1909608424168254, 10.973720329373299, 0.8537390672047217, 22.464550053825644, 39.74801364635704, 21.36209067647823, 37.955592459144896, 11.624254537452561, 52.968906812614705, 21.29578685198188, 23.41275972031065, 68.14177993385296, 0.7810227856602697, 18.562424359835497, 0.23001254593082626, 1.8703653968950733, 15.974054722750642, 2.982614417629705, 2.0980549808489557, 22.596143855654663, 17.106868594229336, 5.013357251845658, 64.72375541142566, 13.34612570464428, 71.11138785145253, 25.05300466274539, 7.2098513632379, 8.238038551694428, 36.66714219687965, 1.031072813199499, 7.789984502789875, 1.448421236613854, 71.74659895198626, 18.361932723235274, 14.576821261362035, 60.168627982589854, 21.829499698802344, 46.47638093403183, 12.30191350183819};
+names() = Str("bedding-01", "bedding-02", "bedding-03", "bedding-04", "bedding-05", "bedding-06", "bedding-07", "bedding-08", "bedding-09", "bedding-10", "bedding-11", "bedding-12", "bedding-13", "bedding-14", "bedding-15", "bedding-16", "bedding-17", "bedding-18", "bedding-19", "bedding-20", "bedding-21", "bedding-22", "bedding-23", "bedding-24", "bedding-25", "bedding-26", "bedding-27", "bedding-28", "bedding-29", "bedding-30", "east-01", "east-02", "east-03", "east-04", "east-05", "east-06", "east-07", "east-08", "east-09", "east-10", "east-11", "east-12", "east-13", "east-14", "east-15", "east-16", "east-17", "east-18", "east-19", "east-20", "east-21", "east-22", "east-23", "east-24", "east-25", "east-26", "east-27", "east-28", "east-29", "east-30", "east-31", "east-32", "east-33", "east-34", "east-35", "north-01", "north-02", "north-03", "north-04", "north-05", "north-06", "north-07", "north-08", "north-09", "north-10", "north-11", "north-12", "north-13", "north-14", "north-15", "north-16", "north-17", "north-18", "north-19", "north-20", "north-21", "north-22", "north-23", "north-24", "north-25", "north-26", "north-27", "north-28", "north-29", "north-30", "north-31", "north-32", "north-33", "north-34", "north-35");
 
 If (form == 2)
 SetFactory("OpenCASCADE");
@@ -389,6 +390,9 @@ For i In {0 : count - 1}
       EndIf
     EndIf
   EndFor
+  If (Fabs(found(i) - area(i)) > 1e-6 * area(i))
+    Error(StrCat("fracture ", names(i), ": the pieces found have %g m2 of %g"), found(i), area(i));
+  EndIf
 EndFor
 
 x0 = low(0); y0 = low(1); z0 = low(2);
@@ -3703,9 +3707,6 @@ back() = {214, 215, 216, 217, 218};
 bottom() = {219};
 top() = {220, 221, 222};
 EndIf
-For i In {0 : count - 1}
-  found(i) = area(i);
-EndFor
 EndIf
 
 Physical Volume("rock") = Volume{:};
@@ -3715,405 +3716,105 @@ Physical Surface("front") = front();
 Physical Surface("back") = back();
 Physical Surface("bottom") = bottom();
 Physical Surface("top") = top();
-If (Fabs(found(0) - area(0)) > 1e-6 * area(0))
-  Error("fracture bedding-01: the pieces found have %g m2 of %g", found(0), area(0));
-EndIf
 Physical Surface("bedding-01") = piece_0();
-If (Fabs(found(1) - area(1)) > 1e-6 * area(1))
-  Error("fracture bedding-02: the pieces found have %g m2 of %g", found(1), area(1));
-EndIf
 Physical Surface("bedding-02") = piece_1();
-If (Fabs(found(2) - area(2)) > 1e-6 * area(2))
-  Error("fracture bedding-03: the pieces found have %g m2 of %g", found(2), area(2));
-EndIf
 Physical Surface("bedding-03") = piece_2();
-If (Fabs(found(3) - area(3)) > 1e-6 * area(3))
-  Error("fracture bedding-04: the pieces found have %g m2 of %g", found(3), area(3));
-EndIf
 Physical Surface("bedding-04") = piece_3();
-If (Fabs(found(4) - area(4)) > 1e-6 * area(4))
-  Error("fracture bedding-05: the pieces found have %g m2 of %g", found(4), area(4));
-EndIf
 Physical Surface("bedding-05") = piece_4();
-If (Fabs(found(5) - area(5)) > 1e-6 * area(5))
-  Error("fracture bedding-06: the pieces found have %g m2 of %g", found(5), area(5));
-EndIf
 Physical Surface("bedding-06") = piece_5();
-If (Fabs(found(6) - area(6)) > 1e-6 * area(6))
-  Error("fracture bedding-07: the pieces found have %g m2 of %g", found(6), area(6));
-EndIf
 Physical Surface("bedding-07") = piece_6();
-If (Fabs(found(7) - area(7)) > 1e-6 * area(7))
-  Error("fracture bedding-08: the pieces found have %g m2 of %g", found(7), area(7));
-EndIf
 Physical Surface("bedding-08") = piece_7();
-If (Fabs(found(8) - area(8)) > 1e-6 * area(8))
-  Error("fracture bedding-09: the pieces found have %g m2 of %g", found(8), area(8));
-EndIf
 Physical Surface("bedding-09") = piece_8();
-If (Fabs(found(9) - area(9)) > 1e-6 * area(9))
-  Error("fracture bedding-10: the pieces found have %g m2 of %g", found(9), area(9));
-EndIf
 Physical Surface("bedding-10") = piece_9();
-If (Fabs(found(10) - area(10)) > 1e-6 * area(10))
-  Error("fracture bedding-11: the pieces found have %g m2 of %g", found(10), area(10));
-EndIf
 Physical Surface("bedding-11") = piece_10();
-If (Fabs(found(11) - area(11)) > 1e-6 * area(11))
-  Error("fracture bedding-12: the pieces found have %g m2 of %g", found(11), area(11));
-EndIf
 Physical Surface("bedding-12") = piece_11();
-If (Fabs(found(12) - area(12)) > 1e-6 * area(12))
-  Error("fracture bedding-13: the pieces found have %g m2 of %g", found(12), area(12));
-EndIf
 Physical Surface("bedding-13") = piece_12();
-If (Fabs(found(13) - area(13)) > 1e-6 * area(13))
-  Error("fracture bedding-14: the pieces found have %g m2 of %g", found(13), area(13));
-EndIf
 Physical Surface("bedding-14") = piece_13();
-If (Fabs(found(14) - area(14)) > 1e-6 * area(14))
-  Error("fracture bedding-15: the pieces found have %g m2 of %g", found(14), area(14));
-EndIf
 Physical Surface("bedding-15") = piece_14();
-If (Fabs(found(15) - area(15)) > 1e-6 * area(15))
-  Error("fracture bedding-16: the pieces found have %g m2 of %g", found(15), area(15));
-EndIf
 Physical Surface("bedding-16") = piece_15();
-If (Fabs(found(16) - area(16)) > 1e-6 * area(16))
-  Error("fracture bedding-17: the pieces found have %g m2 of %g", found(16), area(16));
-EndIf
 Physical Surface("bedding-17") = piece_16();
-If (Fabs(found(17) - area(17)) > 1e-6 * area(17))
-  Error("fracture bedding-18: the pieces found have %g m2 of %g", found(17), area(17));
-EndIf
 Physical Surface("bedding-18") = piece_17();
-If (Fabs(found(18) - area(18)) > 1e-6 * area(18))
-  Error("fracture bedding-19: the pieces found have %g m2 of %g", found(18), area(18));
-EndIf
 Physical Surface("bedding-19") = piece_18();
-If (Fabs(found(19) - area(19)) > 1e-6 * area(19))
-  Error("fracture bedding-20: the pieces found have %g m2 of %g", found(19), area(19));
-EndIf
 Physical Surface("bedding-20") = piece_19();
-If (Fabs(found(20) - area(20)) > 1e-6 * area(20))
-  Error("fracture bedding-21: the pieces found have %g m2 of %g", found(20), area(20));
-EndIf
 Physical Surface("bedding-21") = piece_20();
-If (Fabs(found(21) - area(21)) > 1e-6 * area(21))
-  Error("fracture bedding-22: the pieces found have %g m2 of %g", found(21), area(21));
-EndIf
 Physical Surface("bedding-22") = piece_21();
-If (Fabs(found(22) - area(22)) > 1e-6 * area(22))
-  Error("fracture bedding-23: the pieces found have %g m2 of %g", found(22), area(22));
-EndIf
 Physical Surface("bedding-23") = piece_22();
-If (Fabs(found(23) - area(23)) > 1e-6 * area(23))
-  Error("fracture bedding-24: the pieces found have %g m2 of %g", found(23), area(23));
-EndIf
 Physical Surface("bedding-24") = piece_23();
-If (Fabs(found(24) - area(24)) > 1e-6 * area(24))
-  Error("fracture bedding-25: the pieces found have %g m2 of %g", found(24), area(24));
-EndIf
 Physical Surface("bedding-25") = piece_24();
-If (Fabs(found(25) - area(25)) > 1e-6 * area(25))
-  Error("fracture bedding-26: the pieces found have %g m2 of %g", found(25), area(25));
-EndIf
 Physical Surface("bedding-26") = piece_25();
-If (Fabs(found(26) - area(26)) > 1e-6 * area(26))
-  Error("fracture bedding-27: the pieces found have %g m2 of %g", found(26), area(26));
-EndIf
 Physical Surface("bedding-27") = piece_26();
-If (Fabs(found(27) - area(27)) > 1e-6 * area(27))
-  Error("fracture bedding-28: the pieces found have %g m2 of %g", found(27), area(27));
-EndIf
 Physical Surface("bedding-28") = piece_27();
-If (Fabs(found(28) - area(28)) > 1e-6 * area(28))
-  Error("fracture bedding-29: the pieces found have %g m2 of %g", found(28), area(28));
-EndIf
 Physical Surface("bedding-29") = piece_28();
-If (Fabs(found(29) - area(29)) > 1e-6 * area(29))
-  Error("fracture bedding-30: the pieces found have %g m2 of %g", found(29), area(29));
-EndIf
 Physical Surface("bedding-30") = piece_29();
-If (Fabs(found(30) - area(30)) > 1e-6 * area(30))
-  Error("fracture east-01: the pieces found have %g m2 of %g", found(30), area(30));
-EndIf
 Physical Surface("east-01") = piece_30();
-If (Fabs(found(31) - area(31)) > 1e-6 * area(31))
-  Error("fracture east-02: the pieces found have %g m2 of %g", found(31), area(31));
-EndIf
 Physical Surface("east-02") = piece_31();
-If (Fabs(found(32) - area(32)) > 1e-6 * area(32))
-  Error("fracture east-03: the pieces found have %g m2 of %g", found(32), area(32));
-EndIf
 Physical Surface("east-03") = piece_32();
-If (Fabs(found(33) - area(33)) > 1e-6 * area(33))
-  Error("fracture east-04: the pieces found have %g m2 of %g", found(33), area(33));
-EndIf
 Physical Surface("east-04") = piece_33();
-If (Fabs(found(34) - area(34)) > 1e-6 * area(34))
-  Error("fracture east-05: the pieces found have %g m2 of %g", found(34), area(34));
-EndIf
 Physical Surface("east-05") = piece_34();
-If (Fabs(found(35) - area(35)) > 1e-6 * area(35))
-  Error("fracture east-06: the pieces found have %g m2 of %g", found(35), area(35));
-EndIf
 Physical Surface("east-06") = piece_35();
-If (Fabs(found(36) - area(36)) > 1e-6 * area(36))
-  Error("fracture east-07: the pieces found have %g m2 of %g", found(36), area(36));
-EndIf
 Physical Surface("east-07") = piece_36();
-If (Fabs(found(37) - area(37)) > 1e-6 * area(37))
-  Error("fracture east-08: the pieces found have %g m2 of %g", found(37), area(37));
-EndIf
 Physical Surface("east-08") = piece_37();
-If (Fabs(found(38) - area(38)) > 1e-6 * area(38))
-  Error("fracture east-09: the pieces found have %g m2 of %g", found(38), area(38));
-EndIf
 Physical Surface("east-09") = piece_38();
-If (Fabs(found(39) - area(39)) > 1e-6 * area(39))
-  Error("fracture east-10: the pieces found have %g m2 of %g", found(39), area(39));
-EndIf
 Physical Surface("east-10") = piece_39();
-If (Fabs(found(40) - area(40)) > 1e-6 * area(40))
-  Error("fracture east-11: the pieces found have %g m2 of %g", found(40), area(40));
-EndIf
 Physical Surface("east-11") = piece_40();
-If (Fabs(found(41) - area(41)) > 1e-6 * area(41))
-  Error("fracture east-12: the pieces found have %g m2 of %g", found(41), area(41));
-EndIf
 Physical Surface("east-12") = piece_41();
-If (Fabs(found(42) - area(42)) > 1e-6 * area(42))
-  Error("fracture east-13: the pieces found have %g m2 of %g", found(42), area(42));
-EndIf
 Physical Surface("east-13") = piece_42();
-If (Fabs(found(43) - area(43)) > 1e-6 * area(43))
-  Error("fracture east-14: the pieces found have %g m2 of %g", found(43), area(43));
-EndIf
 Physical Surface("east-14") = piece_43();
-If (Fabs(found(44) - area(44)) > 1e-6 * area(44))
-  Error("fracture east-15: the pieces found have %g m2 of %g", found(44), area(44));
-EndIf
 Physical Surface("east-15") = piece_44();
-If (Fabs(found(45) - area(45)) > 1e-6 * area(45))
-  Error("fracture east-16: the pieces found have %g m2 of %g", found(45), area(45));
-EndIf
 Physical Surface("east-16") = piece_45();
-If (Fabs(found(46) - area(46)) > 1e-6 * area(46))
-  Error("fracture east-17: the pieces found have %g m2 of %g", found(46), area(46));
-EndIf
 Physical Surface("east-17") = piece_46();
-If (Fabs(found(47) - area(47)) > 1e-6 * area(47))
-  Error("fracture east-18: the pieces found have %g m2 of %g", found(47), area(47));
-EndIf
 Physical Surface("east-18") = piece_47();
-If (Fabs(found(48) - area(48)) > 1e-6 * area(48))
-  Error("fracture east-19: the pieces found have %g m2 of %g", found(48), area(48));
-EndIf
 Physical Surface("east-19") = piece_48();
-If (Fabs(found(49) - area(49)) > 1e-6 * area(49))
-  Error("fracture east-20: the pieces found have %g m2 of %g", found(49), area(49));
-EndIf
 Physical Surface("east-20") = piece_49();
-If (Fabs(found(50) - area(50)) > 1e-6 * area(50))
-  Error("fracture east-21: the pieces found have %g m2 of %g", found(50), area(50));
-EndIf
 Physical Surface("east-21") = piece_50();
-If (Fabs(found(51) - area(51)) > 1e-6 * area(51))
-  Error("fracture east-22: the pieces found have %g m2 of %g", found(51), area(51));
-EndIf
 Physical Surface("east-22") = piece_51();
-If (Fabs(found(52) - area(52)) > 1e-6 * area(52))
-  Error("fracture east-23: the pieces found have %g m2 of %g", found(52), area(52));
-EndIf
 Physical Surface("east-23") = piece_52();
-If (Fabs(found(53) - area(53)) > 1e-6 * area(53))
-  Error("fracture east-24: the pieces found have %g m2 of %g", found(53), area(53));
-EndIf
 Physical Surface("east-24") = piece_53();
-If (Fabs(found(54) - area(54)) > 1e-6 * area(54))
-  Error("fracture east-25: the pieces found have %g m2 of %g", found(54), area(54));
-EndIf
 Physical Surface("east-25") = piece_54();
-If (Fabs(found(55) - area(55)) > 1e-6 * area(55))
-  Error("fracture east-26: the pieces found have %g m2 of %g", found(55), area(55));
-EndIf
 Physical Surface("east-26") = piece_55();
-If (Fabs(found(56) - area(56)) > 1e-6 * area(56))
-  Error("fracture east-27: the pieces found have %g m2 of %g", found(56), area(56));
-EndIf
 Physical Surface("east-27") = piece_56();
-If (Fabs(found(57) - area(57)) > 1e-6 * area(57))
-  Error("fracture east-28: the pieces found have %g m2 of %g", found(57), area(57));
-EndIf
 Physical Surface("east-28") = piece_57();
-If (Fabs(found(58) - area(58)) > 1e-6 * area(58))
-  Error("fracture east-29: the pieces found have %g m2 of %g", found(58), area(58));
-EndIf
 Physical Surface("east-29") = piece_58();
-If (Fabs(found(59) - area(59)) > 1e-6 * area(59))
-  Error("fracture east-30: the pieces found have %g m2 of %g", found(59), area(59));
-EndIf
 Physical Surface("east-30") = piece_59();
-If (Fabs(found(60) - area(60)) > 1e-6 * area(60))
-  Error("fracture east-31: the pieces found have %g m2 of %g", found(60), area(60));
-EndIf
 Physical Surface("east-31") = piece_60();
-If (Fabs(found(61) - area(61)) > 1e-6 * area(61))
-  Error("fracture east-32: the pieces found have %g m2 of %g", found(61), area(61));
-EndIf
 Physical Surface("east-32") = piece_61();
-If (Fabs(found(62) - area(62)) > 1e-6 * area(62))
-  Error("fracture east-33: the pieces found have %g m2 of %g", found(62), area(62));
-EndIf
 Physical Surface("east-33") = piece_62();
-If (Fabs(found(63) - area(63)) > 1e-6 * area(63))
-  Error("fracture east-34: the pieces found have %g m2 of %g", found(63), area(63));
-EndIf
 Physical Surface("east-34") = piece_63();
-If (Fabs(found(64) - area(64)) > 1e-6 * area(64))
-  Error("fracture east-35: the pieces found have %g m2 of %g", found(64), area(64));
-EndIf
 Physical Surface("east-35") = piece_64();
-If (Fabs(found(65) - area(65)) > 1e-6 * area(65))
-  Error("fracture north-01: the pieces found have %g m2 of %g", found(65), area(65));
-EndIf
 Physical Surface("north-01") = piece_65();
-If (Fabs(found(66) - area(66)) > 1e-6 * area(66))
-  Error("fracture north-02: the pieces found have %g m2 of %g", found(66), area(66));
-EndIf
 Physical Surface("north-02") = piece_66();
-If (Fabs(found(67) - area(67)) > 1e-6 * area(67))
-  Error("fracture north-03: the pieces found have %g m2 of %g", found(67), area(67));
-EndIf
 Physical Surface("north-03") = piece_67();
-If (Fabs(found(68) - area(68)) > 1e-6 * area(68))
-  Error("fracture north-04: the pieces found have %g m2 of %g", found(68), area(68));
-EndIf
 Physical Surface("north-04") = piece_68();
-If (Fabs(found(69) - area(69)) > 1e-6 * area(69))
-  Error("fracture north-05: the pieces found have %g m2 of %g", found(69), area(69));
-EndIf
 Physical Surface("north-05") = piece_69();
-If (Fabs(found(70) - area(70)) > 1e-6 * area(70))
-  Error("fracture north-06: the pieces found have %g m2 of %g", found(70), area(70));
-EndIf
 Physical Surface("north-06") = piece_70();
-If (Fabs(found(71) - area(71)) > 1e-6 * area(71))
-  Error("fracture north-07: the pieces found have %g m2 of %g", found(71), area(71));
-EndIf
 Physical Surface("north-07") = piece_71();
-If (Fabs(found(72) - area(72)) > 1e-6 * area(72))
-  Error("fracture north-08: the pieces found have %g m2 of %g", found(72), area(72));
-EndIf
 Physical Surface("north-08") = piece_72();
-If (Fabs(found(73) - area(73)) > 1e-6 * area(73))
-  Error("fracture north-09: the pieces found have %g m2 of %g", found(73), area(73));
-EndIf
 Physical Surface("north-09") = piece_73();
-If (Fabs(found(74) - area(74)) > 1e-6 * area(74))
-  Error("fracture north-10: the pieces found have %g m2 of %g", found(74), area(74));
-EndIf
 Physical Surface("north-10") = piece_74();
-If (Fabs(found(75) - area(75)) > 1e-6 * area(75))
-  Error("fracture north-11: the pieces found have %g m2 of %g", found(75), area(75));
-EndIf
 Physical Surface("north-11") = piece_75();
-If (Fabs(found(76) - area(76)) > 1e-6 * area(76))
-  Error("fracture north-12: the pieces found have %g m2 of %g", found(76), area(76));
-EndIf
 Physical Surface("north-12") = piece_76();
-If (Fabs(found(77) - area(77)) > 1e-6 * area(77))
-  Error("fracture north-13: the pieces found have %g m2 of %g", found(77), area(77));
-EndIf
 Physical Surface("north-13") = piece_77();
-If (Fabs(found(78) - area(78)) > 1e-6 * area(78))
-  Error("fracture north-14: the pieces found have %g m2 of %g", found(78), area(78));
-EndIf
 Physical Surface("north-14") = piece_78();
-If (Fabs(found(79) - area(79)) > 1e-6 * area(79))
-  Error("fracture north-15: the pieces found have %g m2 of %g", found(79), area(79));
-EndIf
 Physical Surface("north-15") = piece_79();
-If (Fabs(found(80) - area(80)) > 1e-6 * area(80))
-  Error("fracture north-16: the pieces found have %g m2 of %g", found(80), area(80));
-EndIf
 Physical Surface("north-16") = piece_80();
-If (Fabs(found(81) - area(81)) > 1e-6 * area(81))
-  Error("fracture north-17: the pieces found have %g m2 of %g", found(81), area(81));
-EndIf
 Physical Surface("north-17") = piece_81();
-If (Fabs(found(82) - area(82)) > 1e-6 * area(82))
-  Error("fracture north-18: the pieces found have %g m2 of %g", found(82), area(82));
-EndIf
 Physical Surface("north-18") = piece_82();
-If (Fabs(found(83) - area(83)) > 1e-6 * area(83))
-  Error("fracture north-19: the pieces found have %g m2 of %g", found(83), area(83));
-EndIf
 Physical Surface("north-19") = piece_83();
-If (Fabs(found(84) - area(84)) > 1e-6 * area(84))
-  Error("fracture north-20: the pieces found have %g m2 of %g", found(84), area(84));
-EndIf
 Physical Surface("north-20") = piece_84();
-If (Fabs(found(85) - area(85)) > 1e-6 * area(85))
-  Error("fracture north-21: the pieces found have %g m2 of %g", found(85), area(85));
-EndIf
 Physical Surface("north-21") = piece_85();
-If (Fabs(found(86) - area(86)) > 1e-6 * area(86))
-  Error("fracture north-22: the pieces found have %g m2 of %g", found(86), area(86));
-EndIf
 Physical Surface("north-22") = piece_86();
-If (Fabs(found(87) - area(87)) > 1e-6 * area(87))
-  Error("fracture north-23: the pieces found have %g m2 of %g", found(87), area(87));
-EndIf
 Physical Surface("north-23") = piece_87();
-If (Fabs(found(88) - area(88)) > 1e-6 * area(88))
-  Error("fracture north-24: the pieces found have %g m2 of %g", found(88), area(88));
-EndIf
 Physical Surface("north-24") = piece_88();
-If (Fabs(found(89) - area(89)) > 1e-6 * area(89))
-  Error("fracture north-25: the pieces found have %g m2 of %g", found(89), area(89));
-EndIf
 Physical Surface("north-25") = piece_89();
-If (Fabs(found(90) - area(90)) > 1e-6 * area(90))
-  Error("fracture north-26: the pieces found have %g m2 of %g", found(90), area(90));
-EndIf
 Physical Surface("north-26") = piece_90();
-If (Fabs(found(91) - area(91)) > 1e-6 * area(91))
-  Error("fracture north-27: the pieces found have %g m2 of %g", found(91), area(91));
-EndIf
 Physical Surface("north-27") = piece_91();
-If (Fabs(found(92) - area(92)) > 1e-6 * area(92))
-  Error("fracture north-28: the pieces found have %g m2 of %g", found(92), area(92));
-EndIf
 Physical Surface("north-28") = piece_92();
-If (Fabs(found(93) - area(93)) > 1e-6 * area(93))
-  Error("fracture north-29: the pieces found have %g m2 of %g", found(93), area(93));
-EndIf
 Physical Surface("north-29") = piece_93();
-If (Fabs(found(94) - area(94)) > 1e-6 * area(94))
-  Error("fracture north-30: the pieces found have %g m2 of %g", found(94), area(94));
-EndIf
 Physical Surface("north-30") = piece_94();
-If (Fabs(found(95) - area(95)) > 1e-6 * area(95))
-  Error("fracture north-31: the pieces found have %g m2 of %g", found(95), area(95));
-EndIf
 Physical Surface("north-31") = piece_95();
-If (Fabs(found(96) - area(96)) > 1e-6 * area(96))
-  Error("fracture north-32: the pieces found have %g m2 of %g", found(96), area(96));
-EndIf
 Physical Surface("north-32") = piece_96();
-If (Fabs(found(97) - area(97)) > 1e-6 * area(97))
-  Error("fracture north-33: the pieces found have %g m2 of %g", found(97), area(97));
-EndIf
 Physical Surface("north-33") = piece_97();
-If (Fabs(found(98) - area(98)) > 1e-6 * area(98))
-  Error("fracture north-34: the pieces found have %g m2 of %g", found(98), area(98));
-EndIf
 Physical Surface("north-34") = piece_98();
-If (Fabs(found(99) - area(99)) > 1e-6 * area(99))
-  Error("fracture north-35: the pieces found have %g m2 of %g", found(99), area(99));
-EndIf
 Physical Surface("north-35") = piece_99();
 
 // Points on the fractures that the cell size counts distances from: first point, step and number of

@@ -13,6 +13,7 @@ low() = {0.0, 0.0, 0.0};
 high() = {10.0, 10.0, 10.0};
 count = 20;
 area() = {22.117550580174047, 28.263168698839767, 10.055128431557476, 56.82803504791395, 13.289797535089129, 2.4318678767730906, 67.99352986970985, 9.26830818104765, 18.35456948977801, 24.3362532310531, 3.5602866842790055, 30.579046546111933, 47.55610388519841, 1.5362624581621023, 30.93678525222486, 22.13695784370377, 3.5507571632803616, 14.944849487039093, 8.917012122738202, 0.6020650425996031};
+names() = Str("gentle-1", "gentle-2", "gentle-3", "gentle-4", "gentle-5", "gentle-6", "gentle-7", "gentle-8", "steep-01", "steep-02", "steep-03", "steep-04", "steep-05", "steep-06", "steep-07", "steep-08", "steep-09", "steep-10", "steep-11", "steep-12");
 
 If (form == 2)
 SetFactory("OpenCASCADE");
@@ -149,6 +150,9 @@ For i In {0 : count - 1}
       EndIf
     EndIf
   EndFor
+  If (Fabs(found(i) - area(i)) > 1e-6 * area(i))
+    Error(StrCat("fracture ", names(i), ": the pieces found have %g m2 of %g"), found(i), area(i));
+  EndIf
 EndFor
 
 x0 = low(0); y0 = low(1); z0 = low(2);
@@ -764,9 +768,6 @@ back() = {39, 40, 41};
 bottom() = {42, 43};
 top() = {44, 45, 46, 47};
 EndIf
-For i In {0 : count - 1}
-  found(i) = area(i);
-EndFor
 EndIf
 
 Physical Volume("rock") = Volume{:};
@@ -776,85 +777,25 @@ Physical Surface("front") = front();
 Physical Surface("back") = back();
 Physical Surface("bottom") = bottom();
 Physical Surface("top") = top();
-If (Fabs(found(0) - area(0)) > 1e-6 * area(0))
-  Error("fracture gentle-1: the pieces found have %g m2 of %g", found(0), area(0));
-EndIf
 Physical Surface("gentle-1") = piece_0();
-If (Fabs(found(1) - area(1)) > 1e-6 * area(1))
-  Error("fracture gentle-2: the pieces found have %g m2 of %g", found(1), area(1));
-EndIf
 Physical Surface("gentle-2") = piece_1();
-If (Fabs(found(2) - area(2)) > 1e-6 * area(2))
-  Error("fracture gentle-3: the pieces found have %g m2 of %g", found(2), area(2));
-EndIf
 Physical Surface("gentle-3") = piece_2();
-If (Fabs(found(3) - area(3)) > 1e-6 * area(3))
-  Error("fracture gentle-4: the pieces found have %g m2 of %g", found(3), area(3));
-EndIf
 Physical Surface("gentle-4") = piece_3();
-If (Fabs(found(4) - area(4)) > 1e-6 * area(4))
-  Error("fracture gentle-5: the pieces found have %g m2 of %g", found(4), area(4));
-EndIf
 Physical Surface("gentle-5") = piece_4();
-If (Fabs(found(5) - area(5)) > 1e-6 * area(5))
-  Error("fracture gentle-6: the pieces found have %g m2 of %g", found(5), area(5));
-EndIf
 Physical Surface("gentle-6") = piece_5();
-If (Fabs(found(6) - area(6)) > 1e-6 * area(6))
-  Error("fracture gentle-7: the pieces found have %g m2 of %g", found(6), area(6));
-EndIf
 Physical Surface("gentle-7") = piece_6();
-If (Fabs(found(7) - area(7)) > 1e-6 * area(7))
-  Error("fracture gentle-8: the pieces found have %g m2 of %g", found(7), area(7));
-EndIf
 Physical Surface("gentle-8") = piece_7();
-If (Fabs(found(8) - area(8)) > 1e-6 * area(8))
-  Error("fracture steep-01: the pieces found have %g m2 of %g", found(8), area(8));
-EndIf
 Physical Surface("steep-01") = piece_8();
-If (Fabs(found(9) - area(9)) > 1e-6 * area(9))
-  Error("fracture steep-02: the pieces found have %g m2 of %g", found(9), area(9));
-EndIf
 Physical Surface("steep-02") = piece_9();
-If (Fabs(found(10) - area(10)) > 1e-6 * area(10))
-  Error("fracture steep-03: the pieces found have %g m2 of %g", found(10), area(10));
-EndIf
 Physical Surface("steep-03") = piece_10();
-If (Fabs(found(11) - area(11)) > 1e-6 * area(11))
-  Error("fracture steep-04: the pieces found have %g m2 of %g", found(11), area(11));
-EndIf
 Physical Surface("steep-04") = piece_11();
-If (Fabs(found(12) - area(12)) > 1e-6 * area(12))
-  Error("fracture steep-05: the pieces found have %g m2 of %g", found(12), area(12));
-EndIf
 Physical Surface("steep-05") = piece_12();
-If (Fabs(found(13) - area(13)) > 1e-6 * area(13))
-  Error("fracture steep-06: the pieces found have %g m2 of %g", found(13), area(13));
-EndIf
 Physical Surface("steep-06") = piece_13();
-If (Fabs(found(14) - area(14)) > 1e-6 * area(14))
-  Error("fracture steep-07: the pieces found have %g m2 of %g", found(14), area(14));
-EndIf
 Physical Surface("steep-07") = piece_14();
-If (Fabs(found(15) - area(15)) > 1e-6 * area(15))
-  Error("fracture steep-08: the pieces found have %g m2 of %g", found(15), area(15));
-EndIf
 Physical Surface("steep-08") = piece_15();
-If (Fabs(found(16) - area(16)) > 1e-6 * area(16))
-  Error("fracture steep-09: the pieces found have %g m2 of %g", found(16), area(16));
-EndIf
 Physical Surface("steep-09") = piece_16();
-If (Fabs(found(17) - area(17)) > 1e-6 * area(17))
-  Error("fracture steep-10: the pieces found have %g m2 of %g", found(17), area(17));
-EndIf
 Physical Surface("steep-10") = piece_17();
-If (Fabs(found(18) - area(18)) > 1e-6 * area(18))
-  Error("fracture steep-11: the pieces found have %g m2 of %g", found(18), area(18));
-EndIf
 Physical Surface("steep-11") = piece_18();
-If (Fabs(found(19) - area(19)) > 1e-6 * area(19))
-  Error("fracture steep-12: the pieces found have %g m2 of %g", found(19), area(19));
-EndIf
 Physical Surface("steep-12") = piece_19();
 
 // Points on the fractures that the cell size counts distances from: first point, step and number of

@@ -56,6 +56,13 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
             let areas = network.fractures.iter().map(|one| one.polygon.area());
             List(&areas.collect::<Vec<f64>>()).to_string()
         }
+        "names" => {
+            let names = network
+                .fractures
+                .iter()
+                .map(|one| format!("\"{}\"", one.name));
+            names.collect::<Vec<String>>().join(", ")
+        }
         "corners" => text_of(|out| corners(out, network)),
         "points" => text_of(|out| points(out, &network.arrangement, &lines)),
         "whole" => text_of(|out| arranged(out, false)),
@@ -137,24 +144,18 @@ fn rows(out: &mut String, rows: impl Iterator<Item = Row>) -> fmt::Result {
     Ok(())
 }
 
-/// The physical surfaces, and what refuses to mesh where pieces of a fracture are missing.
+/// The physical surfaces.
 fn groups(out: &mut String, network: &Network, grouping: Grouping) -> fmt::Result {
     for (face, ..) in FACES {
         writeln!(out, "Physical Surface(\"{face}\") = {face}();")?;
     }
-    for (index, fracture) in network.fractures.iter().enumerate() {
-        let name = &fracture.name;
-        writeln!(
-            out,
-            "If (Fabs(found({index}) - area({index})) > 1e-6 * area({index}))"
-        )?;
-        writeln!(
-            out,
-            "  Error(\"fracture {name}: the pieces found have %g m2 of %g\", found({index}), area({index}));"
-        )?;
-        writeln!(out, "EndIf")?;
-        if grouping == Grouping::Fracture {
-            writeln!(out, "Physical Surface(\"{name}\") = piece_{index}();")?;
+    if grouping == Grouping::Fracture {
+        for (index, fracture) in network.fractures.iter().enumerate() {
+            writeln!(
+                out,
+                "Physical Surface(\"{}\") = piece_{index}();",
+                fracture.name
+            )?;
         }
     }
     if grouping == Grouping::Set {
@@ -244,7 +245,10 @@ mod tests {
                 1
             );
         }
-        assert!(geo.contains("Error(\"fracture c:") && geo.contains("h = {0.25, Name \"h\"},"));
+        assert!(
+            geo.contains("names() = Str(\"a\", \"b\", \"c\");")
+                && geo.contains("h = {0.25, Name \"h\"},")
+        );
     }
 
     #[test]

@@ -30,8 +30,8 @@ pub(crate) fn along(shared: &Intersection, spacing: f64) -> Row {
     Row::between(shared.from, shared.to, spacing)
 }
 
-/// Rows along the edges of a polygon, and over it from edge to edge, at most `spacing` (m) apart: no
-/// point of it is farther from a sample than half the diagonal of a square of that side.
+/// Rows along the edges of a polygon, and over it from edge to edge, at most `spacing` (m) apart:
+/// no point of it is farther from a sample than half the diagonal of a square of that side.
 pub(crate) fn over(polygon: &Polygon, spacing: f64) -> Vec<Row> {
     let corners = polygon.corners();
     let along = (corners[1] - corners[0]).normalize_or_zero();

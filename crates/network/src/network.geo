@@ -14,6 +14,7 @@ high() = <<high>>;
 //: fractures
 count = <<count>>;
 area() = <<areas>>;
+names() = Str(<<names>>);
 //: always
 
 If (form == 2)
@@ -89,6 +90,9 @@ For i In {0 : count - 1}
       EndIf
     EndIf
   EndFor
+  If (Fabs(found(i) - area(i)) > 1e-6 * area(i))
+    Error(StrCat("fracture ", names(i), ": the pieces found have %g m2 of %g"), found(i), area(i));
+  EndIf
 EndFor
 //: always
 
@@ -108,11 +112,6 @@ If (form == 0)
 Else
 <<split>>
 EndIf
-//: fractures
-For i In {0 : count - 1}
-  found(i) = area(i);
-EndFor
-//: always
 EndIf
 
 Physical Volume("rock") = Volume{:};

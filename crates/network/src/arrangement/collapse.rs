@@ -120,11 +120,10 @@ impl Collapsing<'_> {
             }
             let [a, b] = ends.map(|end| self.length([end, point]));
             let nearer = if a <= b { ends[0] } else { ends[1] };
-            has_changed |= if a.min(b) < self.short {
-                self.merge([nearer, point])
-            } else {
-                self.insert(point, ends, &sheets)
-            };
+            let is_at_end = a.min(b) < self.short;
+            has_changed |= is_at_end && self.merge([nearer, point])
+                || self.insert(point, ends, &sheets)
+                || a.min(b) < FARTHEST * self.short && self.merge([nearer, point]);
         }
         has_changed
     }
@@ -184,6 +183,8 @@ impl Collapsing<'_> {
                 .iter()
                 .map(|&point| replaced(point))
                 .collect();
+            // Where a trace has become a point, the surfaces still touch.
+            sheet.contacts.insert(kept);
             sheet.tidy();
             (*number, sheet)
         };

@@ -343,6 +343,18 @@ fn collapsing_keeps_planes_and_leaves_sound_surfaces() {
 }
 
 #[test]
+fn a_trace_that_becomes_a_point_leaves_a_contact() {
+    let tent = [[5.0, 5.0, 4.97], [6.0, 5.0, 7.0], [4.0, 5.0, 7.0]];
+    let mut made = arranged(&[&FLOOR, &tent]);
+    assert_eq!(made.sheets[0].traces.len(), 1);
+    collapse(&mut made, SIZES.short(), 1e-9);
+    assert!(made.sheets[0].traces.is_empty());
+    let contacts: Vec<&usize> = made.sheets[0].contacts.iter().collect();
+    assert!(matches!(contacts[..], [only] if made.sheets[1].outline.contains(only)));
+    assert_eq!(made.sheets[1].outline.len(), 3);
+}
+
+#[test]
 fn an_end_just_beyond_a_trace_moves_onto_it() {
     // The small wall crosses the floor from x = 2.5 to just beyond the great one at x = 5.
     let end = 5.0 + 0.5 * SIZES.short();
