@@ -120,7 +120,9 @@ impl NetworkRecord {
                 .iter()
                 .map(|set| set_record(network, set))
                 .collect(),
-            fractures: network.fractures.iter().map(fracture_record).collect(),
+            fractures: (0..network.fractures.len())
+                .map(|index| fracture_record(network, index))
+                .collect(),
             rejected: rejected(network),
             intersections: IntersectionsRecord {
                 count: network.intersections.len(),
@@ -185,13 +187,14 @@ fn domain_record(domain: &Domain) -> DomainRecord {
     }
 }
 
-fn fracture_record(fracture: &NetworkFracture) -> FractureRecord {
+fn fracture_record(network: &Network, index: usize) -> FractureRecord {
+    let fracture = &network.fractures[index];
     let Orientation { dip, dip_direction } = Orientation::of_normal(fracture.polygon.normal());
     FractureRecord {
         name: fracture.name.clone(),
         set: fracture.set.clone(),
         place: fracture.place.clone(),
-        area: fracture.polygon.area(),
+        area: network.area(index),
         area_given: fracture.area_given,
         dip,
         dip_direction,
@@ -248,12 +251,13 @@ fn feature_text(feature: &Feature) -> String {
 }
 
 fn set_record(network: &Network, set: &Set) -> SetRecord {
-    let own: Vec<&NetworkFracture> = network
-        .fractures
+    let all = network.fractures.iter().enumerate();
+    let of_set = all.filter(|(_, fracture)| fracture.set == set.name);
+    let (numbers_of_own, own): (Vec<usize>, Vec<&NetworkFracture>) = of_set.unzip();
+    let area: f64 = numbers_of_own
         .iter()
-        .filter(|f| f.set == set.name)
-        .collect();
-    let area: f64 = own.iter().map(|fracture| fracture.polygon.area()).sum();
+        .map(|&index| network.area(index))
+        .sum();
     let (asked, drawn) = match &set.drawn {
         Some((asked, drawn)) => {
             let poles: Vec<_> = drawn.iter().map(|one| one.pole).collect();

@@ -247,6 +247,37 @@ fn random_sets_run_and_reach_what_was_asked() {
     assert!((main.as_f64().expect("an area") - 48.0 / 65_f64.to_radians().sin()).abs() < 1e-9);
 }
 
+/// The three forms of one geometry: whole fractures, split ones, and polygons for OpenCASCADE.
+#[test]
+fn every_form_of_a_geometry_has_the_same_fractures() {
+    let folder = made("network.toml", RANDOM, &["--keep-small"]);
+    let folder = folder.path().join("made");
+    let scene = fs::read_to_string(folder.join("scene.toml")).expect("a scene");
+    let sectors = [0, 1, 2].map(|form| {
+        let parameters = format!("parameters = {{ form = {form}, ");
+        let with_form = scene.replace("parameters = { ", &parameters);
+        assert_ne!(with_form, scene);
+        fs::write(folder.join("scene.toml"), with_form).expect("written");
+        solve_and_compare(&folder)["mesh"]["max_sectors"].clone()
+    });
+    assert!(
+        sectors.iter().all(|of_form| *of_form == sectors[0]),
+        "{sectors:?}"
+    );
+}
+
+/// gmsh looks for the end of a block that it skips in names, too.
+#[test]
+fn names_may_be_words_of_gmsh() {
+    let list = LIST.replace("wall", "EndIf").replace("oval", "Else");
+    let folder = made(
+        "list.csv",
+        &list,
+        &["--domain", "0,0,0,10,10,10", "--h", "3"],
+    );
+    solve_and_compare(&folder.path().join("made"));
+}
+
 #[test]
 fn a_seed_gives_the_same_bytes() {
     let bytes = |text: &str| {

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::intersections::may_meet;
+use crate::intersections::close_bounds;
 use crate::polygon::Polygon;
 
 /// A fracture as a list or a set gives it.
@@ -69,6 +69,11 @@ pub struct CellSizes {
 }
 
 impl CellSizes {
+    /// Edges shorter than this lose one of their ends (m).
+    pub fn short(&self) -> f64 {
+        0.5 * self.small * self.h_fracture.min(self.h_intersection)
+    }
+
     /// Distances below this are too small (m).
     pub fn gap(&self) -> f64 {
         self.small * self.h_fracture
@@ -78,17 +83,5 @@ impl CellSizes {
 /// Pairs of fractures whose bounds come closer than `gap` (m), in ascending order.
 pub(crate) fn close_pairs(fractures: &[NetworkFracture], gap: f64) -> Vec<[usize; 2]> {
     let bounds: Vec<(DVec3, DVec3)> = fractures.iter().map(|f| f.polygon.bounds()).collect();
-    let mut order: Vec<usize> = (0..fractures.len()).collect();
-    order.sort_by(|&a, &b| bounds[a].0.x.total_cmp(&bounds[b].0.x));
-    let mut pairs = Vec::new();
-    for (rank, &a) in order.iter().enumerate() {
-        let behind = order[rank + 1..].iter();
-        for &b in behind.take_while(|&&b| bounds[b].0.x <= bounds[a].1.x + gap) {
-            if may_meet(bounds[a], bounds[b], gap) {
-                pairs.push([a.min(b), a.max(b)]);
-            }
-        }
-    }
-    pairs.sort_unstable();
-    pairs
+    close_bounds(&bounds, gap)
 }

@@ -1,16 +1,19 @@
-//! Writes a network as a gmsh geometry for the OpenCASCADE kernel.
+//! Writes a network as a gmsh geometry.
 //!
-//! Fragments have other numbers than what they were cut from, and gmsh's script language does not
-//! say which came from where. So the script finds the pieces of each fracture again by geometry,
-//! and refuses to mesh unless they make up the fracture's area. `network.geo` is the script; here
-//! stands what is different from network to network.
+//! The arrangement is written out for gmsh's own kernel. On demand OpenCASCADE cuts the polygons
+//! instead. Its fragments have other numbers than what they were cut from, and gmsh's script
+//! language does not say which came from where. So the script finds the pieces of each fracture
+//! again by geometry, and refuses to mesh unless they make up the fracture's area. `network.geo` is
+//! the script; here stands what is different from network to network.
 
-use std::fmt::{self, Display, Write};
+use std::fmt::{self, Write};
 
 use glam::DVec3;
 
 use crate::clip::FACES;
-use crate::geo_template::fill;
+use crate::geo_samples::{Row, along, over};
+use crate::geo_surfaces::{Lines, points, surfaces};
+use crate::geo_template::{List, fill};
 use crate::intersections::Intersection;
 use crate::network::Network;
 
@@ -32,12 +35,13 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
     let shared = long_intersections(network);
     let holds = |condition: &str| match condition {
         "fractures" => !network.fractures.is_empty(),
-        "no fractures" => network.fractures.is_empty(),
         "intersections" => !shared.is_empty(),
-        "no intersections" => shared.is_empty(),
         _ => true,
     };
     let (sizes, domain) = (&network.sizes, &network.domain);
+    let lines = Lines::of(&network.arrangement);
+    let arranged =
+        |out: &mut String, is_split: bool| surfaces(out, &network.arrangement, &lines, is_split);
     let value = |name: &str| match name {
         "title" => title.replace(char::is_control, " "),
         "h" => format!("{:?}", sizes.h),
@@ -48,8 +52,36 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
         "high" => List(&domain.high.to_array()).to_string(),
         "eps" => format!("{:?}", (1e3 * domain.tolerance()).max(SMALLEST_BOX)),
         "count" => network.fractures.len().to_string(),
+        "areas" => {
+            let areas = network.fractures.iter().map(|one| one.polygon.area());
+            List(&areas.collect::<Vec<f64>>()).to_string()
+        }
+        "names" => {
+            let names = network
+                .fractures
+                .iter()
+                .map(|one| format!("\"{}\"", one.name));
+            names.collect::<Vec<String>>().join(", ")
+        }
         "corners" => text_of(|out| corners(out, network)),
-        "segments" => text_of(|out| segments(out, &shared)),
+        "points" => text_of(|out| points(out, &network.arrangement, &lines)),
+        "whole" => text_of(|out| arranged(out, false)),
+        "split" => text_of(|out| arranged(out, true)),
+        "spacing" => format!("{:?}", sizes.h_fracture),
+        "samples" => {
+            let all = network.fractures.iter();
+            text_of(|out| {
+                rows(
+                    out,
+                    all.flat_map(|one| over(&one.polygon, sizes.h_fracture)),
+                )
+            })
+        }
+        "line_spacing" => format!("{:?}", sizes.h_intersection),
+        "line_samples" => {
+            let all = shared.iter();
+            text_of(|out| rows(out, all.map(|shared| along(shared, sizes.h_intersection))))
+        }
         "groups" => text_of(|out| groups(out, network, grouping)),
         _ => String::new(),
     };
@@ -65,18 +97,13 @@ fn text_of(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
     out
 }
 
-/// Corners of all fractures in one list for each axis.
+/// Corners of all fractures in one list for each axis. Names do not stand here: where gmsh skips a
+/// block, it takes the words of a text for commands.
 fn corners(out: &mut String, network: &Network) -> fmt::Result {
     let mut first = vec![0];
     for fracture in &network.fractures {
         let corners = fracture.polygon.corners();
         first.push(first[first.len() - 1] + corners.len());
-        let area = fracture.polygon.area();
-        writeln!(
-            out,
-            "// {} (set {}), {area:.6} m2",
-            fracture.name, fracture.set
-        )?;
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let values: Vec<f64> = corners.iter().map(|corner| corner[axis]).collect();
             writeln!(out, "{name}() += {};", List(&values))?;
@@ -93,8 +120,7 @@ fn corners(out: &mut String, network: &Network) -> fmt::Result {
         let values: Vec<f64> = normals.iter().map(|normal| normal[axis]).collect();
         writeln!(out, "{name}() = {};", List(&values))?;
     }
-    let areas: Vec<f64> = network.fractures.iter().map(|f| f.polygon.area()).collect();
-    writeln!(out, "area() = {};", List(&areas))
+    Ok(())
 }
 
 /// The segments where fractures meet, without points of contact.
@@ -104,42 +130,32 @@ fn long_intersections(network: &Network) -> Vec<&Intersection> {
     all.filter(|shared| shared.length() > least).collect()
 }
 
-/// Ends of segments in one list for each axis.
-fn segments(out: &mut String, shared: &[&Intersection]) -> fmt::Result {
-    for (axis, [from, to]) in [["ax", "bx"], ["ay", "by"], ["az", "bz"]]
-        .into_iter()
-        .enumerate()
-    {
-        let starts: Vec<f64> = shared.iter().map(|shared| shared.from[axis]).collect();
-        let ends: Vec<f64> = shared.iter().map(|shared| shared.to[axis]).collect();
-        writeln!(
-            out,
-            "{from}() = {};\n{to}() = {};",
-            List(&starts),
-            List(&ends)
-        )?;
+/// Rows of points in one list, seven numbers each.
+fn rows(out: &mut String, rows: impl Iterator<Item = Row>) -> fmt::Result {
+    writeln!(out, "rows() = {{}};")?;
+    let numbers = |row: Row| {
+        let ends = row.from.to_array().into_iter().chain(row.step.to_array());
+        ends.chain([row.steps as f64])
+    };
+    let all: Vec<f64> = rows.flat_map(numbers).collect();
+    for part in all.chunks(700) {
+        writeln!(out, "rows() += {};", List(part))?;
     }
     Ok(())
 }
 
-/// The physical surfaces, and what refuses to mesh where pieces of a fracture are missing.
+/// The physical surfaces.
 fn groups(out: &mut String, network: &Network, grouping: Grouping) -> fmt::Result {
     for (face, ..) in FACES {
         writeln!(out, "Physical Surface(\"{face}\") = {face}();")?;
     }
-    for (index, fracture) in network.fractures.iter().enumerate() {
-        let name = &fracture.name;
-        writeln!(
-            out,
-            "If (Fabs(found({index}) - area({index})) > 1e-6 * area({index}))"
-        )?;
-        writeln!(
-            out,
-            "  Error(\"fracture {name}: the pieces found have %g m2 of %g\", found({index}), area({index}));"
-        )?;
-        writeln!(out, "EndIf")?;
-        if grouping == Grouping::Fracture {
-            writeln!(out, "Physical Surface(\"{name}\") = piece_{index}();")?;
+    if grouping == Grouping::Fracture {
+        for (index, fracture) in network.fractures.iter().enumerate() {
+            writeln!(
+                out,
+                "Physical Surface(\"{}\") = piece_{index}();",
+                fracture.name
+            )?;
         }
     }
     if grouping == Grouping::Set {
@@ -171,16 +187,6 @@ pub(crate) fn set_names(network: &Network) -> Vec<&str> {
         }
     }
     names
-}
-
-/// Numbers in braces, each with all its digits.
-struct List<'a>(&'a [f64]);
-
-impl Display for List<'_> {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let numbers: Vec<String> = self.0.iter().map(|number| format!("{number:?}")).collect();
-        write!(out, "{{{}}}", numbers.join(", "))
-    }
 }
 
 #[cfg(test)]
@@ -239,7 +245,10 @@ mod tests {
                 1
             );
         }
-        assert!(geo.contains("Error(\"fracture c:") && geo.contains("h = {0.25, Name \"h\"},"));
+        assert!(
+            geo.contains("names() = Str(\"a\", \"b\", \"c\");")
+                && geo.contains("h = {0.25, Name \"h\"},")
+        );
     }
 
     #[test]

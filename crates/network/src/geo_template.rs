@@ -3,6 +3,18 @@
 //! `<<name>>` is the place of a value. A line `//: condition` begins a part, which is left out
 //! where the condition does not hold.
 
+use std::fmt::{self, Display};
+
+/// Numbers in braces, each with all its digits.
+pub(crate) struct List<'a>(pub(crate) &'a [f64]);
+
+impl Display for List<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let numbers: Vec<String> = self.0.iter().map(|number| format!("{number:?}")).collect();
+        write!(out, "{{{}}}", numbers.join(", "))
+    }
+}
+
 /// The template with its values, and those of its parts whose condition holds.
 pub(crate) fn fill(
     template: &str,

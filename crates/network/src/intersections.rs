@@ -168,8 +168,25 @@ pub fn distance(a: &Polygon, b: &Polygon) -> (f64, DVec3) {
 }
 
 /// Whether the bounds of two polygons come closer than `gap` (m).
-pub(crate) fn may_meet(a: (DVec3, DVec3), b: (DVec3, DVec3), gap: f64) -> bool {
+fn may_meet(a: (DVec3, DVec3), b: (DVec3, DVec3), gap: f64) -> bool {
     (a.0 - b.1).cmple(DVec3::splat(gap)).all() && (b.0 - a.1).cmple(DVec3::splat(gap)).all()
+}
+
+/// Pairs of bounds that come closer than `gap` (m), in ascending order.
+pub(crate) fn close_bounds(bounds: &[(DVec3, DVec3)], gap: f64) -> Vec<[usize; 2]> {
+    let mut order: Vec<usize> = (0..bounds.len()).collect();
+    order.sort_by(|&a, &b| bounds[a].0.x.total_cmp(&bounds[b].0.x));
+    let mut pairs = Vec::new();
+    for (rank, &a) in order.iter().enumerate() {
+        let behind = order[rank + 1..].iter();
+        for &b in behind.take_while(|&&b| bounds[b].0.x <= bounds[a].1.x + gap) {
+            if may_meet(bounds[a], bounds[b], gap) {
+                pairs.push([a.min(b), a.max(b)]);
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs
 }
 
 #[cfg(test)]

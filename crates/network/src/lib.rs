@@ -3,10 +3,13 @@
 //! A fracture is a convex planar polygon. Whatever is done to one (clipping, snapping ends that
 //! nearly touch) happens within its plane, so planes never change. All lengths are in metres.
 
+mod arrangement;
 mod clip;
 mod fisher;
 mod fracture;
 mod geo;
+mod geo_samples;
+mod geo_surfaces;
 mod geo_template;
 mod intersections;
 mod list;
@@ -23,6 +26,7 @@ mod snap;
 mod statistics;
 mod stochastic;
 
+pub use arrangement::{Arrangement, Face, Moved, Plane, Sheet, collapse, faces};
 pub use clip::{Domain, FACES};
 pub use fisher::Fisher;
 pub use fracture::{CellSizes, InputFracture, NetworkFracture, Rejected};

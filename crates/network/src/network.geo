@@ -1,25 +1,30 @@
 // <<title>>
-SetFactory("OpenCASCADE");
-
 DefineConstant[
   h = {<<h>>, Name "h"},  // cell size away from fractures, m
   h_fracture = {<<h_fracture>>, Name "h_fracture"},  // cell size on fractures, m
   h_intersection = {<<h_intersection>>, Name "h_intersection"},  // cell size where fractures meet, m
-  growth = {<<growth>>, Name "growth"}  // of the cell size, per metre away from them
+  growth = {<<growth>>, Name "growth"},  // of the cell size, per metre away from them
+  // How fractures are given to gmsh: 0, whole, with the lines where others meet them; 1, split along
+  // closed loops of these lines; 2, as polygons that OpenCASCADE is to cut.
+  form = {0, Name "form"}
 ];
 
 low() = <<low>>;
 high() = <<high>>;
-eps = <<eps>>;
-
-Box(1) = {low(0), low(1), low(2), high(0) - low(0), high(1) - low(1), high(2) - low(2)};
+//: fractures
 count = <<count>>;
+area() = <<areas>>;
+names() = Str(<<names>>);
+//: always
+
+If (form == 2)
+SetFactory("OpenCASCADE");
+eps = <<eps>>;
+Box(1) = {low(0), low(1), low(2), high(0) - low(0), high(1) - low(1), high(2) - low(2)};
+//: fractures
 
 // Corners of the fractures; those of fracture i are number first(i) to first(i + 1) - 1.
 <<corners>>
-//: no fractures
-sampling() = {};
-//: fractures
 
 For i In {0 : count - 1}
   corners() = {};
@@ -45,10 +50,7 @@ EndFor
 BooleanFragments{ Volume{1}; Delete; }{ Surface{fractures()}; Delete; }
 
 // The pieces of fracture i are the surfaces with all corners in its plane and their centre within
-// its outline. Long pieces are sampled more densely for the cell size below.
-For level In {0 : 3}
-  sampled~{level}() = {};
-EndFor
+// its outline.
 For i In {0 : count - 1}
   k = first(i);
   x0 = x(k); x1 = x(k);
@@ -65,15 +67,11 @@ For i In {0 : count - 1}
   For j In {0 : #near() - 1}
     k = first(i);
     off = 0;
-    long = 0;
     ends() = PointsOf{ Surface{near(j)}; };
-    a() = Point{ends(0)};
     For e In {0 : #ends() - 1}
       b() = Point{ends(e)};
       far = Fabs((b(0) - x(k)) * nx(i) + (b(1) - y(k)) * ny(i) + (b(2) - z(k)) * nz(i));
       off = (far > off) ? far : off;
-      far = Sqrt((b(0) - a(0))^2 + (b(1) - a(1))^2 + (b(2) - a(2))^2);
-      long = (far > long) ? far : long;
     EndFor
     If (off < eps)
       a() = CenterOfMass Surface{near(j)};
@@ -89,39 +87,12 @@ For i In {0 : count - 1}
         piece~{i}() += near(j);
         m = Mass Surface{near(j)};
         found(i) += m;
-        level = (long < 4 * h_fracture) ? 0 : (long < 16 * h_fracture) ? 1 : (long < 64 * h_fracture) ? 2 : 3;
-        sampled~{level}() += near(j);
       EndIf
     EndIf
   EndFor
-EndFor
-//: no intersections
-
-lines() = {};
-//: intersections
-
-// Ends of the segments where fractures meet.
-<<segments>>
-lines() = {};
-For i In {0 : #ax() - 1}
-  x0 = (ax(i) < bx(i)) ? ax(i) : bx(i); x1 = ax(i) + bx(i) - x0;
-  y0 = (ay(i) < by(i)) ? ay(i) : by(i); y1 = ay(i) + by(i) - y0;
-  z0 = (az(i) < bz(i)) ? az(i) : bz(i); z1 = az(i) + bz(i) - z0;
-  near() = Curve In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
-  ex = bx(i) - ax(i); ey = by(i) - ay(i); ez = bz(i) - az(i);
-  length = Sqrt(ex^2 + ey^2 + ez^2);
-  For j In {0 : #near() - 1}
-    ends() = PointsOf{ Curve{near(j)}; };
-    off = 0;
-    For e In {0 : #ends() - 1}
-      b() = Point{ends(e)};
-      px = b(0) - ax(i); py = b(1) - ay(i); pz = b(2) - az(i);
-      off += Sqrt((ey * pz - ez * py)^2 + (ez * px - ex * pz)^2 + (ex * py - ey * px)^2) / length;
-    EndFor
-    If (off < eps)
-      lines() += near(j);
-    EndIf
-  EndFor
+  If (Fabs(found(i) - area(i)) > 1e-6 * area(i))
+    Error(StrCat("fracture ", names(i), ": the pieces found have %g m2 of %g"), found(i), area(i));
+  EndIf
 EndFor
 //: always
 
@@ -133,43 +104,71 @@ front() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y0 + e
 back() = Surface In BoundingBox {x0 - eps, y1 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
 bottom() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z0 + eps};
 top() = Surface In BoundingBox {x0 - eps, y0 - eps, z1 - eps, x1 + eps, y1 + eps, z1 + eps};
+Else
+Geometry.AutoCoherence = 0;
+<<points>>
+If (form == 0)
+<<whole>>
+Else
+<<split>>
+EndIf
+EndIf
 
 Physical Volume("rock") = Volume{:};
 <<groups>>
 //: fractures
 
-// The cell size grows with the distance from fractures and from where they meet.
-fields() = {};
-For level In {0 : 3}
-  If (#sampled~{level}() > 0)
-    f = newf;
-    Field[f] = Distance;
-    Field[f].SurfacesList = {sampled~{level}()};
-    Field[f].NumPointsPerCurve = 2 * 4^(level + 1);
-    g = newf;
-    Field[g] = Threshold;
-    Field[g].InField = f;
-    Field[g].SizeMin = h_fracture;
-    Field[g].SizeMax = h;
-    Field[g].DistMin = h_fracture / 2;
-    Field[g].DistMax = h_fracture / 2 + Fabs(h - h_fracture) / growth;
-    fields() += g;
-  EndIf
+// Points on the fractures that the cell size counts distances from: first point, step and number of
+// steps of each row, <<spacing>> m apart.
+SetFactory("Built-in");
+Geometry.AutoCoherence = 0;
+q = newp;
+from = q;
+<<samples>>
+For k In {0 : #rows() - 1 : 7}
+  For m In {0 : rows(k + 6)}
+    Point(q) = {rows(k) + m * rows(k + 3), rows(k + 1) + m * rows(k + 4), rows(k + 2) + m * rows(k + 5)};
+    q += 1;
+  EndFor
 EndFor
-If (#lines() > 0)
-  f = newf;
-  Field[f] = Distance;
-  Field[f].CurvesList = {lines()};
-  Field[f].NumPointsPerCurve = 50;
-  g = newf;
-  Field[g] = Threshold;
-  Field[g].InField = f;
-  Field[g].SizeMin = h_intersection;
-  Field[g].SizeMax = h;
-  Field[g].DistMin = h_intersection / 2;
-  Field[g].DistMax = h_intersection / 2 + Fabs(h - h_intersection) / growth;
-  fields() += g;
-EndIf
+
+// The cell size grows with the distance from fractures and from where they meet.
+f = newf;
+Field[f] = Distance;
+Field[f].PointsList = {from : q - 1};
+g = newf;
+Field[g] = Threshold;
+Field[g].InField = f;
+Field[g].SizeMin = h_fracture;
+Field[g].SizeMax = h;
+near = (h_fracture > 1.42 * <<spacing>>) ? h_fracture / 2 : 0.71 * <<spacing>>;
+Field[g].DistMin = near;
+Field[g].DistMax = near + Fabs(h - h_fracture) / growth;
+fields() = {g};
+//: intersections
+
+// The same where they meet, <<line_spacing>> m apart.
+from = q;
+<<line_samples>>
+For k In {0 : #rows() - 1 : 7}
+  For m In {0 : rows(k + 6)}
+    Point(q) = {rows(k) + m * rows(k + 3), rows(k + 1) + m * rows(k + 4), rows(k + 2) + m * rows(k + 5)};
+    q += 1;
+  EndFor
+EndFor
+f = newf;
+Field[f] = Distance;
+Field[f].PointsList = {from : q - 1};
+g = newf;
+Field[g] = Threshold;
+Field[g].InField = f;
+Field[g].SizeMin = h_intersection;
+Field[g].SizeMax = h;
+near = (h_intersection > <<line_spacing>>) ? h_intersection / 2 : <<line_spacing>> / 2;
+Field[g].DistMin = near;
+Field[g].DistMax = near + Fabs(h - h_intersection) / growth;
+fields() += g;
+//: fractures
 f = newf;
 Field[f] = Min;
 Field[f].FieldsList = {fields()};

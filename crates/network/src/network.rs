@@ -3,7 +3,8 @@
 use glam::DVec3;
 use kluft_defect::Defect;
 
-use crate::clip::Domain;
+use crate::arrangement::{Arrangement, Moved, collapse};
+use crate::clip::{Domain, FACES};
 use crate::fracture::{CellSizes, InputFracture, NetworkFracture, Rejected, close_pairs};
 use crate::intersections::{Intersection, angle_between, intersection};
 use crate::polygon::Polygon;
@@ -28,6 +29,8 @@ pub struct Network {
     pub intersections: Vec<([usize; 2], Intersection)>,
     /// What is too small for the mesh and stays.
     pub features: Vec<Feature>,
+    /// Fractures and faces of the domain, cut where they meet.
+    pub arrangement: Arrangement,
 }
 
 impl Network {
@@ -60,6 +63,7 @@ impl Network {
             }
         }
         let intersections = intersections(&domain, &fractures);
+        let arrangement = arrange(&domain, &sizes, &mut fractures, &intersections);
         let features = small_features(&domain, &sizes, &fractures, &intersections);
         Ok(Self {
             domain,
@@ -68,7 +72,13 @@ impl Network {
             rejected,
             intersections,
             features,
+            arrangement,
         })
+    }
+
+    /// Area of a fracture in the geometry (m^2).
+    pub fn area(&self, fracture: usize) -> f64 {
+        self.arrangement.sheets[fracture].area(&self.arrangement.points)
     }
 }
 
@@ -99,7 +109,7 @@ fn clip_all(
     (fractures, rejected)
 }
 
-fn intersections(
+pub(crate) fn intersections(
     domain: &Domain,
     fractures: &[NetworkFracture],
 ) -> Vec<([usize; 2], Intersection)> {
@@ -110,6 +120,56 @@ fn intersections(
             let shared = intersection(&fractures[a].polygon, &fractures[b].polygon, tolerance)?;
             Some(([a, b], shared))
         })
+        .collect()
+}
+
+/// Cuts fractures and faces of the domain where they meet; if corners are snapped, edges far too
+/// short for the cells go, and the fractures whose outlines move for it are told.
+fn arrange(
+    domain: &Domain,
+    sizes: &CellSizes,
+    fractures: &mut [NetworkFracture],
+    intersections: &[([usize; 2], Intersection)],
+) -> Arrangement {
+    let polygons: Vec<&Polygon> = fractures.iter().map(|one| &one.polygon).collect();
+    let coplanar = coplanar_neighbours(domain, fractures);
+    let mut arrangement = Arrangement::of(domain, &polygons, intersections, &coplanar);
+    if !sizes.snap {
+        return arrangement;
+    }
+    for Moved { sheet, by, onto } in collapse(&mut arrangement, sizes.short(), domain.tolerance()) {
+        // Faces of the domain do not change.
+        if sheet >= fractures.len() {
+            continue;
+        }
+        let name = |other: &usize| match fractures.get(*other) {
+            Some(fracture) => format!("`{}`", fracture.name),
+            None => format!("the face `{}`", FACES[other - fractures.len()].0),
+        };
+        let onto: Vec<String> = onto.iter().map(name).collect();
+        let text = format!(
+            "its outline was moved by {by:.3e} m at {}",
+            onto.join(" and ")
+        );
+        fractures[sheet].changes.push(text);
+        fractures[sheet].farthest_move = fractures[sheet].farthest_move.max(by);
+    }
+    arrangement
+}
+
+/// Pairs of fractures side by side in one plane.
+pub(crate) fn coplanar_neighbours(
+    domain: &Domain,
+    fractures: &[NetworkFracture],
+) -> Vec<[usize; 2]> {
+    let tolerance = domain.tolerance();
+    let pairs = close_pairs(fractures, tolerance).into_iter();
+    let is_flat = |a: &Polygon, b: &Polygon| {
+        let mut corners = b.corners().iter();
+        corners.all(|&corner| a.height(corner).abs() <= tolerance)
+    };
+    pairs
+        .filter(|[a, b]| is_flat(&fractures[*a].polygon, &fractures[*b].polygon))
         .collect()
 }
 

@@ -45,11 +45,18 @@ pub fn small_features(
     fractures: &[NetworkFracture],
     intersections: &[([usize; 2], Intersection)],
 ) -> Vec<Feature> {
+    let mut of = vec![Vec::new(); fractures.len()];
+    for (index, (pair, _)) in intersections.iter().enumerate() {
+        for &fracture in pair {
+            of[fracture].push(index);
+        }
+    }
     let mut search = Search {
         domain,
         sizes,
         fractures,
         intersections,
+        of,
         found: Vec::new(),
     };
     search.of_intersections();
@@ -67,6 +74,8 @@ struct Search<'a> {
     sizes: &'a CellSizes,
     fractures: &'a [NetworkFracture],
     intersections: &'a [([usize; 2], Intersection)],
+    /// The intersections of each fracture.
+    of: Vec<Vec<usize>>,
     found: Vec<Feature>,
 }
 
@@ -182,8 +191,7 @@ impl Search<'_> {
     fn traces(&self, own: usize) -> Vec<Trace> {
         let edges = self.fractures[own].polygon.edges();
         let edges = edges.map(|ends| Trace { ends, other: None });
-        let shared = self.intersections.iter();
-        let own_pairs = shared.filter(|(pair, _)| pair.contains(&own));
+        let own_pairs = self.of[own].iter().map(|&index| &self.intersections[index]);
         let shared = own_pairs.map(|([a, b], shared)| Trace {
             ends: [shared.from, shared.to],
             other: Some(if *a == own { *b } else { *a }),
