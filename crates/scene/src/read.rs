@@ -111,17 +111,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fluid: fluid_use(root),
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    root.require("mesh");
-    let section = root.section("mesh");
-    let quarter_points = section
-        .as_ref()
-        .and_then(|section| section.flag("quarter_points"));
-    let weld = section.as_ref().and_then(|section| section.flag("weld"));
-    let refine = section
-        .as_ref()
-        .and_then(|section| section.number("refine"));
-    let refine = refine.map_or(0, |times| times as u32);
-    let mesh = section.and_then(|section| read_mesh(section, folder, refine));
+    let mesh = read_mesh_section(root, folder);
     match setting.is_rigid() {
         true => refuse_in_rigid_rock(root),
         false => root.require("rock"),
@@ -160,13 +150,37 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         rocks,
         fractures,
         boundaries,
-        quarter_points: quarter_points.unwrap_or(true),
-        weld: weld.unwrap_or(false),
-        refine,
-        mesh: mesh?,
+        quarter_points: mesh.quarter_points,
+        weld: mesh.weld,
+        refine: mesh.refine,
+        mesh: mesh.source?,
         // After everything has been read.
         warnings: source.take_warnings(),
     })
+}
+
+/// What a scene says of its mesh.
+struct MeshSection {
+    source: Option<MeshSource>,
+    quarter_points: bool,
+    weld: bool,
+    refine: u32,
+}
+
+fn read_mesh_section(root: &Section<'_, '_>, folder: &Path) -> MeshSection {
+    root.require("mesh");
+    let section = root.section("mesh");
+    let flag = |key| section.as_ref().and_then(|section| section.flag(key));
+    let refine = section
+        .as_ref()
+        .and_then(|section| section.number("refine"));
+    let refine = refine.map_or(0, |times| times as u32);
+    MeshSection {
+        quarter_points: flag("quarter_points").unwrap_or(true),
+        weld: flag("weld").unwrap_or(false),
+        refine,
+        source: section.and_then(|section| read_mesh(section, folder, refine)),
+    }
 }
 
 fn entry<'a, 'i, T>(
