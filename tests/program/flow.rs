@@ -180,14 +180,13 @@ fn elastic(more: &[(&str, &str)]) -> Workshop {
 /// pressure does.
 #[test]
 fn the_fluid_pushes_the_walls_of_joints() {
-    let out = elastic(&[]).solve("out", &[]);
-    check_star(&out);
+    let workshop = elastic(&[]);
+    check_star(&workshop.solve("out", &[]));
     let even = [
         ("fluid_pressure = 3e5", "fluid_pressure = 2e5"),
         ("fluid_pressure = 1e5", "fluid_pressure = 2e5"),
         ("fluid_pressure = 0.0", "fluid_pressure = 2e5"),
     ];
-    let workshop = elastic(&[]);
     let text = fs::read_to_string(workshop.scene()).expect("the scene");
     let flowing = even
         .iter()
