@@ -104,6 +104,7 @@ fn check(expected: &Expected) {
     let promised = [
         "fractures.pvd",
         "fractures_0001.vtu",
+        "history.csv",
         "mesh.msh",
         "resume.bin",
         "rock.pvd",

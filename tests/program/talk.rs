@@ -28,8 +28,8 @@ fn every_load_step_is_an_entry_of_the_collections() {
     assert!(steps.iter().all(|step| step["converged"] == json!(true)));
     assert_eq!(
         files(&out).len(),
-        11,
-        "three steps, the mesh, two collections, a summary, a checkpoint"
+        12,
+        "three steps, the mesh, two collections, a summary, a history, a checkpoint"
     );
 }
 
@@ -68,8 +68,8 @@ fn a_step_that_cannot_converge_leaves_the_ones_before() {
     assert_eq!(converged, [&json!(true), &json!(true), &json!(false)]);
     assert_eq!(
         files(&out).len(),
-        9,
-        "two steps, the mesh, two collections, a summary, a checkpoint"
+        10,
+        "two steps, the mesh, two collections, a summary, a history, a checkpoint"
     );
 }
 

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::checkpoint;
 use crate::flow::SOURCES;
+use crate::history;
 
 /// The files that the collections, the summary and the report of an inspection name, and these
 /// themselves. What nothing names is not ours.
@@ -42,6 +43,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
     }
     if json("inspect.json", "unresolved_patches").is_some() {
         names.extend(["inspect.json", "inspect.vtu"].map(String::from));
+    }
+    if read(history::NAME).is_some_and(|text| history::is_history(&text)) {
+        names.push(history::NAME.into());
     }
     if checkpoint::is_checkpoint(&folder.join(checkpoint::NAME)) {
         names.push(checkpoint::NAME.into());

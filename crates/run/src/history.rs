@@ -48,6 +48,11 @@ const COLUMNS: [&str; 34] = [
     "newton_iterations",
 ];
 
+/// Whether a text is a table of this kind.
+pub fn is_history(text: &str) -> bool {
+    text.lines().next() == Some(COLUMNS.join(",").as_str())
+}
+
 /// What one load step adds.
 pub struct Entry<'a> {
     /// Number of the load step, from 1.

@@ -235,7 +235,6 @@ impl Run<'_> {
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
-        self.write_history(prepared, &solution)?;
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(system, &solution, &accuracy);
@@ -259,7 +258,7 @@ impl Run<'_> {
             written
         })?;
         self.write_sources(system.problem())?;
-        Ok(())
+        self.write_history(prepared, &solution)
     }
 
     /// Adds the load step that was solved last to the history.

@@ -223,7 +223,7 @@ pub(super) const CASES: &[Case] = &[
         ],
         says: &[
             "scene.toml:23: the history of [boundary.bottom] has nothing to scale",
-            "add a traction, a pressure or a displacement other than 0",
+            "add a traction, a pressure, a displacement other than 0 or a fluid_pressure",
         ],
         ..SOUND
     },

@@ -152,8 +152,8 @@ fn judge_all(cases: &[Case]) {
     let former = former_results();
     assert_eq!(
         former.len(),
-        6,
-        "two collections, two grids, a summary, a checkpoint"
+        7,
+        "two collections, two grids, a summary, a history, a checkpoint"
     );
     let verdicts: Vec<String> = cases
         .iter()

@@ -187,7 +187,7 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
             "0.2 mm",
         ],
         [
-            "scene.toml:29: `aperture` = 0.2 in [fracture.joint]",
+            "scene.toml:30: `aperture` = 0.2 in [fracture.joint]",
             "0.2 mm",
         ],
         [
