@@ -272,13 +272,15 @@ pub fn block_motions(system: &System<'_>, displacements: &[DVec3]) -> Vec<BlockM
         rotation: DVec3::ZERO,
     };
     let mut sums = vec![still; mesh.block_count];
-    let all: Vec<usize> = (0..mesh.cells.len()).collect();
-    for wave in all.chunks(CELLS_PER_WAVE) {
+    let count = mesh.cells.len();
+    for start in (0..count).step_by(CELLS_PER_WAVE) {
+        let wave = start..count.min(start + CELLS_PER_WAVE);
         let of_cells: Vec<BlockMotion> = wave
-            .par_iter()
-            .map(|&index| cell_motion(system, displacements, index))
+            .clone()
+            .into_par_iter()
+            .map(|index| cell_motion(system, displacements, index))
             .collect();
-        for (&index, cell) in wave.iter().zip(&of_cells) {
+        for (index, cell) in wave.zip(&of_cells) {
             let sum = &mut sums[mesh.block[index] as usize];
             sum.volume += cell.volume;
             sum.displacement += cell.volume * cell.displacement;
