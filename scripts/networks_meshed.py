@@ -76,7 +76,7 @@ def mesh(folder, form, algorithm, limit):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--program", default="kluft")
+    parser.add_argument("--program", default=ROOT / "target/release/kluft")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--limit", type=float, default=120, help="seconds for gmsh")
     parser.add_argument("--cell", type=float, default=2.0, help="size on fractures, m")
@@ -128,4 +128,5 @@ gmsh reports no error.
     PAGE.write_text(text + "\n".join(rows) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()
