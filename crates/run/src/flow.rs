@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kluft_io::printable::cell;
 use kluft_io::{Field, write_atomically};
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{
@@ -152,7 +153,8 @@ pub fn write_sources(path: &Path, schedule: &Schedule, steps: &[StepFlow]) -> Re
                 let number = (index + 1).to_string();
                 let values = [step.load.time, source.pressure, source.rate];
                 let [time, pressure, rate] = values.map(|value| format!("{value:?}"));
-                table.write_record([&number, &time, &source.name, &pressure, &rate])?;
+                let name = cell(&source.name);
+                table.write_record([number, time, name, pressure, rate])?;
             }
         }
         table.flush()

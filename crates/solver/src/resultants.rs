@@ -132,10 +132,8 @@ impl Acting {
         let supports = self.supports.iter().map(|support| held(*support, normal));
         let held = share * supports.fold(DMat3::ZERO, |sum, held| sum + held);
         let corner = |(&node, (size, area)): (&u32, (f64, DVec3))| {
-            let load = self.loads.iter().map(|(factor, load)| match load {
-                SurfaceLoad::Traction(traction) => factor * size * *traction,
-                SurfaceLoad::Pressure(pressure) => -factor * pressure * area,
-            });
+            let loads = self.loads.iter();
+            let load = loads.map(|(factor, load)| *factor * load.force((size, area)));
             Corner {
                 node: node as usize,
                 area: size,

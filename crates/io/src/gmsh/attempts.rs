@@ -60,9 +60,12 @@ const fn way(name: &'static str, options: &'static [(&'static str, f64)]) -> Att
 /// fails; one way if the geometry, a file that it opens, or a parameter chooses.
 pub(super) fn attempts(scripts: &[PathBuf], parameters: &[(String, f64)]) -> &'static [Attempt] {
     let is_given = parameters.iter().any(|(name, _)| name == ALGORITHM);
-    if is_given || scripts.iter().any(chooses) {
+    let scripts = scripts.iter().map(std::fs::read);
+    let scripts: Vec<Vec<u8>> = scripts.map(Result::unwrap_or_default).collect();
+    let any = |holds: fn(&[u8]) -> bool| scripts.iter().any(|script| holds(script));
+    if is_given || any(chooses) {
         &[AS_GIVEN]
-    } else if scripts.iter().any(offers_forms) && !is_any_given(parameters) {
+    } else if !is_any_given(parameters) && any(offers_forms) {
         &FORMS
     } else {
         &[AS_GIVEN, HXT]
@@ -75,21 +78,19 @@ fn is_any_given(parameters: &[(String, f64)]) -> bool {
 }
 
 /// Whether a script is one of `kluft network` with forms to choose from.
-fn offers_forms(script: &PathBuf) -> bool {
-    let script = std::fs::read(script).unwrap_or_default();
+fn offers_forms(script: &[u8]) -> bool {
     let first = script
         .split(|&byte| byte == b'\n')
         .next()
         .unwrap_or_default();
     let is_network = memchr::memmem::find(first, MADE_BY.as_bytes()).is_some();
     let is_form = |token| token == Token::Text(FORM.as_bytes());
-    is_network && Tokens::of(&script).any(|(_, token)| is_form(token))
+    is_network && Tokens::of(script).any(|(_, token)| is_form(token))
 }
 
-fn chooses(script: &PathBuf) -> bool {
-    let script = std::fs::read(script).unwrap_or_default();
+fn chooses(script: &[u8]) -> bool {
     let is_choice = |token| token == Token::Word("Algorithm3D");
-    Tokens::of(&script).any(|(_, token)| is_choice(token))
+    Tokens::of(script).any(|(_, token)| is_choice(token))
 }
 
 /// Whether gmsh could fare better in another way: nothing is wrong with a line of the geometry, and

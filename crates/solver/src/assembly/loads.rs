@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use crate::assembly::cell_forces;
 use crate::assembly::interface::Interface;
-use crate::problem::SurfaceLoad;
 use crate::space::Space;
 
 /// Forces of one load case on all unknowns at load factor 1 (N).
@@ -146,11 +145,8 @@ fn add_surface_loads(space: Space<'_>, case: usize, forces: &mut [DVec3]) {
             let positions: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
             let areas = load_areas(boundary.elements.shapes[facet], &positions);
             let slots = &boundary.slots[boundary.elements.range(facet)];
-            for (&slot, (size, area)) in slots.iter().zip(areas) {
-                forces[space.points.of_cell_node[slot as usize] as usize] += match load {
-                    SurfaceLoad::Traction(traction) => size * traction,
-                    SurfaceLoad::Pressure(pressure) => -pressure * area,
-                };
+            for (&slot, area) in slots.iter().zip(areas) {
+                forces[space.points.of_cell_node[slot as usize] as usize] += load.force(area);
             }
         }
     }

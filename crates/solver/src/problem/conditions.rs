@@ -11,6 +11,17 @@ pub enum SurfaceLoad {
     Pressure(f64),
 }
 
+impl SurfaceLoad {
+    /// Force (N) on a node, for which `int N dA` is given (m^2), of the size and as a vector along
+    /// the outward normal.
+    pub fn force(self, (size, area): (f64, DVec3)) -> DVec3 {
+        match self {
+            Self::Traction(traction) => size * traction,
+            Self::Pressure(pressure) => -pressure * area,
+        }
+    }
+}
+
 /// A support of a part of the outer surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {
