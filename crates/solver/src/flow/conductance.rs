@@ -1,6 +1,6 @@
 //! Transmissivities of facets, the matrix they make, and rates of potentials.
 
-use kluft_algebra::{Lists, ScalarMatrix};
+use kluft_algebra::ScalarMatrix;
 use kluft_mesh::{Defect, Mesh};
 use lie_core::FacetFlow;
 use rayon::prelude::*;
@@ -8,12 +8,10 @@ use rayon::prelude::*;
 use super::numbering::FlowNodes;
 use crate::problem::{Conduit, Flow};
 
-/// How the fractures conduct at some apertures.
+/// How the fractures conduct.
 #[derive(Debug, Clone)]
 pub(super) struct Conductance {
-    /// Stencil of each conducting facet.
-    pub(super) stencils: Vec<FacetFlow>,
-    /// Transmissivity of each conducting facet (m^3/(Pa s)): the mean of its corners'.
+    /// Transmissivity of each conducting facet (m^3/(Pa s)).
     pub(super) transmissivity: Vec<f64>,
     /// Over all pressures: `K_ij = sum_f T_f k_ij` beside the diagonal, which makes rows add up to
     /// zero.
@@ -21,28 +19,11 @@ pub(super) struct Conductance {
 }
 
 impl Conductance {
-    /// That of fractures with these apertures (m), one for each entry of the flat node list of the
-    /// facets.
-    pub(super) fn of(mesh: &Mesh, flow: &Flow, nodes: &FlowNodes, apertures: &[f64]) -> Self {
-        let facets = nodes.facets.par_iter();
-        let (stencils, transmissivity): (Vec<_>, Vec<_>) = facets
-            .map(|&facet| {
-                let facet = facet as usize;
-                let elements = &mesh.facets.elements;
-                let corners = mesh.corners(elements, facet);
-                let own = &apertures[elements.range(facet)][..corners.len()];
-                let conduit = flow.conduits[mesh.facets.fracture[facet] as usize];
-                (
-                    FacetFlow::of(elements.shapes[facet], &corners),
-                    transmissivity(conduit, flow.fluid.viscosity, own),
-                )
-            })
-            .unzip();
-        let matrix = matrix(nodes, &stencils, &transmissivity);
+    /// That of facets with these stencils and transmissivities (m^3/(Pa s)).
+    pub(super) fn of(nodes: &FlowNodes, stencils: &[FacetFlow], transmissivity: Vec<f64>) -> Self {
         Self {
-            stencils,
+            matrix: matrix(nodes, stencils, &transmissivity),
             transmissivity,
-            matrix,
         }
     }
 
@@ -103,20 +84,46 @@ impl Conductance {
     }
 }
 
-fn transmissivity(conduit: Conduit, viscosity: f64, apertures: &[f64]) -> f64 {
-    let Conduit::Open(hydraulic) = conduit else {
-        return 0.0;
+/// The stencil of each conducting facet.
+pub(super) fn stencils(mesh: &Mesh, nodes: &FlowNodes) -> Vec<FacetFlow> {
+    let elements = &mesh.facets.elements;
+    let of = |facet: usize| FacetFlow::of(elements.shapes[facet], &mesh.corners(elements, facet));
+    let facets = nodes.facets.par_iter();
+    facets.map(|&facet| of(facet as usize)).collect()
+}
+
+/// Transmissivity of each conducting facet (m^3/(Pa s)), the mean of its corners', at apertures
+/// (m), one for each entry of the flat node list of the facets.
+pub(super) fn transmissivities(
+    mesh: &Mesh,
+    flow: &Flow,
+    nodes: &FlowNodes,
+    apertures: &[f64],
+) -> Vec<f64> {
+    let elements = &mesh.facets.elements;
+    let of = |facet: usize| {
+        let Conduit::Open(hydraulic) = flow.conduits[mesh.facets.fracture[facet] as usize] else {
+            return 0.0;
+        };
+        let corners = elements.shapes[facet].corner_count();
+        let own = apertures[elements.range(facet)][..corners].iter();
+        let at = |aperture: &f64| {
+            let conduction = hydraulic.at(*aperture);
+            conduction.transmissivity(flow.fluid.viscosity)
+        };
+        own.map(at).sum::<f64>() / corners as f64
     };
-    let of = |aperture: &f64| hydraulic.at(*aperture).transmissivity(viscosity);
-    apertures.iter().map(of).sum::<f64>() / apertures.len() as f64
+    let facets = nodes.facets.par_iter();
+    facets.map(|&facet| of(facet as usize)).collect()
 }
 
 /// The matrix row by row; each row takes its facets in ascending order.
 fn matrix(nodes: &FlowNodes, stencils: &[FacetFlow], transmissivity: &[f64]) -> ScalarMatrix {
     let rows = (0..nodes.len()).into_par_iter();
-    let rows: Vec<(Vec<u32>, Vec<f64>)> = rows
+    let rows: Vec<Vec<f64>> = rows
         .map(|row| {
-            let columns = columns(nodes, row);
+            let columns = nodes.columns.of(row);
+            let place = |column: u32| columns.partition_point(|&known| known < column);
             let mut values = vec![0.0; columns.len()];
             let mut own = 0.0;
             for &facet in nodes.around.of(row) {
@@ -129,31 +136,16 @@ fn matrix(nodes: &FlowNodes, stencils: &[FacetFlow], transmissivity: &[f64]) -> 
                         continue;
                     }
                     let value = transmissivity[facet] * stencils[facet].coupling(local, other);
-                    let place = columns.partition_point(|&known| known < column);
-                    values[place] += value;
+                    values[place(column)] += value;
                     own -= value;
                 }
             }
-            let place = columns.partition_point(|&known| (known as usize) < row);
-            values[place] = own;
-            (columns, values)
+            values[place(row as u32)] = own;
+            values
         })
         .collect();
-    let (columns, values): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
     ScalarMatrix {
-        pattern: Lists::collect(&columns),
-        values: values.concat(),
+        pattern: nodes.columns.clone(),
+        values: rows.concat(),
     }
-}
-
-/// The pressures that share a facet with one, itself among them, ascending.
-fn columns(nodes: &FlowNodes, row: usize) -> Vec<u32> {
-    let facets = nodes.around.of(row).iter();
-    let mut columns: Vec<u32> = facets
-        .flat_map(|&facet| nodes.corners.of(facet as usize))
-        .copied()
-        .collect();
-    columns.sort_unstable();
-    columns.dedup();
-    columns
 }

@@ -25,19 +25,24 @@ pub struct FlowFields {
 impl FlowSystem<'_> {
     /// The fields of a state, with the apertures (m) that the system was made with.
     pub fn fields(&self, state: &FlowState, apertures: &[f64]) -> FlowFields {
-        let elements = &self.mesh.facets.elements;
+        let elements = &self.topology.mesh.facets.elements;
         let mut fields = FlowFields {
             pressures: self.facet_pressures(state),
-            hydraulic_apertures: hydraulic_apertures(self.mesh, self.flow, apertures),
+            hydraulic_apertures: hydraulic_apertures(
+                self.topology.mesh,
+                self.topology.flow,
+                apertures,
+            ),
             transmissivities: vec![0.0; elements.len()],
             fluxes: vec![DVec3::ZERO; elements.len()],
         };
-        for (index, &facet) in self.nodes.facets.iter().enumerate() {
+        for (index, &facet) in self.topology.nodes.facets.iter().enumerate() {
             let transmissivity = self.conductance.transmissivity[index];
-            let corners = self.nodes.corners.of(index).iter();
+            let corners = self.topology.nodes.corners.of(index).iter();
             let own: Vec<f64> = corners.map(|&row| state.potentials[row as usize]).collect();
-            let gradient = self.conductance.stencils[index].mean_gradient(&own);
-            fields.transmissivities[facet as usize] = self.flow.fluid.viscosity * transmissivity;
+            let gradient = self.topology.stencils[index].mean_gradient(&own);
+            fields.transmissivities[facet as usize] =
+                self.topology.flow.fluid.viscosity * transmissivity;
             fields.fluxes[facet as usize] = -transmissivity * gradient;
         }
         fields
@@ -45,11 +50,11 @@ impl FlowSystem<'_> {
 
     /// Pressure (Pa) at the nodes of the facets, in the order of their flat node list.
     pub fn facet_pressures(&self, state: &FlowState) -> Vec<f64> {
-        let elements = &self.mesh.facets.elements;
+        let elements = &self.topology.mesh.facets.elements;
         let mut pressures = vec![0.0; elements.nodes.len()];
-        for (index, &facet) in self.nodes.facets.iter().enumerate() {
+        for (index, &facet) in self.topology.nodes.facets.iter().enumerate() {
             let facet = facet as usize;
-            let corners = self.nodes.corners.of(index).iter();
+            let corners = self.topology.nodes.corners.of(index).iter();
             let corners: Vec<f64> = corners.map(|&row| state.pressures[row as usize]).collect();
             let own = &mut pressures[elements.range(facet)];
             own[..corners.len()].copy_from_slice(&corners);

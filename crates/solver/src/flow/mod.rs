@@ -15,7 +15,9 @@
 //! |---|---|
 //! | `numbering` | the nodes that have a pressure |
 //! | `conductance` | transmissivities of facets, the matrix, rates of potentials |
-//! | `edges`, `wells`, `nodal` | conditions as they act on nodes |
+//! | `places`, `edges`, `wells` | where conditions act |
+//! | `nodal` | conditions as they act on nodes |
+//! | `topology` | all of a flow that stays whatever the apertures |
 //! | `networks` | what hangs together hydraulically, and what has no steady state |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
@@ -29,8 +31,10 @@ mod fields;
 mod networks;
 mod nodal;
 mod numbering;
+mod places;
 mod solve;
 mod steady;
+mod topology;
 mod walls;
 mod wells;
 

@@ -4,6 +4,7 @@ use kluft_mesh::{Defect, DisjointSets, Mesh};
 
 use super::nodal::{Nodal, NodalCondition};
 use super::numbering::FlowNodes;
+use super::places::Place;
 use crate::problem::{Flow, FlowDrive};
 
 /// Code of the defect that no pressure is given to a network, see [`kluft_mesh::Defect::code`].
@@ -32,7 +33,8 @@ pub struct FlowNetwork {
 pub(super) fn find(
     mesh: &Mesh,
     nodes: &FlowNodes,
-    conditions: &[NodalCondition],
+    flow: &Flow,
+    places: &[Place],
 ) -> (Vec<FlowNetwork>, Vec<u32>) {
     let mut sets = DisjointSets::new(nodes.len());
     for facet in 0..nodes.facets.len() {
@@ -67,33 +69,22 @@ pub(super) fn find(
         network.fractures.sort_unstable();
         network.fractures.dedup();
     }
-    for entry in conditions {
-        add_condition(entry, &of_row, &mut networks);
-    }
-    (networks, of_row)
-}
-
-fn add_condition(entry: &NodalCondition, of_row: &[u32], networks: &mut [FlowNetwork]) {
-    let (rows, gives_pressure): (Vec<usize>, bool) = match &entry.nodal {
-        Nodal::Given(rows) => (rows.clone(), true),
-        Nodal::Shared(shares) => (shares.iter().map(|(row, _)| *row).collect(), false),
-        Nodal::WellRate(well) => (vec![well.row], false),
-        Nodal::WellPressure(well) => (vec![well.row], true),
-    };
-    for row in rows {
-        let network = &mut networks[of_row[row] as usize];
-        network.has_pressure |= gives_pressure;
-        if !network.conditions.contains(&entry.condition) {
-            network.conditions.push(entry.condition);
+    for (condition, place) in places.iter().enumerate() {
+        for row in place.rows() {
+            let network = &mut networks[of_row[row] as usize];
+            network.has_pressure |= flow.conditions[condition].drive.is_pressure();
+            if !network.conditions.contains(&condition) {
+                network.conditions.push(condition);
+            }
         }
     }
+    (networks, of_row)
 }
 
 /// Networks without a given pressure: those that rates drive, each by itself, and all that nothing
 /// drives in one.
 pub(super) fn without_pressure(
-    mesh: &Mesh,
-    flow: &Flow,
+    (mesh, flow): (&Mesh, &Flow),
     networks: &[FlowNetwork],
     conditions: &[NodalCondition],
     of_row: &[u32],

@@ -2,6 +2,7 @@
 
 use kluft_algebra::Lists;
 use kluft_mesh::Mesh;
+use rayon::prelude::*;
 
 use crate::problem::{Conduit, Flow};
 
@@ -19,6 +20,8 @@ pub(super) struct FlowNodes {
     pub(super) corners: Lists,
     /// Of each pressure the conducting facets around it, ascending: indices into `facets`.
     pub(super) around: Lists,
+    /// Of each pressure those that it shares a facet with, itself among them, ascending.
+    pub(super) columns: Lists,
     /// Pressure of each node, or [`NONE`].
     of_node: Vec<u32>,
 }
@@ -59,10 +62,12 @@ impl FlowNodes {
         for entry in &mut around.entries {
             *entry = facet_of_entry[*entry as usize];
         }
+        let corners = Lists { offset, entries };
         Self {
+            columns: columns(&corners, &around, node.len()),
             node,
             facets,
-            corners: Lists { offset, entries },
+            corners,
             around,
             of_node,
         }
@@ -78,6 +83,18 @@ impl FlowNodes {
         let number = self.of_node[node as usize];
         (number != NONE).then_some(number as usize)
     }
+}
+
+fn columns(corners: &Lists, around: &Lists, rows: usize) -> Lists {
+    let of = |row: usize| {
+        let facets = around.of(row).iter();
+        let near = facets.flat_map(|&facet| corners.of(facet as usize));
+        let mut near: Vec<u32> = near.copied().collect();
+        near.sort_unstable();
+        near.dedup();
+        near
+    };
+    Lists::collect(&(0..rows).into_par_iter().map(of).collect::<Vec<_>>())
 }
 
 /// Corners of a facet.

@@ -7,6 +7,7 @@ use kluft_algebra::LinearFailure;
 
 use super::balance::{ConditionFlow, FlowBalance};
 use super::nodal::{self, Nodal, NodalCondition};
+use super::places;
 use super::steady::FlowSystem;
 use crate::problem::Load;
 
@@ -45,7 +46,7 @@ impl FlowSystem<'_> {
         let mut loaded = Loaded {
             system: self,
             load,
-            references: vec![0.0; self.networks.len()],
+            references: vec![0.0; self.topology.networks.len()],
         };
         loaded.references = loaded.mean_potentials();
         let mut potentials = loaded.first_guess();
@@ -53,14 +54,19 @@ impl FlowSystem<'_> {
             let mut left = f64::INFINITY;
             for _ in 0..CORRECTIONS {
                 let missing = loaded.missing(&potentials);
-                let rhs: Vec<f64> = self.free.iter().map(|&row| missing[row as usize]).collect();
+                let rhs: Vec<f64> = self
+                    .topology
+                    .free
+                    .iter()
+                    .map(|&row| missing[row as usize])
+                    .collect();
                 let size: f64 = rhs.iter().map(|value| value.abs()).sum();
                 // Written so that what is not finite ends it too.
                 if !(size > 0.0 && size < GAIN * left) {
                     break;
                 }
                 left = size;
-                for (&row, change) in self.free.iter().zip(factor.solve(&rhs)) {
+                for (&row, change) in self.topology.free.iter().zip(factor.solve(&rhs)) {
                     potentials[row as usize] += change;
                 }
             }
@@ -77,7 +83,7 @@ impl Loaded<'_, '_> {
     fn mean_potentials(&self) -> Vec<f64> {
         let mut sums = vec![(0.0, 0_usize); self.references.len()];
         let mut add = |entry: &NodalCondition, row: usize| {
-            let (sum, count) = &mut sums[self.system.network_of_row[row] as usize];
+            let (sum, count) = &mut sums[self.system.topology.network_of_row[row] as usize];
             *sum += self.driven(entry, row);
             *count += 1;
         };
@@ -94,7 +100,7 @@ impl Loaded<'_, '_> {
 
     /// Potentials where they are given, elsewhere the reference.
     fn first_guess(&self) -> Vec<f64> {
-        let mut potentials = vec![0.0; self.system.nodes.len()];
+        let mut potentials = vec![0.0; self.system.topology.nodes.len()];
         for entry in &self.system.conditions {
             if let Nodal::Given(rows) = &entry.nodal {
                 for &row in rows {
@@ -107,21 +113,22 @@ impl Loaded<'_, '_> {
 
     /// The potential that a condition gives at a row (Pa).
     fn driven(&self, entry: &NodalCondition, row: usize) -> f64 {
-        let condition = &self.system.flow.conditions[entry.condition];
-        let node = self.system.nodes.node[row] as usize;
-        let elevation = self.system.mesh.nodes[node].z;
-        let pressure = nodal::profile(condition).at_elevation(elevation);
+        let condition = &self.system.topology.flow.conditions[entry.condition];
+        let node = self.system.topology.nodes.node[row] as usize;
+        let elevation = self.system.topology.mesh.nodes[node].z;
+        let pressure = places::profile(condition).at_elevation(elevation);
         self.load.factor(condition.case) * pressure - self.weight(row)
     }
 
     /// What is to be added to the potential of a row for its pressure (Pa): `rho g . x` and the
     /// reference.
     fn weight(&self, row: usize) -> f64 {
-        let flow = self.system.flow;
+        let flow = self.system.topology.flow;
         let gravity = self.load.factor(flow.gravity_case) * flow.gravity;
-        let node = self.system.nodes.node[row] as usize;
-        let network = self.system.network_of_row[row] as usize;
-        flow.fluid.density * gravity.dot(self.system.mesh.nodes[node]) + self.references[network]
+        let node = self.system.topology.nodes.node[row] as usize;
+        let network = self.system.topology.network_of_row[row] as usize;
+        flow.fluid.density * gravity.dot(self.system.topology.mesh.nodes[node])
+            + self.references[network]
     }
 
     /// What conditions drive into each row, less what enters under some potentials (m^3/s). At rows
@@ -130,7 +137,7 @@ impl Loaded<'_, '_> {
         let entering = self.system.conductance.rates(potentials);
         let mut missing: Vec<f64> = entering.into_iter().map(|rate| -rate).collect();
         for entry in &self.system.conditions {
-            let condition = &self.system.flow.conditions[entry.condition];
+            let condition = &self.system.topology.flow.conditions[entry.condition];
             let rate = nodal::rate(condition, self.load);
             match &entry.nodal {
                 Nodal::Given(_) => {}
@@ -155,7 +162,7 @@ impl Loaded<'_, '_> {
         let sums = sums.map(|(row, potential)| potential + self.weight(row));
         let pressures: Vec<f64> = sums.collect();
         let mut missing = self.missing(&potentials);
-        let missed = system.free.iter();
+        let missed = system.topology.free.iter();
         let missed = missed.map(|&row| missing[row as usize].abs()).sum();
         let of = |entry: &NodalCondition| self.through(entry, &pressures, &mut missing);
         let conditions: Vec<ConditionFlow> = system.conditions.iter().map(of).collect();
@@ -177,7 +184,7 @@ impl Loaded<'_, '_> {
         pressures: &[f64],
         missing: &mut [f64],
     ) -> ConditionFlow {
-        let condition = &self.system.flow.conditions[entry.condition];
+        let condition = &self.system.topology.flow.conditions[entry.condition];
         let rate = nodal::rate(condition, self.load);
         match &entry.nodal {
             Nodal::Given(rows) => {

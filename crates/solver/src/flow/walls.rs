@@ -41,7 +41,7 @@ impl FlowSystem<'_> {
     /// Pressure at each point of an interface (Pa): at control points, control values.
     pub fn point_pressures(&self, state: &FlowState, interface: &Interface) -> Vec<f64> {
         let at_nodes = self.facet_pressures(state);
-        let elements = &self.mesh.facets.elements;
+        let elements = &self.topology.mesh.facets.elements;
         // The points of a facet keep their order, wherever they stand.
         let mut seen = vec![0_usize; elements.len()];
         let points = interface.points().iter();
@@ -50,7 +50,9 @@ impl FlowSystem<'_> {
             let place = seen[facet];
             seen[facet] += 1;
             let nodes = elements.nodes_of(facet).iter();
-            let nodes: Vec<DVec3> = nodes.map(|&node| self.mesh.nodes[node as usize]).collect();
+            let nodes: Vec<DVec3> = nodes
+                .map(|&node| self.topology.mesh.nodes[node as usize])
+                .collect();
             let rule = interface.rule_of(point.fracture);
             let shares = facet_points(elements.shapes[facet], &nodes, rule)
                 .into_iter()

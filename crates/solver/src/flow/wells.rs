@@ -18,13 +18,34 @@ use kluft_mesh::{Defect, Mesh};
 use super::conductance::Conductance;
 use super::numbering::FlowNodes;
 
-/// A borehole.
+/// A borehole in facets whose transmissivities change little against each other: `r_e` stays.
+#[derive(Debug, Clone)]
+pub(super) struct Borehole {
+    /// The pressure of its node.
+    pub(super) row: usize,
+    /// The facets around it, indices into those of the numbering, and their angles there.
+    pub(super) angles: Vec<(usize, f64)>,
+    /// `ln(r_e / r_w)`.
+    pub(super) logarithm: f64,
+}
+
+/// A borehole at some transmissivities.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Well {
     /// The pressure of its node.
     pub(super) row: usize,
     /// `W` (m^3/(Pa s)).
     pub(super) conductance: f64,
+}
+
+impl Borehole {
+    /// With facets of these transmissivities (m^3/(Pa s)).
+    pub(super) fn at(&self, transmissivity: &[f64]) -> Well {
+        Well {
+            row: self.row,
+            conductance: theta(&self.angles, transmissivity) / self.logarithm,
+        }
+    }
 }
 
 /// The borehole of a radius (m) at a pressure; `name` is for messages.
@@ -37,8 +58,8 @@ pub(super) fn at(
     conductance: &Conductance,
     row: usize,
     (radius, name): (f64, &str),
-) -> Result<Well, Defect> {
-    let angles = angles(mesh, nodes, conductance, row);
+) -> Result<Borehole, Defect> {
+    let angles = angles(mesh, nodes, row);
     let (own, place) = (conductance.diagonal(row), nodes.node[row] as usize);
     let distance = |column: usize| {
         let other = mesh.nodes[nodes.node[column] as usize];
@@ -49,11 +70,12 @@ pub(super) fn at(
     let mean: f64 = others
         .map(|(column, value)| -value / own * distance(column).ln())
         .sum();
-    let equivalent = (mean - angles / own).exp();
+    let equivalent = (mean - theta(&angles, &conductance.transmissivity) / own).exp();
     if equivalent > radius {
-        return Ok(Well {
+        return Ok(Borehole {
             row,
-            conductance: angles / (equivalent / radius).ln(),
+            angles,
+            logarithm: (equivalent / radius).ln(),
         });
     }
     Err(Defect::new(
@@ -66,9 +88,17 @@ pub(super) fn at(
 }
 
 /// `Theta` (m^3/(Pa s)).
-fn angles(mesh: &Mesh, nodes: &FlowNodes, conductance: &Conductance, row: usize) -> f64 {
+fn theta(angles: &[(usize, f64)], transmissivity: &[f64]) -> f64 {
+    let terms = angles.iter();
+    terms
+        .map(|&(facet, angle)| transmissivity[facet] * angle)
+        .sum()
+}
+
+/// The facets around a row, and their angles there.
+fn angles(mesh: &Mesh, nodes: &FlowNodes, row: usize) -> Vec<(usize, f64)> {
     let facets = nodes.around.of(row).iter();
-    let terms = facets.map(|&facet| {
+    let of = |&facet: &u32| {
         let corners = nodes.corners.of(facet as usize);
         let count = corners.len();
         let local = corners.iter().position(|&corner| corner as usize == row);
@@ -76,7 +106,8 @@ fn angles(mesh: &Mesh, nodes: &FlowNodes, conductance: &Conductance, row: usize)
         let place =
             |corner: usize| mesh.nodes[nodes.node[corners[corner % count] as usize] as usize];
         let (own, before, after) = (place(local), place(local + count - 1), place(local + 1));
-        conductance.transmissivity[facet as usize] * (before - own).angle_between(after - own)
-    });
-    terms.sum()
+        let angle = (before - own).angle_between(after - own);
+        (facet as usize, angle)
+    };
+    facets.map(of).collect()
 }

@@ -49,6 +49,13 @@ pub enum FlowDrive {
     Rate(f64),
 }
 
+impl FlowDrive {
+    /// Whether the pressure is given.
+    pub fn is_pressure(&self) -> bool {
+        matches!(self, Self::Pressure(_))
+    }
+}
+
 /// A condition on the flow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlowCondition {
