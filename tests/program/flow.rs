@@ -8,15 +8,15 @@ use serde_json::Value;
 use crate::harness::{Workshop, files, kluft, summary};
 use crate::read_back::read_back;
 
-/// What stands in `sources.csv` behind its head: step, time, source, pressure, rate.
+/// What stands in `sources.csv` behind its head: source, pressure and rate.
 fn sources(folder: &Path) -> Vec<(String, f64, f64)> {
     let text = fs::read_to_string(folder.join("sources.csv")).expect("sources.csv");
     let mut lines = text.lines();
-    assert_eq!(lines.next(), Some("step,time,source,pressure,rate"));
+    assert_eq!(lines.next(), Some("step,time,source,pressure,rate,volume"));
     let number = |text: &str| text.parse::<f64>().expect("a number");
     let row = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
-        assert_eq!(cells.len(), 5, "{line}");
+        assert_eq!(cells.len(), 6, "{line}");
         (cells[2].to_owned(), number(cells[3]), number(cells[4]))
     };
     lines.map(row).collect()

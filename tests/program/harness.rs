@@ -79,9 +79,12 @@ impl Workshop {
     pub fn new(geometry: &str, edits: &[(&str, &str)]) -> Self {
         let folder = scratch();
         let from = root().join("geometries").join(geometry);
-        let geo = format!("{geometry}.geo");
-        fs::copy(from.join(&geo), folder.path().join(&geo)).expect("the geometry is copied");
         let scene = fs::read_to_string(from.join("scene.toml")).expect("the scene");
+        let after = scene.split("geometry = \"").nth(1).expect("a geometry");
+        let geo = after.split('"').next().expect("its path").to_owned();
+        let name = Path::new(&geo).file_name().expect("a file");
+        fs::copy(from.join(&geo), folder.path().join(name)).expect("the geometry is copied");
+        let scene = scene.replace(&geo, &name.to_string_lossy());
         let workshop = Self { folder };
         fs::write(workshop.scene(), edited(&scene, edits)).expect("the scene is written");
         workshop

@@ -3,6 +3,7 @@
 mod adapt;
 mod bad_input;
 mod book;
+mod coupled_flow;
 mod doubled;
 mod doubts;
 mod examples;

@@ -72,17 +72,38 @@ fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
     (left, said)
 }
 
-/// Killed as soon as there is a checkpoint, a run goes on from there, without gmsh.
-#[test]
-fn a_resumed_run_does_not_mesh_again() {
-    let workshop = workshop("iterative");
-    let child = start(&workshop, "out", &[]);
+/// Starts a run and kills it as soon as there is a checkpoint.
+fn kill_after_a_step(workshop: &Workshop) {
+    let child = start(workshop, "out", &[]);
     let checkpoint = workshop.path("out/resume.bin");
     let begin = Instant::now();
     while !checkpoint.exists() && begin.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));
     }
     assert!(kill(child), "it ended before it was killed");
+}
+
+/// Pressures, volumes and the flow of former steps come back with the rest.
+#[test]
+fn a_flow_that_takes_time_is_resumed_to_the_same_bits() {
+    let longer = [
+        ("first = 0.1", "first = 0.02"),
+        ("growth = 1.05", "growth = 1.02"),
+    ];
+    let workshop = Workshop::new("filling-joint", &longer);
+    kill_after_a_step(&workshop);
+    let run = resume_without_gmsh(&workshop, "out");
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("resumed    after step "), "{}", run.out);
+    let expected = outcome(&workshop.solve("whole", &[]));
+    assert_eq!(outcome(&workshop.path("out")), expected);
+}
+
+/// Killed as soon as there is a checkpoint, a run goes on from there, without gmsh.
+#[test]
+fn a_resumed_run_does_not_mesh_again() {
+    let workshop = workshop("iterative");
+    kill_after_a_step(&workshop);
     let run = resume_without_gmsh(&workshop, "out");
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
     for text in [

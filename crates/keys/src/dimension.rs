@@ -23,6 +23,8 @@ pub enum Dimension {
     VolumeRate,
     /// Area per volume, 1/m.
     PerLength,
+    /// Relative change with pressure, 1/Pa.
+    PerStress,
     /// Degrees.
     Angle,
     /// Bytes.
@@ -38,7 +40,7 @@ pub(crate) type Exponents = [i32; 3];
 
 impl Dimension {
     /// All that a unit can have.
-    pub(crate) const WITH_UNITS: [Self; 12] = [
+    pub(crate) const WITH_UNITS: [Self; 13] = [
         Self::One,
         Self::Length,
         Self::Stress,
@@ -49,6 +51,7 @@ impl Dimension {
         Self::Viscosity,
         Self::VolumeRate,
         Self::PerLength,
+        Self::PerStress,
         Self::Angle,
         Self::Memory,
     ];
@@ -66,6 +69,7 @@ impl Dimension {
             Self::Viscosity => "a viscosity",
             Self::VolumeRate => "a rate of volume",
             Self::PerLength => "an area per volume",
+            Self::PerStress => "a compressibility",
             Self::Angle => "an angle",
             Self::Memory => "an amount of memory",
             Self::Time => "a time in a unit of your own",
@@ -86,6 +90,7 @@ impl Dimension {
             Self::Viscosity => "Pa s",
             Self::VolumeRate => "m3/s",
             Self::PerLength => "1/m",
+            Self::PerStress => "1/Pa",
             Self::Angle => "degrees",
             Self::Memory => "bytes",
             Self::Time => "time",
@@ -106,6 +111,7 @@ impl Dimension {
             Self::Viscosity => &["Pa s", "mPa s"],
             Self::VolumeRate => &["m3/s", "dm3/s", "cm3/s"],
             Self::PerLength => &["1/m", "m2/m3", "1/km"],
+            Self::PerStress => &["1/Pa", "1/MPa", "1/GPa"],
             Self::Angle => &["degrees", "deg", "rad"],
             Self::Memory => &["B", "kB", "MB", "GB", "TB", "MiB", "GiB"],
             Self::Time | Self::OfKey => &[],
@@ -124,6 +130,7 @@ impl Dimension {
             Self::Viscosity => Some([-1, 1, -1]),
             Self::VolumeRate => Some([3, 0, -1]),
             Self::PerLength => Some([-1, 0, 0]),
+            Self::PerStress => Some([1, -1, 2]),
             Self::One | Self::Angle | Self::Memory | Self::Time | Self::OfKey => None,
         }
     }

@@ -14,13 +14,14 @@ use kluft_solver::RestartState;
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
+use crate::flow_summary::StepFlow;
 use crate::measure::Measure;
 use crate::summary::{FractureSummary, Seconds, StepMeasures};
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 6\n";
+const HEAD: &[u8] = b"kluft checkpoint 7\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -50,6 +51,8 @@ pub struct Progress<'a> {
     pub choice: (String, String),
     /// The finished load steps.
     pub steps: Vec<StepMeasures>,
+    /// Their flows, if there is a fluid.
+    pub flows: Vec<Option<StepFlow>>,
     /// Their grids, by which they are known again.
     pub files: Vec<StepFiles>,
     /// The fractures after the last of them.
@@ -258,6 +261,7 @@ mod tests {
         Progress {
             choice: ("direct".into(), "why".into()),
             steps: Vec::new(),
+            flows: vec![None],
             files: Vec::new(),
             fractures: Vec::new(),
             history: String::new(),

@@ -26,7 +26,9 @@ pub fn of_problem(problem: &Problem, flow: Option<&Flow>, path: f64) -> Vec<Stri
         lines.push("no fracture: plain elasticity, one linear solve a step".into());
     } else {
         let nonlinear = names(&|law| !law.is_linear());
-        if nonlinear.is_empty() {
+        if flow.is_some_and(|flow| flow.follows_walls(problem.schedule.is_timed)) {
+            lines.push("transmissivities follow apertures: Newton's method on all unknowns".into());
+        } else if nonlinear.is_empty() {
             lines.push("no fracture is nonlinear: one linear solve a step".into());
         } else {
             lines.push(format!(

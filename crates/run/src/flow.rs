@@ -6,7 +6,7 @@ use kluft_io::printable::cell;
 use kluft_io::{Field, write_atomically};
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{
-    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, Schedule,
+    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, Schedule, State, System,
 };
 
 use crate::flow_summary::{self, FlowSummary, Hydraulics, StepFlow};
@@ -96,6 +96,22 @@ impl<'p> RunFlow<'p> {
         })
     }
 
+    /// The flow that follows the walls of a system in a state; `apertures` (m) are those at the
+    /// nodes of the facets. None if it follows none.
+    pub fn beside(
+        &self,
+        system: &System<'_>,
+        state: &State,
+        apertures: &[f64],
+    ) -> Option<SolvedFlow> {
+        let (coupling, fluid) = system.coupling().zip(state.fluid.as_ref())?;
+        let flow = coupling.state(fluid, &state.load);
+        Some(SolvedFlow {
+            step: flow_summary::of_step(self.flow, &flow),
+            fields: coupling.fields(fluid, &state.load, apertures),
+        })
+    }
+
     /// How large it is, in words.
     pub fn words(&self) -> String {
         let networks = match self.system.networks().len() {
@@ -147,14 +163,14 @@ impl SolvedFlow {
 pub fn write_sources(path: &Path, schedule: &Schedule, steps: &[StepFlow]) -> Result<(), Defect> {
     write_atomically(path, |out| {
         let mut table = csv::Writer::from_writer(out);
-        table.write_record(["step", "time", "source", "pressure", "rate"])?;
+        table.write_record(["step", "time", "source", "pressure", "rate", "volume"])?;
         for (index, (step, flow)) in schedule.steps.iter().zip(steps).enumerate() {
             for source in &flow.sources {
                 let number = (index + 1).to_string();
-                let values = [step.load.time, source.pressure, source.rate];
-                let [time, pressure, rate] = values.map(|value| format!("{value:?}"));
+                let values = [step.load.time, source.pressure, source.rate, source.volume];
+                let [time, pressure, rate, volume] = values.map(|value| format!("{value:?}"));
                 let name = cell(&source.name);
-                table.write_record([number, time, name, pressure, rate])?;
+                table.write_record([number, time, name, pressure, rate, volume])?;
             }
         }
         table.flush()

@@ -2,13 +2,13 @@
 
 use kluft_mesh::Mesh;
 use kluft_solver::{Flow, FlowFields, FlowState, FlowSystem};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
 use crate::spread::Spread;
 
 /// Flow through one condition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SourceFlow {
     /// How the scene calls it.
     pub name: String,
@@ -16,15 +16,19 @@ pub struct SourceFlow {
     pub pressure: f64,
     /// What flows in (m^3/s); negative where it flows out.
     pub rate: f64,
+    /// What has flowed in since the run began (m^3); zero in steady flow.
+    pub volume: f64,
 }
 
 /// The flow at the end of a load step.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepFlow {
     /// What flows in (m^3/s).
     pub inflow: f64,
     /// What flows out (m^3/s).
     pub outflow: f64,
+    /// What fractures take up (m^3/s); zero in steady flow.
+    pub stored: f64,
     /// What nodes lose or gain that should not, as a share of what flows.
     pub mass_error: f64,
     /// What flows where it is driven.
@@ -79,7 +83,9 @@ pub struct FlowSummary {
 /// The numbers of a state.
 pub fn of_step(flow: &Flow, state: &FlowState) -> StepFlow {
     let sources = flow.conditions.iter().zip(&state.conditions);
-    let sources = sources.map(|(condition, found)| SourceFlow {
+    let sources = sources.zip(&state.entered);
+    let sources = sources.map(|((condition, found), volume)| SourceFlow {
+        volume: *volume,
         name: condition.name.clone(),
         pressure: found.pressure,
         rate: found.rate,
@@ -87,6 +93,7 @@ pub fn of_step(flow: &Flow, state: &FlowState) -> StepFlow {
     StepFlow {
         inflow: state.balance.inflow,
         outflow: state.balance.outflow,
+        stored: state.balance.stored,
         mass_error: state.balance.mass_error,
         sources: sources.collect(),
     }

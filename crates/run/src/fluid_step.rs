@@ -4,11 +4,11 @@ use std::path::Path;
 
 use kluft_io::Grid;
 use kluft_scene::{Binding, in_terms_of_scene};
-use kluft_solver::{FacetResult, LinearFailure, Problem, System};
+use kluft_solver::{FacetResult, LinearFailure, Problem, State, System};
 
 use crate::failures;
 use crate::flow::{RunFlow, SOURCES, SolvedFlow, write_sources};
-use crate::flow_summary;
+use crate::flow_summary::{self, StepFlow};
 use crate::grids::real_field;
 use crate::observer::Stage;
 use crate::stages::{Interruption, Run};
@@ -19,8 +19,8 @@ pub fn failed(failure: LinearFailure) -> Interruption {
 }
 
 impl Run<'_> {
-    /// The flow of a problem, whose push on the walls is added to the loads of its system; none
-    /// without a fluid.
+    /// The flow of a problem: it follows the walls of its system, or its push on them is added to
+    /// the loads; none without a fluid.
     ///
     /// # Errors
     /// Conditions that make no flow, and numbers that are not finite.
@@ -32,46 +32,57 @@ impl Run<'_> {
         let Some(flow) = &binding.flow else {
             return Ok(None);
         };
-        let made = self.stage(Stage::Assemble, |_| RunFlow::driven(&binding.problem, flow));
+        let problem = &binding.problem;
+        if flow.follows_walls(problem.schedule.is_timed) {
+            let made = self.stage(Stage::Assemble, |_| {
+                system.couple(flow)?;
+                RunFlow::of(problem, flow)
+            });
+            let made = made.map_err(in_terms_of_scene)?;
+            self.note_timed("flow", &made.words());
+            return Ok(Some(made));
+        }
+        let made = self.stage(Stage::Assemble, |_| RunFlow::driven(problem, flow));
         let mut made = made.map_err(in_terms_of_scene)?;
         let solved = self.stage(Stage::PrepareSolver, |_| {
             made.factorise()?;
-            made.system().push_walls(system)
+            system.push_walls(made.system())
         });
         solved.map_err(failed)?;
         self.note_timed("flow", &made.words());
         Ok(Some(made))
     }
 
-    /// The flow at the end of the load step that was solved last, summed up.
+    /// The flow in a state at the end of the load step that was solved last, summed up; `nodes` are
+    /// the results at the nodes of the facets.
     ///
     /// # Errors
     /// Numbers that are not finite.
     pub fn take_flow(
         &mut self,
-        problem: &Problem,
+        system: &System<'_>,
+        (state, nodes): (&State, &[FacetResult]),
         made: Option<&RunFlow<'_>>,
     ) -> Result<Option<SolvedFlow>, Interruption> {
         let Some(made) = made else {
             return Ok(None);
         };
-        let steps = problem.schedule.steps.iter();
-        let mut last = None;
-        // Those of a former run are not kept by its checkpoint.
-        for (summary, step) in self.summary.steps.iter_mut().zip(steps) {
-            if summary.flow.is_none() {
-                let solved = made.solve(&step.load).map_err(failed)?;
-                summary.flow = Some(solved.step.clone());
-                last = Some(solved);
-            }
+        let apertures: Vec<f64> = nodes.iter().map(|node| node.aperture).collect();
+        let solved = match made.beside(system, state, &apertures) {
+            Some(solved) => solved,
+            None => made.solve(&state.load).map_err(failed)?,
+        };
+        if system.coupling().is_some() {
+            self.observer.note("flow", &told(&solved.step));
         }
-        if let Some(solved) = &last {
-            let summary = made.summary(solved);
-            let measures = flow_summary::measures(&solved.step, &summary.fractures);
-            self.summary.measures.extend(measures);
-            self.summary.flow = Some(summary);
+        if let Some(step) = self.summary.steps.last_mut() {
+            step.flow = Some(solved.step.clone());
         }
-        Ok(last)
+        let summary = made.summary(&solved);
+        let measures = flow_summary::measures(&solved.step, &summary.fractures);
+        self.summary.measures.extend(measures);
+        self.summary.flow = Some(summary);
+        Ok(Some(solved))
     }
 
     /// Writes what flows where it is driven, at the end of the load steps so far.
@@ -87,6 +98,18 @@ impl Run<'_> {
         let write = |path: &Path| write_sources(path, &problem.schedule, &flows);
         Ok(self.output.write(SOURCES, write)?)
     }
+}
+
+/// The flow of a load step in words.
+pub fn told(flow: &StepFlow) -> String {
+    let stored = match flow.stored {
+        0.0 => String::new(),
+        stored => format!(" {stored:.6e} m3/s stored,"),
+    };
+    format!(
+        "{:.6e} m3/s in, {:.6e} m3/s out,{stored} mass error {:.1e}",
+        flow.inflow, flow.outflow, flow.mass_error
+    )
 }
 
 /// Adds a flow to the grid of the fractures; `nodes` are the results at their nodes.

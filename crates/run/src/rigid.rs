@@ -10,7 +10,7 @@ use kluft_solver::{Flow, Problem, Step};
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
 use crate::flow_summary;
-use crate::fluid_step::failed;
+use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, integer_field, real_field};
 use crate::observer::Stage;
 use crate::stages::{Interruption, Run};
@@ -52,13 +52,11 @@ impl Run<'_> {
         self.summary.seconds.solve += start.elapsed().as_secs_f64();
         let solved = solved.map_err(failed)?;
         let text = format!(
-            "step {} of {}, {}: {:.6e} m3/s in, {:.6e} m3/s out, mass error {:.1e}",
+            "step {} of {}, {}: {}",
             index + 1,
             problem.schedule.steps.len(),
             decisions::of_step(&problem.schedule, step),
-            solved.step.inflow,
-            solved.step.outflow,
-            solved.step.mass_error
+            told(&solved.step)
         );
         self.observer.note("flow", &text);
         self.summary.steps.push(StepSummary {

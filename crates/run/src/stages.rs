@@ -405,6 +405,7 @@ pub fn newton_settings(asked: &SolverEntry) -> NewtonSettings {
     let settings = NewtonSettings::default();
     NewtonSettings {
         path: asked.path_accuracy.unwrap_or(settings.path),
+        time: asked.time_accuracy.unwrap_or(settings.time),
         ..settings
     }
 }

@@ -146,6 +146,9 @@ impl Run<'_> {
         let summaries = done.iter().zip(&former.steps);
         let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
         self.summary.steps = summaries.collect();
+        for (step, flow) in self.summary.steps.iter_mut().zip(former.flows) {
+            step.flow = flow;
+        }
         self.summary.fractures = former.fractures;
         self.history = History::from_text(former.history);
         self.summary.measures = former.measures;
@@ -229,7 +232,7 @@ impl Run<'_> {
         let oracles = if is_last { &self.oracles[..] } else { &[] };
         self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
         self.summary.measures.push(energy(accuracy.energy));
-        let flow = self.take_flow(system.problem(), prepared.flow)?;
+        let flow = self.take_flow(system, (&prepared.state, &nodes), prepared.flow)?;
         let scene = self.request.scene;
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
@@ -323,6 +326,12 @@ impl Run<'_> {
         let progress = Progress {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
+            flows: self
+                .summary
+                .steps
+                .iter()
+                .map(|step| step.flow.clone())
+                .collect(),
             files: self.output.sums().to_vec(),
             fractures: self.summary.fractures.clone(),
             history: self.history.text().to_owned(),

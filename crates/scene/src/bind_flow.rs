@@ -8,6 +8,7 @@ use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Pr
 
 use crate::cases::Bound;
 use crate::fluid::SourceEntry;
+use crate::history::Timetable;
 use crate::scene::{Named, Scene};
 
 /// A borehole further from its node than this share of the edges there is told.
@@ -55,14 +56,16 @@ pub(crate) fn bind_flow(
     if !defects.is_empty() {
         return Err(defects);
     }
-    decisions.extend(decided(scene));
-    Ok(Some(Flow {
-        fluid: fluid.value,
+    let flow = Flow {
+        fluid: fluid.value.fluid,
+        initial_pressure: fluid.value.initial_pressure,
         conduits,
         conditions,
         gravity: scene.body.gravity,
         gravity_case: cases.gravity,
-    }))
+    };
+    decisions.extend(decided(scene, &flow));
+    Ok(Some(flow))
 }
 
 fn on_boundaries(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> {
@@ -147,14 +150,23 @@ fn well(
 }
 
 /// How much model the flow needs.
-fn decided(scene: &Scene) -> Vec<String> {
-    let how = match scene.is_rigid() {
-        true => "no young_modulus: the rock is rigid, flow alone in fractures of constant aperture",
-        false => {
+fn decided(scene: &Scene, flow: &Flow) -> Vec<String> {
+    let is_timed = matches!(scene.timetable, Timetable::Times { .. });
+    let how = match (scene.is_rigid(), flow.follows_walls(is_timed)) {
+        (true, _) => {
+            "no young_modulus: the rock is rigid, flow alone in fractures of constant aperture"
+        }
+        (false, true) => {
+            "flow and rock are solved together: apertures follow the pressure, and the flow them"
+        }
+        (false, false) => {
             "hydraulic apertures are constant: the flow is solved first, and its pressure pushes \
              the walls apart"
         }
     };
-    let steady = "the flow is steady at the end of every load step: no fluid is stored";
-    vec![how.to_owned(), steady.to_owned()]
+    let when = match is_timed && !scene.is_rigid() {
+        true => "times are given: the flow takes time (s), fractures store what they open for",
+        false => "the flow is steady at the end of every load step: no fluid is stored",
+    };
+    vec![how.to_owned(), when.to_owned()]
 }

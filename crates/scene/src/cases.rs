@@ -51,6 +51,7 @@ pub(crate) fn schedule(
         cases,
         steps: ends.iter().map(step).collect(),
         is_timed: true,
+        sudden: found.factors(0.0),
     }
 }
 

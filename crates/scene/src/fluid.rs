@@ -50,18 +50,33 @@ pub(crate) fn fluid_use(root: &Section<'_, '_>) -> FluidUse {
     }
 }
 
+/// A fluid and its state before any load.
+#[derive(Debug, Clone, Copy)]
+pub struct FluidEntry {
+    /// The fluid.
+    pub fluid: Fluid,
+    /// Pressure before any load (Pa).
+    pub initial_pressure: Profile,
+}
+
 /// Reads the fluid.
-pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<Fluid> {
+pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<FluidEntry> {
     section.require("viscosity");
     if gravity != DVec3::ZERO {
         section.require("density");
     }
     let viscosity = section.number("viscosity");
     let density = section.number("density");
+    let compressibility = section.number("compressibility");
+    let initial_pressure = read_profile(&section, "initial_pressure");
     section.finish();
-    Some(Fluid {
-        viscosity: viscosity?,
-        density: density.unwrap_or(0.0),
+    Some(FluidEntry {
+        fluid: Fluid {
+            viscosity: viscosity?,
+            density: density.unwrap_or(0.0),
+            compressibility: compressibility.unwrap_or(0.0),
+        },
+        initial_pressure,
     })
 }
 
@@ -133,17 +148,6 @@ pub(crate) fn read_conduit(section: &Section<'_, '_>, setting: Setting) -> Optio
         refuse_beside(section, "hydraulic_aperture", &OF_FRACTURES[1..4]);
         let constant = section.number("hydraulic_aperture");
         return constant.map(|constant| Conduit::Open(HydraulicAperture::Constant(constant)));
-    }
-    if setting.fluid == FluidUse::InElasticRock {
-        section.refuse(
-            "hydraulic_aperture",
-            format!(
-                "the walls of {} move, and flow that follows them is not computed",
-                section.title
-            ),
-            "add hydraulic_aperture = 1e-4 (m, constant), write sealed = true, or leave out \
-             young_modulus everywhere for flow in rigid rock",
-        );
     }
     let residual = section.number("residual_hydraulic_aperture");
     Some(Conduit::Open(HydraulicAperture::OfWalls {

@@ -27,7 +27,7 @@ mod warning;
 
 pub use bind::{Binding, bind};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-pub use fluid::SourceEntry;
+pub use fluid::{FluidEntry, SourceEntry};
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
 pub use join::{JoinedDraft, join};

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
-use kluft_solver::{Fluid, InitialStress};
+use kluft_solver::InitialStress;
 use lie_core::{FacetQuadrature, Rock};
 
 use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, read_fixed_point};
-use crate::fluid::{SourceEntry, fluid_use, read_fluid, read_source};
+use crate::fluid::{FluidEntry, SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
@@ -296,7 +296,7 @@ fn read_fixed_points(
 }
 
 /// The fluid with its place.
-fn read_named_fluid(root: &Section<'_, '_>, body: &BodyEntry) -> Option<Named<Fluid>> {
+fn read_named_fluid(root: &Section<'_, '_>, body: &BodyEntry) -> Option<Named<FluidEntry>> {
     let section = root.section("fluid")?;
     let (place, title) = (section.place(), section.title.clone());
     let value = read_fluid(section, body.gravity)?;
@@ -376,6 +376,7 @@ fn read_solver(root: &Section<'_, '_>) -> SolverEntry {
         linear: linear.and_then(|name| name.parse().ok()),
         memory_limit: section.number("memory_limit"),
         path_accuracy: section.number("path_accuracy"),
+        time_accuracy: section.number("time_accuracy"),
         facets: read_facets(&section),
     };
     section.finish();

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use kluft_solver::{Fluid, InitialStress, LinearMethod};
+use kluft_solver::{InitialStress, LinearMethod};
 use lie_core::{FacetQuadrature, Rock};
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-use crate::fluid::SourceEntry;
+use crate::fluid::{FluidEntry, SourceEntry};
 use crate::history::Timetable;
 use crate::oracle::Oracle;
 
@@ -60,6 +60,8 @@ pub struct SolverEntry {
     /// Largest difference between a load step in one part and in two, against the largest jump,
     /// where the path of the loads matters; 1e-3 if not given.
     pub path_accuracy: Option<f64>,
+    /// Largest difference between a step in time in one increment and in two.
+    pub time_accuracy: Option<f64>,
     /// How fractures are integrated over their facets.
     pub facets: FacetQuadrature,
 }
@@ -88,7 +90,7 @@ pub struct Scene {
     /// What acts in all of the rock.
     pub body: BodyEntry,
     /// What flows in the fractures.
-    pub fluid: Option<Named<Fluid>>,
+    pub fluid: Option<Named<FluidEntry>>,
     /// Boreholes.
     pub sources: Vec<Named<SourceEntry>>,
     /// Stress before any load.

@@ -46,8 +46,29 @@ pub static FLUID: KeySection = KeySection {
             example: "1000",
             says: "Mass per volume",
         },
+        Key {
+            name: "compressibility",
+            kind: watched(Dimension::PerStress, Range::NotNegative, &COMPRESSIBILITY),
+            need: Need::Default("0"),
+            example: "4.5e-10",
+            says: "Relative change of density with pressure c; counts where the flow takes time",
+        },
+        Key {
+            name: "initial_pressure",
+            kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &INITIAL_PROFILE),
+            need: Need::Default("0"),
+            example: "10e6",
+            says: "Pressure before any load, in balance with `[initial_stress]`, which is total: constant, or linear in the elevation",
+        },
     ],
     also: None,
+};
+
+static COMPRESSIBILITY: Plausible = Plausible {
+    low: 1e-12,
+    high: 1e-4,
+    usual: (1e-10, 1e-8),
+    units: &["1/MPa", "1/GPa"],
 };
 
 /// A borehole.
@@ -101,35 +122,47 @@ pub static SOURCE: KeySection = KeySection {
     also: None,
 };
 
-/// A pressure that is linear in the elevation.
+/// A pressure on a boundary that is linear in the elevation.
 pub static FLUID_PROFILE: KeySection = KeySection {
     pattern: "[boundary.NAME.fluid_pressure]",
-    says: "A pressure `value + per_metre (z - at)` at the elevation z",
-    keys: &[
-        Key {
-            name: "value",
-            kind: number(Dimension::Stress, INITIAL),
-            need: Need::Required,
-            example: "1e6",
-            says: "Pressure at the elevation `at`",
-        },
-        Key {
-            name: "per_metre",
-            kind: number(Dimension::StressPerLength, INITIAL_GRADIENT),
-            need: Need::Default("0"),
-            example: "-9810",
-            says: "Increase with the elevation",
-        },
-        Key {
-            name: "at",
-            kind: number(Dimension::Length, Range::Finite),
-            need: Need::Default("0"),
-            example: "0.0",
-            says: "Elevation of `value`, positive upwards",
-        },
-    ],
+    says: LINEAR_PRESSURE,
+    keys: &PROFILE_KEYS,
     also: None,
 };
+
+/// A pressure before any load that is linear in the elevation.
+pub static INITIAL_PROFILE: KeySection = KeySection {
+    pattern: "[fluid.initial_pressure]",
+    says: LINEAR_PRESSURE,
+    keys: &PROFILE_KEYS,
+    also: None,
+};
+
+const LINEAR_PRESSURE: &str = "A pressure `value + per_metre (z - at)` at the elevation z";
+
+static PROFILE_KEYS: [Key; 3] = [
+    Key {
+        name: "value",
+        kind: number(Dimension::Stress, INITIAL),
+        need: Need::Required,
+        example: "1e6",
+        says: "Pressure at the elevation `at`",
+    },
+    Key {
+        name: "per_metre",
+        kind: number(Dimension::StressPerLength, INITIAL_GRADIENT),
+        need: Need::Default("0"),
+        example: "-9810",
+        says: "Increase with the elevation",
+    },
+    Key {
+        name: "at",
+        kind: number(Dimension::Length, Range::Finite),
+        need: Need::Default("0"),
+        example: "0.0",
+        says: "Elevation of `value`, positive upwards",
+    },
+];
 
 /// Where fractures meet a part of the outer surface.
 pub(super) const BOUNDARY_PRESSURE: Key = Key {
@@ -153,7 +186,7 @@ pub(super) const BOUNDARY_INFLOW: Key = Key {
 pub(super) const HYDRAULIC_APERTURE: Key = Key {
     name: "hydraulic_aperture",
     kind: number(Dimension::Length, Range::Positive),
-    need: Need::Without("follows `aperture` in rigid rock; required in rock that deforms"),
+    need: Need::Without("follows the walls; in rigid rock they stay at `aperture`"),
     example: "1e-4",
     says: "Aperture b_h that the fluid sees, whatever the walls do; needs `[fluid]`",
 };

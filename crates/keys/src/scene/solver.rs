@@ -36,6 +36,13 @@ pub static SOLVER: KeySection = KeySection {
             says: "Largest difference between a part of the way in one go and in two, against the largest jump",
         },
         Key {
+            name: "time_accuracy",
+            kind: number(Dimension::One, Range::Positive),
+            need: Need::Default("1e-2"),
+            example: "1e-3",
+            says: "Largest difference between a step in time in one go and in two, of jumps and pressures of a flow against the largest; from 1 on steps are taken as they are given",
+        },
+        Key {
             name: "facets",
             kind: Kind::Choice("facet rule", &FACETS),
             need: Need::Default("\"nodal\""),

@@ -139,7 +139,7 @@ impl Interface {
     pub(crate) fn set_laws(&mut self, problem: &Problem, laws: Vec<FractureLaw>) {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
-            point.initial = initial_walls(problem, law, point.position, point.normal);
+            point.initial = initial_walls(problem, law, (point.position, point.normal), 0.0);
         }
         self.laws = laws;
     }
@@ -169,6 +169,18 @@ impl Interface {
     /// Rule that a fracture is integrated by.
     pub fn rule_of(&self, fracture: u32) -> FacetQuadrature {
         self.rules[fracture as usize]
+    }
+
+    /// Lets the walls carry the initial stress, which is total, beside a fluid whose pressure at
+    /// each facet point is given (Pa).
+    pub(crate) fn set_initial_pressures(&mut self, problem: &Problem, pressures: &[f64]) {
+        for (point, pressure) in self.points.iter_mut().zip(pressures) {
+            if *pressure != 0.0 {
+                let law = &self.laws[point.fracture as usize];
+                let own = (point.position, point.normal);
+                point.initial = initial_walls(problem, law, own, *pressure);
+            }
+        }
     }
 
     /// Where the fractures add to the stiffness of the rock.
@@ -377,7 +389,7 @@ impl Drawing<'_> {
             area,
             normal,
             spring,
-            initial: initial_walls(problem, law, rule.position, normal),
+            initial: initial_walls(problem, law, (rule.position, normal), 0.0),
         };
         let prescribed = (0..).zip(prescribed);
         Drawn {
@@ -426,10 +438,15 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
     1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
 }
 
-/// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
-/// what the initial stress would need of it.
-fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> JointState {
+/// The walls carrying the initial stress beside a fluid of some pressure (Pa). A fracture without
+/// stiffness carries none, so it relaxes what the initial stress would need of it.
+fn initial_walls(
+    problem: &Problem,
+    law: &FractureLaw,
+    (at, normal): (DVec3, DVec3),
+    pressure: f64,
+) -> JointState {
     let stress = problem.initial_stress;
     let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
-    law.under_initial_stress(traction, normal)
+    law.under_initial_stress(traction + pressure * normal, normal)
 }

@@ -4,8 +4,9 @@ use glam::DVec3;
 use kluft_mesh::Mesh;
 use lie_core::Conduction;
 
-use super::solve::FlowState;
+use super::loaded::FlowState;
 use super::steady::FlowSystem;
+use super::wall_points::of_corners;
 use crate::problem::{Conduit, Flow};
 
 /// Fields on the facets of all fractures; zero on those that are sealed.
@@ -37,7 +38,7 @@ impl FlowSystem<'_> {
             fluxes: vec![DVec3::ZERO; elements.len()],
         };
         for (index, &facet) in self.topology.nodes.facets.iter().enumerate() {
-            let transmissivity = self.conductance.transmissivity[index];
+            let transmissivity = self.operator.conductance.transmissivity[index];
             let corners = self.topology.nodes.corners.of(index).iter();
             let own: Vec<f64> = corners.map(|&row| state.potentials[row as usize]).collect();
             let gradient = self.topology.stencils[index].mean_gradient(&own);
@@ -56,15 +57,10 @@ impl FlowSystem<'_> {
             let facet = facet as usize;
             let corners = self.topology.nodes.corners.of(index).iter();
             let corners: Vec<f64> = corners.map(|&row| state.pressures[row as usize]).collect();
-            let own = &mut pressures[elements.range(facet)];
-            own[..corners.len()].copy_from_slice(&corners);
-            let between = own[corners.len()..].iter_mut();
-            let mut edges = elements.shapes[facet].edges().iter();
-            for value in between {
-                *value = match edges.next() {
-                    Some(&[a, b]) => 0.5 * (corners[a as usize] + corners[b as usize]),
-                    None => corners.iter().sum::<f64>() / corners.len() as f64,
-                };
+            let shape = elements.shapes[facet];
+            for (local, value) in pressures[elements.range(facet)].iter_mut().enumerate() {
+                let shares = of_corners(shape, local).into_iter();
+                *value = shares.map(|(corner, share)| share * corners[corner]).sum();
             }
         }
         pressures

@@ -26,22 +26,30 @@
 
 mod balance;
 mod conductance;
+mod coupling;
 mod edges;
 mod fields;
+mod linearised;
+mod loaded;
 mod networks;
 mod nodal;
 mod numbering;
+mod operator;
 mod places;
 mod solve;
 mod steady;
 mod topology;
+mod wall_points;
 mod walls;
 mod wells;
 
 pub use balance::{ConditionFlow, FlowBalance};
+pub use coupling::{Coupling, FluidState};
+pub(crate) use coupling::{FlowAtWalls, FlowIncrement, Walls};
 pub use fields::FlowFields;
+pub(crate) use linearised::LinearisedFlow;
+pub use loaded::FlowState;
 pub use networks::{FlowNetwork, NO_PRESSURE};
-pub use solve::FlowState;
 pub use steady::FlowSystem;
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::conductance::Conductance;
 use super::places::{Place, RowShare};
-use super::topology::Topology;
 use super::wells::Well;
 use crate::problem::{FlowCondition, FlowDrive, Load};
 
@@ -28,21 +27,18 @@ pub(super) struct NodalCondition {
     pub(super) nodal: Nodal,
 }
 
-/// All conditions of a flow.
+/// All conditions of a flow, with the places where they act.
 pub(super) fn conditions(
-    topology: &Topology<'_>,
+    places: &[Place],
+    conditions: &[FlowCondition],
     conductance: &Conductance,
 ) -> Vec<NodalCondition> {
-    let places = topology.places.iter().enumerate();
-    let of = |(condition, place)| NodalCondition {
-        condition,
-        nodal: nodal(
-            place,
-            topology.flow.conditions[condition].drive,
-            &conductance.transmissivity,
-        ),
+    let pairs = places.iter().zip(conditions).enumerate();
+    let of = |(index, (place, condition)): (usize, (&Place, &FlowCondition))| NodalCondition {
+        condition: index,
+        nodal: nodal(place, condition.drive, &conductance.transmissivity),
     };
-    places.map(of).collect()
+    pairs.map(of).collect()
 }
 
 fn nodal(place: &Place, drive: FlowDrive, transmissivity: &[f64]) -> Nodal {

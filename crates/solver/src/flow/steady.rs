@@ -2,21 +2,20 @@
 
 use std::sync::Arc;
 
-use kluft_algebra::{LinearFailure, Lists, ScalarCholesky, ScalarMatrix};
+use kluft_algebra::{LinearFailure, ScalarCholesky};
 use kluft_mesh::{Defect, Mesh};
 
 use super::conductance::{self, Conductance};
 use super::networks::{self, FlowNetwork};
-use super::nodal::{self, Nodal, NodalCondition};
 use super::numbering::FlowNodes;
-use super::topology::{GIVEN, Topology};
+use super::operator::FlowOperator;
+use super::topology::Topology;
 use crate::problem::Flow;
 
 /// Flow in the fractures of a mesh at fixed apertures, ready to be solved under any load.
 pub struct FlowSystem<'a> {
     pub(super) topology: Arc<Topology<'a>>,
-    pub(super) conductance: Conductance,
-    pub(super) conditions: Vec<NodalCondition>,
+    pub(super) operator: FlowOperator,
     /// Of the free rows; none if all pressures are given.
     pub(super) factor: Option<ScalarCholesky>,
 }
@@ -38,9 +37,8 @@ impl<'a> FlowSystem<'a> {
     /// The flow in facets that conduct like this.
     pub(super) fn with(topology: Arc<Topology<'a>>, conductance: Conductance) -> Self {
         Self {
-            conditions: nodal::conditions(&topology, &conductance),
+            operator: FlowOperator::of(&topology, conductance),
             topology,
-            conductance,
             factor: None,
         }
     }
@@ -51,7 +49,7 @@ impl<'a> FlowSystem<'a> {
         networks::without_pressure(
             (topology.mesh, topology.flow),
             &topology.networks,
-            &self.conditions,
+            &self.operator.conditions,
             &topology.network_of_row,
         )
     }
@@ -64,7 +62,7 @@ impl<'a> FlowSystem<'a> {
         if self.topology.free.is_empty() {
             return Ok(());
         }
-        let matrix = self.free_matrix();
+        let matrix = self.operator.free_matrix(&self.topology, |_| 0.0);
         if matrix.values.iter().any(|value| !value.is_finite()) {
             return Err(LinearFailure::NotFinite);
         }
@@ -99,41 +97,9 @@ impl<'a> FlowSystem<'a> {
     pub fn backward_edges(&self) -> usize {
         let rows = 0..self.topology.nodes.len();
         let upper = rows.flat_map(|row| {
-            let entries = self.conductance.matrix.row(row);
+            let entries = self.operator.conductance.matrix.row(row);
             entries.filter(move |(column, value)| *column > row && *value > 0.0)
         });
         upper.count()
-    }
-
-    /// The rows and columns of the free pressures.
-    fn free_matrix(&self) -> ScalarMatrix {
-        let number = &self.topology.number;
-        let mut walls = vec![0.0; self.topology.nodes.len()];
-        for entry in &self.conditions {
-            if let Nodal::WellPressure(well) = entry.nodal {
-                walls[well.row] += well.conductance;
-            }
-        }
-        let mut lists = Vec::with_capacity(self.topology.free.len());
-        let mut values = Vec::new();
-        for &row in &self.topology.free {
-            let row = row as usize;
-            let entries = self.conductance.matrix.row(row);
-            let kept = entries.filter(|(column, _)| number[*column] != GIVEN);
-            let mut columns = Vec::new();
-            for (column, value) in kept {
-                columns.push(number[column]);
-                values.push(if column == row {
-                    value + walls[row]
-                } else {
-                    value
-                });
-            }
-            lists.push(columns);
-        }
-        ScalarMatrix {
-            pattern: Lists::collect(&lists),
-            values,
-        }
     }
 }

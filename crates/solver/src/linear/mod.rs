@@ -3,6 +3,7 @@
 mod choice;
 mod condensed;
 mod cost;
+mod coupled;
 mod direct;
 #[cfg(test)]
 mod fractured_tests;
@@ -16,6 +17,7 @@ mod tangent_solver;
 pub use choice::Plan;
 pub use condensed::Condensed;
 pub use cost::{ExtraMemory, LinearMethod, Prediction, Unknowns, Workload};
+pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
 pub use iterative::Iterative;
 pub use nonsymmetric::NonsymmetricSolver;

@@ -1,8 +1,12 @@
 //! Any tangent of the fractures, on top of a solver for symmetric positive definite ones.
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, gmres};
+use kluft_algebra::{
+    ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, ScalarCholesky, gmres,
+};
 
+use crate::flow::LinearisedFlow;
+use crate::linear::coupled::{CoupledRhs, CoupledSolution, CoupledTangent};
 use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};
 use crate::system::System;
 
@@ -18,12 +22,21 @@ pub struct NonsymmetricSolver {
     inner: Box<dyn TangentSolver>,
     /// Exact stiffness of the fractures, where it differs from what `inner` has.
     exact: Option<Vec<DMat3>>,
+    /// What `inner` has, where a flow is solved with it.
+    positive: Vec<DMat3>,
+    /// Factor of the pressures, where there are any.
+    pressures: Option<ScalarCholesky>,
 }
 
 impl NonsymmetricSolver {
     /// On top of a prepared solver.
     pub fn new(inner: Box<dyn TangentSolver>) -> Self {
-        Self { inner, exact: None }
+        Self {
+            inner,
+            exact: None,
+            positive: Vec::new(),
+            pressures: None,
+        }
     }
 
     /// Takes over the tangents of the facet points.
@@ -42,7 +55,39 @@ impl NonsymmetricSolver {
             .then(|| interface.stiffness(&tangents.exact));
         let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
         let stiffness = interface.stiffness(positive);
+        if system.coupling().is_some() {
+            self.positive.clone_from(&stiffness);
+        }
         self.inner.update(system.fixed_part(), stiffness)
+    }
+
+    /// Solves for forces and for what is missing in a flow, together.
+    ///
+    /// # Errors
+    /// If the iteration fails.
+    pub(crate) fn solve_coupled(
+        &mut self,
+        system: &System<'_>,
+        flow: &LinearisedFlow<'_, '_>,
+        rhs: &CoupledRhs<'_>,
+    ) -> Result<CoupledSolution, LinearFailure> {
+        let tangent = |stiffness| CoupledTangent {
+            fixed: system.fixed_part(),
+            interface: &system.discretisation.interface,
+            stiffness,
+            flow,
+        };
+        tangent(&self.positive).factorise(&mut self.pressures)?;
+        let exact = self.exact.as_ref().unwrap_or(&self.positive);
+        let (tangent, factor) = (tangent(exact), self.pressures.as_ref());
+        match tangent.solve(&mut *self.inner, factor, rhs) {
+            Err(LinearFailure::Stalled(spent)) if self.inner.rebuild(system.fixed_part())? => {
+                let mut solution = tangent.solve(&mut *self.inner, factor, rhs)?;
+                solution.iterations += spent;
+                Ok(solution)
+            }
+            done => done,
+        }
     }
 
     /// Solves with the positive tangents for the forces `rhs` (N), to `tolerance` times their norm.

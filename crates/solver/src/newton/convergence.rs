@@ -6,6 +6,7 @@ use kluft_algebra::largest;
 use kluft_algebra::norm;
 
 use super::facet_points::interface;
+use super::fluid;
 use super::iterate::Iterate;
 use super::{Iteration, NewtonSettings, Step, StepOutcome};
 use crate::system::{State, StateScales, System};
@@ -38,7 +39,16 @@ impl NewtonSettings {
         } else {
             INCREMENT_AT_KINKS * self.increment
         };
-        if system.is_nonlinear() && iteration.increment > increment {
+        if system.is_nonlinear()
+            && iteration.increment.max(iteration.pressure_increment) > increment
+        {
+            return false;
+        }
+        let rounding_of_flow = iterate
+            .flow
+            .as_ref()
+            .map_or(0.0, |flow| flow.at.balance.rounding);
+        if iteration.mass_error > self.mass.max(rounding_of_flow) {
             return false;
         }
         let is_below = |share: f64| {
@@ -73,7 +83,8 @@ pub(super) fn measure(
     if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
         return Err(StepOutcome::NotFinite(Some(broken)));
     }
-    let residual = norm(&system.residual(&iterate.rock_forces, &tractions, &state.load));
+    let total = fluid::total_tractions(system, state, tractions.clone());
+    let residual = norm(&system.residual(&iterate.rock_forces, &total, &state.load));
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     step.record.worst_facet_point = worst;
     let points = state.facet_points.iter();
@@ -87,6 +98,14 @@ pub(super) fn measure(
         increment: ratio(change, sizes.displacement),
         closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction),
         smallest_aperture,
+        pressure_increment: iterate
+            .flow
+            .as_ref()
+            .map_or(0.0, |flow| ratio(flow.change, sizes.pressure)),
+        mass_error: iterate
+            .flow
+            .as_ref()
+            .map_or(0.0, |flow| flow.at.balance.mass_error),
         linear_iterations: 0,
     })
 }
@@ -98,10 +117,12 @@ fn sizes(system: &System<'_>, iterate: &Iterate, tractions: &[DVec3]) -> StateSc
     // A body that does not move may still hold joints closed by its initial stress.
     let points = state.facet_points.iter();
     let openings = points.map(|point| point.joint.separation.opening.abs());
+    let moved = iterate.flow.as_ref().zip(state.fluid.as_ref());
     StateScales {
         force: system.force_scale(&iterate.rock_forces, tractions, &state.load),
         displacement: openings.fold(largest(&displacements), f64::max),
         traction: largest(tractions).max(RECLOSING_SHARE * reclosing_traction(system, state)),
+        pressure: moved.map_or(0.0, |(flow, fluid)| flow.moved(fluid)),
     }
 }
 

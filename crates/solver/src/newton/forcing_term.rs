@@ -61,6 +61,28 @@ pub(super) fn tolerance(
     }
 }
 
+/// Norms that a coupled solve may leave of the forces (N) and of what is missing in a flow (m^3/s),
+/// whose right-hand sides amount to `sizes` of these: enough for what the linearisation is worth,
+/// and for the tests. `missing` is the number of flow balances.
+pub(super) fn coupled_goals(
+    (system, settings): (&System<'_>, &NewtonSettings),
+    iterate: &Iterate,
+    [force, rate]: [f64; 2],
+    missing: usize,
+) -> [f64; 2] {
+    let scale = iterate.sizes.force.max(force);
+    let interface_force = interface_force_norm(system, &iterate.state).unwrap_or(scale);
+    let forces = (iterate.forcing_term * force.min(interface_force))
+        .max(exact_enough(settings) * scale)
+        .min(LARGEST_TOLERANCE * force);
+    let balance = iterate.flow.as_ref().map(|flow| flow.at.balance);
+    let enough = balance.map_or(0.0, |balance| {
+        settings.mass.max(balance.rounding) * balance.moved
+    });
+    let enough = LINEAR_SHARE * enough / (missing.max(1) as f64).sqrt();
+    [forces, (iterate.forcing_term * rate).max(enough)]
+}
+
 /// Norm (N) of what fractures with kinks in their laws carry. It may be a small part of the loads;
 /// solves that are exact against the loads only would let it stick, slide and open at random.
 fn interface_force_norm(system: &System<'_>, state: &State) -> Option<f64> {

@@ -4,6 +4,7 @@ use glam::DVec3;
 use kluft_algebra::largest;
 
 use super::facet_points::{LastTrial, Linearisation, Linearised};
+use super::fluid::FlowIterate;
 use crate::problem::Load;
 use crate::system::{State, StateScales, System};
 
@@ -14,6 +15,8 @@ pub(super) struct Iterate {
     pub(super) last_trials: Vec<LastTrial>,
     /// Forces by which the rock resists the unknowns (N).
     pub(super) rock_forces: Vec<DVec3>,
+    /// The flow that follows the walls, if there is any.
+    pub(super) flow: Option<FlowIterate>,
     /// StateScales that its errors are measured against.
     pub(super) sizes: StateScales,
     /// Largest of the forces that must balance in the first guess (N).
@@ -39,6 +42,8 @@ pub(super) struct Correction {
     pub(super) unknowns: Vec<DVec3>,
     /// Forces by which the rock resists it (N), if it is to be recycled.
     pub(super) rock_forces: Option<Vec<DVec3>>,
+    /// Change of the pressures that are not given (Pa).
+    pub(super) potentials: Vec<f64>,
     /// Its largest displacement (m).
     pub(super) size: f64,
 }
@@ -55,8 +60,14 @@ impl Correction {
         Self {
             rock_forces: is_recycled.then(|| system.rock_forces(&unknowns)),
             size: largest(&system.displacements(&unknowns, &Load::NONE)),
+            potentials: Vec::new(),
             unknowns,
         }
+    }
+
+    /// Beside a change of pressures (Pa).
+    pub(super) fn with_potentials(self, potentials: Vec<f64>) -> Self {
+        Self { potentials, ..self }
     }
 
     pub(super) fn scaled(&self, share: f64) -> Self {
@@ -64,6 +75,11 @@ impl Correction {
         Self {
             unknowns: scaled(&self.unknowns),
             rock_forces: self.rock_forces.as_ref().map(scaled),
+            potentials: self
+                .potentials
+                .iter()
+                .map(|change| share * change)
+                .collect(),
             size: share * self.size,
         }
     }

@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use super::convergence;
 use super::damping;
 use super::facet_points::{self, Linearisation, interface};
+use super::fluid;
 use super::forcing_term;
 use super::iterate::{Correction, Iterate, Update};
 use super::line_search;
 use super::rigid_motion::RigidBodyMotion;
 use super::{Iteration, Newton, Step, StepOutcome};
-use crate::linear::{LinearSolution, Tangents};
+use crate::linear::{CoupledRhs, Tangents};
 use crate::problem::Load;
 use crate::system::System;
 
@@ -47,6 +48,9 @@ impl Iterate {
             &interface(system).jumps(&correction.unknowns, &Load::NONE),
             update.planes,
         );
+        if let Some(flow) = &mut self.flow {
+            flow.follow(system, &mut self.state, &correction.potentials);
+        }
         let iteration = convergence::measure(step, self, &errors, correction.size)?;
         self.merit = Some(line_search::merit(&iteration));
         Ok(iteration)
@@ -161,10 +165,9 @@ impl Newton {
         let system = step.system;
         let planes = facet_points::linearised(system, &iterate.state, iterate.linearisation);
         self.update_tangent(step, &planes.tangents, iterate.damping)?;
-        let solution = self.solve_linearised(system, iterate, &planes.tangents);
-        let solution = solution.map_err(StepOutcome::Linear)?;
         let is_recycled = self.recycled.is_some() && system.is_smooth();
-        let correction = Correction::of(system, solution.unknowns, is_recycled);
+        let solved = self.solve_linearised(system, iterate, &planes.tangents);
+        let (correction, spent) = solved.map_err(StepOutcome::Linear)?;
         let update = Update {
             correction: &correction,
             planes: &planes,
@@ -173,7 +176,7 @@ impl Newton {
             Linearisation::Tangents => line_search::advance(step, iterate, update, count)?,
             Linearisation::Springs => iterate.correct(step, update)?,
         };
-        iteration.linear_iterations = solution.iterations;
+        iteration.linear_iterations = spent;
         if is_recycled {
             iterate.corrections.push(correction);
         }
@@ -201,19 +204,46 @@ impl Newton {
         Ok(())
     }
 
-    /// Change of the unknowns that leaves no force out of balance on the tangent planes, to the
-    /// forcing term.
+    /// The correction that leaves no force out of balance on the tangent planes, and nothing of the
+    /// flow missing, to the forcing term; and the iterations of the linear solver.
     fn solve_linearised(
         &mut self,
         system: &System<'_>,
         iterate: &Iterate,
         tangents: &Tangents,
-    ) -> Result<LinearSolution, LinearFailure> {
+    ) -> Result<(Correction, usize), LinearFailure> {
         let state = &iterate.state;
         let tractions = facet_points::linearised_tractions(system, state, tangents);
+        let tractions = fluid::total_tractions(system, state, tractions);
         let residual = system.residual(&iterate.rock_forces, &tractions, &state.load);
-        let size = norm(&residual);
-        let tolerance = forcing_term::tolerance(system, &self.settings, iterate, size);
-        self.linear.solve(system, &residual, tolerance)
+        let parts = (system.coupling(), &state.fluid, &iterate.flow);
+        let (Some(coupling), Some(fluid), Some(flow)) = parts else {
+            let is_recycled = self.recycled.is_some() && system.is_smooth();
+            let size = norm(&residual);
+            let tolerance = forcing_term::tolerance(system, &self.settings, iterate, size);
+            let solution = self.linear.solve(system, &residual, tolerance)?;
+            let correction = Correction::of(system, solution.unknowns, is_recycled);
+            return Ok((correction, solution.iterations));
+        };
+        let linearised = flow.linearised(coupling, fluid, &state.load);
+        let missing = linearised.missing();
+        let rhs = CoupledRhs {
+            forces: &residual,
+            missing: &missing,
+            goals: &|sizes| {
+                let settings = (system, &self.settings);
+                forcing_term::coupled_goals(settings, iterate, sizes, missing.len())
+            },
+        };
+        let mut solution = self.linear.solve_coupled(system, &linearised, &rhs)?;
+        if fluid::goes_far(system, state, &solution.unknowns) {
+            let spent = solution.iterations;
+            let frozen = linearised.frozen();
+            solution = self.linear.solve_coupled(system, &frozen, &rhs)?;
+            solution.iterations += spent;
+        }
+        let correction = Correction::of(system, solution.unknowns, false);
+        let correction = correction.with_potentials(solution.potentials);
+        Ok((correction, solution.iterations))
     }
 }

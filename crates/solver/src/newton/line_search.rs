@@ -14,7 +14,7 @@ const HALVINGS: usize = 4;
 
 /// What a search compares: both measures are against what is large.
 pub(super) fn merit(iteration: &Iteration) -> f64 {
-    iteration.force_residual + iteration.closure_error
+    iteration.force_residual + iteration.closure_error + iteration.mass_error
 }
 
 /// Corrects an iterate in iteration `count` of its increment.

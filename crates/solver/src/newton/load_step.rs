@@ -63,6 +63,10 @@ impl Newton {
             recycled.add(iterate.guess, iterate.corrections);
         }
         let mut state = iterate.state;
+        let flow = iterate.flow.as_ref().zip(state.fluid.as_mut());
+        if let (Some(coupling), Some((flow, fluid))) = (system.coupling(), flow) {
+            flow.commit(coupling, fluid);
+        }
         facet_points::commit(system, &mut state);
         state.reached = iterate.sizes.or_share(1.0, state.reached);
         state

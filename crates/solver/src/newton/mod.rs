@@ -22,6 +22,7 @@ mod damping;
 mod determinacy;
 mod extrapolation;
 mod facet_points;
+mod fluid;
 mod forcing_term;
 mod free_blocks;
 mod iterate;

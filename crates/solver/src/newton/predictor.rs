@@ -4,6 +4,7 @@
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::damping;
 use super::facet_points::{self, LastTrial, Linearisation};
+use super::fluid;
 use super::forcing_term;
 use super::iterate::Iterate;
 use super::recycling::GalerkinGuess;
@@ -16,21 +17,25 @@ impl Newton {
     pub(super) fn predict(&mut self, system: &System<'_>, state: &State, load: &Load) -> Iterate {
         let mut from = state.clone();
         system.restate(&mut from);
+        let start = from.load.clone();
         let recycled = self.recycled.as_mut();
         let guess = recycled.and_then(|space| space.solve(system, &from, load));
-        let (state, last_trials, guess) = match guess {
+        let (mut state, last_trials, guess) = match guess {
             Some(GalerkinGuess {
                 state,
                 last_trials,
                 last,
             }) => (state, last_trials, Some(last)),
             None => {
-                self.path.continue_through(system, &mut from, load);
+                if system.coupling().is_none() {
+                    self.path.continue_through(system, &mut from, load);
+                }
                 facet_points::move_supports(system, &mut from, load);
                 let last_trials = vec![LastTrial::default(); from.facet_points.len()];
                 (from, last_trials, None)
             }
         };
+        let flow = fluid::begin(system, &mut state, &start);
         let reached = state.reached;
         let rock_forces = system.rock_forces(&state.unknowns);
         let tractions = system.law_tractions(&state);
@@ -39,6 +44,7 @@ impl Newton {
         Iterate {
             last_trials,
             guess,
+            flow,
             corrections: Vec::new(),
             sizes: StateScales { force, ..reached },
             first_force: force,

@@ -15,6 +15,11 @@ pub struct Iteration {
     /// `max(|t_n - sigma_n(b)|, k |w_n - (b - b0)|) / max |sigma_n|`: how far the traction and
     /// opening of the linear solve are from one point of the law.
     pub closure_error: f64,
+    /// Largest change of a pressure, against the largest since the step began; 0 without a flow
+    /// that follows the walls.
+    pub pressure_increment: f64,
+    /// What nodes of the flow miss, against what moves; 0 without one.
+    pub mass_error: f64,
     /// Smallest aperture (m).
     pub smallest_aperture: f64,
     /// Iterations of the linear solver; 0 if it is direct.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Newton;
 use super::extrapolation::Path;
 use super::recycling::RecycledSpace;
+use crate::flow::FluidState;
 use crate::linear::SolverHistory;
 use crate::system::{State, System};
 
@@ -28,7 +29,10 @@ impl RestartState<'_> {
         let facet_points = system.discretisation.interface.points.len();
         let blocks = system.discretisation.interface.columns.entries.len();
         let recycled = (*self.recycled).as_ref();
+        let pressures = |fluid: &FluidState| system.coupling().is_some_and(|flow| flow.fits(fluid));
         self.state.unknowns.len() == unknowns
+            && self.state.fluid.as_ref().is_none_or(pressures)
+            && self.state.fluid.is_some() == system.coupling().is_some()
             && self.state.facet_points.len() == facet_points
             && self.path.fits(unknowns, facet_points)
             && recycled.is_none_or(|space| space.fits(unknowns))

@@ -17,6 +17,12 @@ pub struct NewtonSettings {
     /// Largest difference, against the largest jump, between a path in one increment and in two,
     /// where the laws depend on the path.
     pub path: f64,
+    /// Largest difference between a time step of a flow in one increment and in two: of what fills
+    /// the fractures at other places, and of pressures, against what has moved since the run began.
+    /// Steps are taken as they are given from 1 on.
+    pub time: f64,
+    /// What nodes of a flow may miss, summed up, against what moves.
+    pub mass: f64,
     /// How linear systems are solved; chosen by predicted cost if not given.
     pub linear: Option<LinearMethod>,
 }
@@ -29,6 +35,8 @@ impl Default for NewtonSettings {
             closure: 1e-9,
             max_iterations: 25,
             path: 1e-3,
+            time: 1e-2,
+            mass: 1e-10,
             linear: None,
         }
     }

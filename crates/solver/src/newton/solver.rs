@@ -42,7 +42,8 @@ impl Newton {
         settings: NewtonSettings,
         plan: Plan,
     ) -> Result<Self, LinearFailure> {
-        let recycles = plan.method == LinearMethod::Iterative;
+        // A guess in the recycled space knows of no pressures.
+        let recycles = plan.method == LinearMethod::Iterative && system.coupling().is_none();
         Ok(Self {
             recycled: recycles.then(RecycledSpace::default),
             linear: NonsymmetricSolver::new(plan.prepare(system)?),

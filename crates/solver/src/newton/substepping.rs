@@ -1,9 +1,11 @@
 //! A load step in one increment if the laws allow it, in as many as they need if not.
 //!
-//! Without friction or a breaking bond the end does not depend on the path, so the step is divided
-//! only if it does not converge. With them, a substep is solved in one increment and in two; where
-//! the jumps differ by more than [`NewtonSettings::path`](super::NewtonSettings::path), it is
-//! divided.
+//! Without friction, a breaking bond or a flow that takes time the end does not depend on the path,
+//! so the step is divided only if it does not converge. With them, a substep is solved in one
+//! increment and in two; where the jumps differ by more than
+//! [`NewtonSettings::path`](super::NewtonSettings::path), or what the fluid fills and its pressures
+//! by more than [`NewtonSettings::time`](super::NewtonSettings::time), it is divided. Loads and
+//! what drives the flow walk with it.
 
 use glam::DVec3;
 use kluft_algebra::largest;
@@ -12,6 +14,7 @@ use super::convergence::ratio;
 use super::facet_points::interface;
 use super::{Newton, Step, StepOutcome};
 use crate::FacetPointState;
+use crate::flow::Coupling;
 use crate::problem::Load;
 use crate::system::{State, System};
 
@@ -25,14 +28,14 @@ const GROWTH_SHARE: f64 = 0.25;
 struct Substep {
     middle: Load,
     end: Load,
-    /// Largest difference between one increment and two.
-    largest_error: f64,
+    /// Whether it may be divided.
+    is_divisible: bool,
 }
 
 /// What a substep came to.
 enum Solved {
     /// Its end, and whether the next may be longer.
-    Accepted { end: State, may_grow: bool },
+    Accepted { end: Box<State>, may_grow: bool },
     /// It is to be divided; why, if it is not for accuracy.
     TooLong(Option<StepOutcome>),
 }
@@ -49,18 +52,19 @@ impl Newton {
         load: &Load,
     ) -> Result<State, StepOutcome> {
         let mut here = state.clone();
+        let flows = step.system.coupling().is_some_and(Coupling::is_transient);
+        let start = match flows {
+            true => step.system.problem.schedule.walked_from(&state.load),
+            false => state.load.clone(),
+        };
         let mut increment = 1.0_f64;
         while step.record.completed < 1.0 {
             let completed = step.record.completed;
             let end = f64::min(completed + increment, 1.0);
             let substep = Substep {
-                middle: between(&state.load, load, 0.5 * (completed + end)),
-                end: between(&state.load, load, end),
-                largest_error: if increment <= SMALLEST_SUBSTEP {
-                    f64::INFINITY
-                } else {
-                    self.settings.path
-                },
+                middle: between(&start, load, 0.5 * (completed + end)),
+                end: between(&start, load, end),
+                is_divisible: increment > SMALLEST_SUBSTEP,
             };
             match self.solve_substep(step, &here, &substep) {
                 Solved::Accepted {
@@ -68,7 +72,7 @@ impl Newton {
                     may_grow,
                 } => {
                     self.path.remember(step.system, &here);
-                    (here, step.record.completed) = (next, end);
+                    (here, step.record.completed) = (*next, end);
                     increment *= if may_grow { 2.0 } else { 1.0 };
                 }
                 Solved::TooLong(Some(outcome)) if is_final(step.system, &outcome, increment) => {
@@ -85,9 +89,11 @@ impl Newton {
             Ok(whole) => whole,
             Err(outcome) => return Solved::TooLong(Some(outcome)),
         };
-        if !step.system.is_path_dependent() || is_elastic(from, &whole) {
+        let slides = step.system.is_path_dependent() && !is_elastic(from, &whole);
+        let flows = step.system.coupling().is_some_and(Coupling::is_transient);
+        if !slides && (!flows || self.settings.time >= 1.0) {
             return Solved::Accepted {
-                end: whole,
+                end: Box::new(whole),
                 may_grow: true,
             };
         }
@@ -98,11 +104,15 @@ impl Newton {
             Ok(halves) => halves,
             Err(outcome) => return Solved::TooLong(Some(outcome)),
         };
-        let error = difference(step.system, &whole, &halves);
-        if error <= substep.largest_error {
+        let allowed = [
+            slides.then(|| difference(step.system, &whole, &halves) / self.settings.path),
+            flows.then(|| flows_apart(step.system, &whole, &halves) / self.settings.time),
+        ];
+        let error = allowed.into_iter().flatten().fold(0.0, f64::max);
+        if error <= 1.0 || !substep.is_divisible {
             Solved::Accepted {
-                end: halves,
-                may_grow: error <= GROWTH_SHARE * self.settings.path,
+                end: Box::new(halves),
+                may_grow: error <= GROWTH_SHARE,
             }
         } else {
             Solved::TooLong(None)
@@ -157,4 +167,13 @@ fn difference(system: &System<'_>, a: &State, b: &State) -> f64 {
     let apart = largest(&interface(system).jumps(&between, &Load::NONE));
     let size = largest(&interface(system).jumps(&b.unknowns, &b.load));
     ratio(apart, size)
+}
+
+/// How far two states are apart in what their fluids fill and in their pressures.
+fn flows_apart(system: &System<'_>, a: &State, b: &State) -> f64 {
+    let fluids = a.fluid.as_ref().zip(b.fluid.as_ref());
+    let both = system.coupling().zip(fluids);
+    both.map_or(0.0, |(flow, (first, second))| {
+        flow.difference([first, second], &b.load, b.reached.displacement)
+    })
 }

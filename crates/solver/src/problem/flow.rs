@@ -10,8 +10,10 @@ use super::initial_stress::Profile;
 pub struct Fluid {
     /// Viscosity (Pa s).
     pub viscosity: f64,
-    /// Density (kg/m^3); 0 where gravity plays no part.
+    /// Density (kg/m^3) under the initial pressure; 0 where gravity plays no part.
     pub density: f64,
+    /// Relative change of density with pressure (1/Pa); 0 for a fluid that does not give way.
+    pub compressibility: f64,
 }
 
 /// A fracture as the fluid sees it.
@@ -78,8 +80,22 @@ pub struct Flow {
     pub conduits: Vec<Conduit>,
     /// What drives it. Outer surfaces without a condition are closed.
     pub conditions: Vec<FlowCondition>,
+    /// Pressure before any load (Pa), in equilibrium with the initial stress, which is total.
+    pub initial_pressure: Profile,
     /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// Load case of gravity.
     pub gravity_case: usize,
+}
+
+impl Flow {
+    /// Whether the flow depends on how the walls move in rock that deforms: by their apertures, or,
+    /// where it takes time, by what they store.
+    pub fn follows_walls(&self, takes_time: bool) -> bool {
+        let of_walls = |conduit: &Conduit| match conduit {
+            Conduit::Sealed => false,
+            Conduit::Open(hydraulic) => !hydraulic.is_constant(),
+        };
+        takes_time || self.conduits.iter().any(of_walls)
+    }
 }

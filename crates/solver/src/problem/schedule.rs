@@ -131,6 +131,9 @@ pub struct Schedule {
     pub steps: Vec<Step>,
     /// Whether the times are the user's; if not, they count the steps.
     pub is_timed: bool,
+    /// Factor on each load case right after time 0, as a flow that takes time sees it; zero where
+    /// none stands.
+    pub sudden: Vec<f64>,
 }
 
 impl Schedule {
@@ -147,6 +150,7 @@ impl Schedule {
             cases: Cases::default(),
             steps: steps.collect(),
             is_timed: false,
+            sudden: Vec::new(),
         }
     }
 
@@ -161,6 +165,19 @@ impl Schedule {
         Load {
             time: 0.0,
             factors: vec![0.0; self.case_count()],
+        }
+    }
+
+    /// What a step begins with whose loads walk in time: what acts right after time 0, or what the
+    /// step before has ended with.
+    pub(crate) fn walked_from(&self, before: &Load) -> Load {
+        let factors = match before.time > 0.0 || self.sudden.is_empty() {
+            true => before.factors.clone(),
+            false => self.sudden.clone(),
+        };
+        Load {
+            time: before.time,
+            factors,
         }
     }
 

@@ -4,14 +4,17 @@ mod discretisation;
 mod state;
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, norm};
-use lie_core::{FractureLaw, JointHistory, TrialState};
+use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, LinearFailure, norm};
+use kluft_mesh::Defect;
+use lie_core::{FractureLaw, JointHistory, JointState, TrialState};
 use rayon::prelude::*;
 
 use crate::assembly::facet_point::FacetPoint;
+use crate::assembly::interface::Interface;
 use crate::assembly::loads::Loads;
 use crate::assembly::rock;
-use crate::problem::{Load, Problem};
+use crate::flow::{Coupling, FlowSystem};
+use crate::problem::{Conduit, Flow, Load, Problem};
 
 pub use discretisation::Discretisation;
 pub(crate) use state::StateScales;
@@ -30,6 +33,8 @@ pub struct System<'a> {
     loads: Loads,
     /// How often the laws were changed.
     generation: u32,
+    /// Flow that follows the walls, if there is any.
+    coupling: Option<Coupling<'a>>,
 }
 
 /// Share of the forces of prescribed displacements that counts even if they cancel: rounding.
@@ -46,6 +51,7 @@ impl<'a> System<'a> {
             rock,
             loads,
             generation: 0,
+            coupling: None,
             discretisation,
         }
     }
@@ -61,6 +67,35 @@ impl<'a> System<'a> {
     /// Takes other forces instead of those of the problem.
     pub fn set_loads(&mut self, loads: Loads) {
         self.loads = loads;
+    }
+
+    /// Adds the push of a flow at constant apertures, factorised, to the forces of all load cases.
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn push_walls(&mut self, flow: &FlowSystem<'_>) -> Result<(), LinearFailure> {
+        let mut cases = self.loads.cases().to_vec();
+        flow.add_push(&self.discretisation.interface, &mut cases)?;
+        self.loads = Loads::new(cases, self.loads.initial().to_vec());
+        Ok(())
+    }
+
+    /// Lets a flow follow the walls and push them.
+    ///
+    /// # Errors
+    /// As [`Coupling::of`].
+    pub fn couple(&mut self, flow: &'a Flow) -> Result<(), Vec<Defect>> {
+        let interface = &mut self.discretisation.interface;
+        let pressures = initial_pressures(flow, interface);
+        interface.set_initial_pressures(self.problem, &pressures);
+        let apertures = apertures(interface.points.iter().map(|point| point.initial));
+        self.coupling = Some(Coupling::of(self.problem, flow, interface, &apertures)?);
+        Ok(())
+    }
+
+    /// The flow that follows the walls, if there is any.
+    pub fn coupling(&self) -> Option<&Coupling<'a>> {
+        self.coupling.as_ref()
     }
 
     /// What is solved. Its laws are those that the run began with; see [`Self::laws`].
@@ -85,7 +120,7 @@ impl<'a> System<'a> {
 
     /// Whether a step may need more than one linear solve.
     pub fn is_nonlinear(&self) -> bool {
-        self.laws().iter().any(|law| !law.is_linear())
+        self.coupling.is_some() || self.laws().iter().any(|law| !law.is_linear())
     }
 
     /// Whether the tangent changes gradually: no fracture slides, breaks or ends a contact.
@@ -107,8 +142,14 @@ impl<'a> System<'a> {
             jump_residual: DVec3::ZERO,
             history: JointHistory::default(),
         });
+        let load = self.problem.schedule.start();
+        let fluid = self.coupling.as_ref().map(|coupling| {
+            let walls = self.discretisation.interface.points.iter();
+            coupling.start(&load, &apertures(walls.map(|point| point.initial)))
+        });
         State {
-            load: self.problem.schedule.start(),
+            fluid,
+            load,
             unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
             facet_points: facet_points.collect(),
             reached: StateScales::default(),
@@ -254,4 +295,18 @@ impl<'a> System<'a> {
         }
         whole
     }
+}
+
+/// Pressure of the fluid at each facet point before any load (Pa).
+fn initial_pressures(flow: &Flow, interface: &Interface) -> Vec<f64> {
+    let points = interface.points.iter();
+    let of = |point: &FacetPoint| match flow.conduits[point.fracture as usize] {
+        Conduit::Sealed => 0.0,
+        Conduit::Open(_) => flow.initial_pressure.at_elevation(point.position.z),
+    };
+    points.map(of).collect()
+}
+
+fn apertures(walls: impl Iterator<Item = JointState>) -> Vec<f64> {
+    walls.map(|joint| joint.separation.aperture).collect()
 }

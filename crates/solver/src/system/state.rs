@@ -4,6 +4,7 @@ use glam::DVec3;
 use lie_core::{JointHistory, JointState};
 use serde::{Deserialize, Serialize};
 
+use crate::flow::FluidState;
 use crate::problem::Load;
 
 /// The state of a run: what a load step starts from and leaves behind.
@@ -19,6 +20,8 @@ pub struct State {
     pub unknowns: Vec<DVec3>,
     /// State of each facet point.
     pub facet_points: Vec<FacetPointState>,
+    /// The fluid, if it follows the walls.
+    pub fluid: Option<FluidState>,
     /// Largest sizes of the states on the way to it.
     pub(crate) reached: StateScales,
     /// Which laws of the system it was reached with.
@@ -34,6 +37,8 @@ pub(crate) struct StateScales {
     pub(crate) displacement: f64,
     /// Largest normal traction of a fracture (Pa).
     pub(crate) traction: f64,
+    /// Largest change of a pressure since the run began (Pa).
+    pub(crate) pressure: f64,
 }
 
 impl StateScales {
@@ -43,6 +48,7 @@ impl StateScales {
             force: self.force.max(share * other.force),
             displacement: self.displacement.max(share * other.displacement),
             traction: self.traction.max(share * other.traction),
+            pressure: self.pressure.max(share * other.pressure),
         }
     }
 }
@@ -56,4 +62,12 @@ pub struct FacetPointState {
     pub jump_residual: DVec3,
     /// What former steps left behind.
     pub history: JointHistory,
+}
+
+impl FacetPointState {
+    /// Aperture at the jump of the walls (m), for a facet with unit `normal`.
+    pub(crate) fn aperture(&self, normal: DVec3) -> f64 {
+        let beyond = self.jump_residual.dot(normal);
+        self.joint.separation.moved(beyond).aperture
+    }
 }

@@ -287,6 +287,8 @@ impl<'a> PlainNewton<'a> {
         let apertures = joints().map(|joint| joint.separation.aperture);
         let error = errors.iter().copied().fold(0.0, f64::max);
         Ok(Iteration {
+            pressure_increment: 0.0,
+            mass_error: 0.0,
             force_residual: ratio(residual, system.force_scale(&rock, &tractions, &state.load)),
             increment: ratio(change, size),
             closure_error: ratio(error, largest(&tractions)),

@@ -1,6 +1,7 @@
 //! Flow against closed forms and in words of its defects, on meshes of all shapes.
 
 mod closed_forms;
+mod coupled;
 mod push;
 mod refusals;
 
@@ -54,7 +55,9 @@ fn flow(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
         fluid: Fluid {
             viscosity: VISCOSITY,
             density: 0.0,
+            compressibility: 0.0,
         },
+        initial_pressure: Profile::default(),
         conduits: vec![smooth(); mesh.fractures.len()],
         conditions,
         gravity: DVec3::ZERO,

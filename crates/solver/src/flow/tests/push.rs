@@ -37,7 +37,7 @@ fn loads(mesh: &Mesh, closure: Closure, given: f64, flow: Option<&Flow>) -> Vec<
     if let Some(flow) = flow {
         let mut made = FlowSystem::of(mesh, flow, &apertures(mesh, |_, _| 1e-4)).expect("sound");
         made.factorise().expect("positive definite");
-        made.push_walls(&mut system).expect("finite");
+        system.push_walls(&made).expect("finite");
     }
     system.loads().cases()[0].applied.clone()
 }

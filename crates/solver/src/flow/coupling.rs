@@ -1,0 +1,429 @@
+//! Flow that follows the walls of fractures as they move, and pushes them.
+//!
+//! With the aperture `b`, the pressure `p` and the potential `phi = p - rho g . x`, what belongs to
+//! a node `i` is `V_i = (1 + c (p_i - p_0)) sum_f A s b`, over facet points of area `A` in whose
+//! pressure the node has a share `s`. Its balance over a time `dt` (implicit Euler) is
+//!
+//! ```text
+//! (V_i - V_i,before) / dt + sum_f T_f(b) sum_j k_ij (phi_j - phi_i) = q_i
+//! ```
+//!
+//! without the first term in a steady state. The volumes are those at the density that the fluid
+//! has under the initial pressure `p_0`, so that the sum over all nodes is the mass balance. The
+//! transmissivity of a facet is the mean of those of its points, at the jump of the walls and not
+//! where their law balances the rock: linearised there it may become negative.
+
+use std::sync::Arc;
+
+use kluft_mesh::Defect;
+use lie_core::{ClosureKind, FacetQuadrature, HydraulicAperture};
+use serde::{Deserialize, Serialize};
+
+use super::balance::{ConditionFlow, FlowBalance};
+use super::conductance::{self, Conductance};
+use super::fields::FlowFields;
+use super::loaded::{FlowState, Loaded, Stored};
+use super::numbering::FlowNodes;
+use super::operator::FlowOperator;
+use super::steady::FlowSystem;
+use super::topology::Topology;
+use super::wall_points::WallPoints;
+use crate::assembly::interface::Interface;
+use crate::problem::{Conduit, Flow, Load, Problem};
+
+/// Share of the aperture that a fracture conducted with before, below which one iteration does not
+/// take it.
+const LEAST_SHARE: f64 = 0.1;
+
+/// Share of the displacements below which walls have not moved.
+const LEAST_MOVED: f64 = 1e-6;
+
+/// Flow coupled with the motion of walls.
+#[derive(Debug, Clone)]
+pub struct Coupling<'a> {
+    pub(super) topology: Arc<Topology<'a>>,
+    pub(super) points: WallPoints,
+    /// How each facet point conducts; none where nothing flows.
+    hydraulic: Vec<Option<HydraulicAperture>>,
+    /// Whether the flow takes time.
+    is_transient: bool,
+    /// Area of the facets that belongs to each node (m^2).
+    areas: Vec<f64>,
+    /// What belongs to each node before any load (m^3).
+    initial_volumes: Vec<f64>,
+}
+
+/// The fluid in a state.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct FluidState {
+    /// `p - rho g . x` at each node that has a pressure (Pa), nodes ascending.
+    pub(crate) potentials: Vec<f64>,
+    /// What belongs to each of them (m^3) at the end of the last increment.
+    pub(crate) volumes: Vec<f64>,
+    /// Aperture that each facet point conducts with (m).
+    pub(crate) apertures: Vec<f64>,
+    /// Flow through each condition at the end of the last increment.
+    pub(crate) conditions: Vec<ConditionFlow>,
+    /// What has entered through each condition since the run began (m^3); zero in steady states.
+    pub(crate) entered: Vec<f64>,
+    /// Balance of the last increment.
+    pub(crate) balance: FlowBalance,
+}
+
+/// An increment of a flow.
+#[derive(Debug, Clone)]
+pub(crate) struct FlowIncrement {
+    /// What belonged to each node when it began (m^3).
+    pub(crate) volumes: Vec<f64>,
+    /// How long it takes (s); none for a steady state.
+    pub(crate) duration: Option<f64>,
+}
+
+/// A flow at some apertures and potentials.
+#[derive(Debug, Clone)]
+pub(crate) struct FlowAtWalls {
+    pub(super) operator: FlowOperator,
+    /// What conditions drive into each node, less what flows on and what is stored (m^3/s).
+    pub(super) missing: Vec<f64>,
+    /// What belongs to each node (m^3).
+    pub(crate) volumes: Vec<f64>,
+    /// `dV/dV_0` of each node, the factor of the density.
+    pub(super) density: Vec<f64>,
+    /// `sum A s b` of each node (m^3).
+    pub(super) spaces: Vec<f64>,
+    /// `dT/db` at each facet point (m^2/(Pa s)).
+    pub(super) slopes: Vec<f64>,
+    /// The balance.
+    pub(crate) balance: FlowBalance,
+    /// Flow through each condition.
+    pub(crate) conditions: Vec<ConditionFlow>,
+}
+
+/// Apertures of all facet points (m).
+#[derive(Clone, Copy)]
+pub(crate) struct Walls<'a> {
+    /// That conduct.
+    pub(crate) conducting: &'a [f64],
+    /// That store.
+    pub(crate) storing: &'a [f64],
+}
+
+impl<'a> Coupling<'a> {
+    /// The flow of a problem that follows the walls of an interface, whose facet points have these
+    /// apertures (m) to begin with.
+    ///
+    /// # Errors
+    /// As [`FlowSystem::of`]; fractures integrated at Gauss points, where jumps and pressures do
+    /// not belong to one node; walls in contact that leave nothing open; in steady flow, networks
+    /// without a pressure.
+    pub fn of(
+        problem: &'a Problem,
+        flow: &'a Flow,
+        interface: &Interface,
+        apertures: &[f64],
+    ) -> Result<Self, Vec<Defect>> {
+        let mesh = &problem.mesh;
+        gauss_points(problem, interface)?;
+        shut_contacts(problem, flow, interface)?;
+        let nodes = FlowNodes::of(mesh, flow);
+        let at_nodes = &apertures[..mesh.facets.elements.nodes.len()];
+        let transmissivity = conductance::transmissivities(mesh, flow, &nodes, at_nodes);
+        let (topology, conductance) = Topology::of((mesh, flow), nodes, transmissivity)?;
+        let topology = Arc::new(topology);
+        let is_transient = problem.schedule.is_timed;
+        if !is_transient {
+            let system = FlowSystem::with(topology.clone(), conductance);
+            let undriven = system.undriven();
+            if !undriven.is_empty() {
+                return Err(undriven);
+            }
+        }
+        let points = WallPoints::of(&topology, interface);
+        let conduit = |(index, fracture): (usize, u32)| match flow.conduits[fracture as usize] {
+            Conduit::Open(hydraulic) if points.conducts(index) => Some(hydraulic),
+            _ => None,
+        };
+        let fractures = interface.points().iter().map(|point| point.fracture);
+        Ok(Self {
+            hydraulic: fractures.enumerate().map(conduit).collect(),
+            areas: points.at_rows(&vec![1.0; apertures.len()]),
+            initial_volumes: points.at_rows(apertures),
+            points,
+            topology,
+            is_transient,
+        })
+    }
+
+    /// Whether the flow takes time.
+    pub fn is_transient(&self) -> bool {
+        self.is_transient
+    }
+
+    /// Number of pressures.
+    pub fn nodes(&self) -> usize {
+        self.topology.nodes.len()
+    }
+
+    /// How far two fluids are apart under a load: the larger of the volume that they fill at
+    /// different places, as a share of what has moved since the run began,
+    /// `sum |V_a - V_b| / sum |V_b - V_0|`, and of the same for pressures by the area of their
+    /// nodes, as root mean squares. Volumes count from a share of what walls would open for that
+    /// move by `displacement` (m).
+    pub(crate) fn difference(
+        &self,
+        [a, b]: [&FluidState; 2],
+        load: &Load,
+        displacement: f64,
+    ) -> f64 {
+        let loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let mut volumes = [0.0; 2];
+        let mut squares = [0.0; 2];
+        for row in 0..self.nodes() {
+            volumes[0] += (a.volumes[row] - b.volumes[row]).abs();
+            volumes[1] += (b.volumes[row] - self.initial_volumes[row]).abs();
+            let pressure = b.potentials[row] + loaded.weight(row);
+            squares[0] += self.areas[row] * (a.potentials[row] - b.potentials[row]).powi(2);
+            squares[1] += self.areas[row] * (pressure - self.initial(row)).powi(2);
+        }
+        let area: f64 = self.areas.iter().sum();
+        volumes[1] = volumes[1].max(LEAST_MOVED * area * displacement);
+        let share = |[apart, moved]: [f64; 2]| if apart == 0.0 { 0.0 } else { apart / moved };
+        share(volumes).max(share(squares).sqrt())
+    }
+
+    /// Whether a fluid has the numbers of this flow.
+    pub(crate) fn fits(&self, fluid: &FluidState) -> bool {
+        let conditions = self.topology.flow.conditions.len();
+        [fluid.potentials.len(), fluid.volumes.len()] == [self.nodes(); 2]
+            && fluid.apertures.len() == self.hydraulic.len()
+            && [fluid.conditions.len(), fluid.entered.len()] == [conditions; 2]
+    }
+
+    /// The fluid before any load, between walls of these apertures (m).
+    pub(crate) fn start(&self, load: &Load, apertures: &[f64]) -> FluidState {
+        let loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let rows = 0..self.nodes();
+        let potentials = rows.map(|row| self.initial(row) - loaded.weight(row));
+        let none = ConditionFlow {
+            pressure: 0.0,
+            rate: 0.0,
+        };
+        let conditions = self.topology.flow.conditions.len();
+        FluidState {
+            potentials: potentials.collect(),
+            volumes: self.initial_volumes.clone(),
+            apertures: apertures.to_vec(),
+            conditions: vec![none; conditions],
+            entered: vec![0.0; conditions],
+            balance: FlowBalance::default(),
+        }
+    }
+
+    /// Pressure before any load at a row (Pa).
+    pub(super) fn initial(&self, row: usize) -> f64 {
+        let node = self.topology.nodes.node[row] as usize;
+        let elevation = self.topology.mesh.nodes[node].z;
+        self.topology.flow.initial_pressure.at_elevation(elevation)
+    }
+
+    /// Potentials under another load: pressures stay, but those that are given.
+    pub(crate) fn move_load(&self, potentials: &mut [f64], from: &Load, to: &Load) {
+        let [from, to] =
+            [from, to].map(|load| Loaded::of(&self.topology, load).counted_from_means());
+        for (row, potential) in potentials.iter_mut().enumerate() {
+            *potential += from.weight(row) - to.weight(row);
+        }
+        to.set_given(potentials);
+    }
+
+    /// Potentials of the steady flow under a load through walls as far apart as they are; none if
+    /// the flow takes time, or cannot be solved.
+    pub(crate) fn steady(&self, fluid: &FluidState, load: &Load) -> Option<Vec<f64>> {
+        if self.is_transient {
+            return None;
+        }
+        let mut system = self.system(fluid);
+        system.factorise().ok()?;
+        let state = system.solve(load).ok()?;
+        let loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let rows = state.pressures.iter().enumerate();
+        Some(rows.map(|(row, p)| p - loaded.weight(row)).collect())
+    }
+
+    /// The increment from a state under one load to another.
+    pub(crate) fn increment(&self, fluid: &FluidState, from: &Load, to: &Load) -> FlowIncrement {
+        FlowIncrement {
+            volumes: fluid.volumes.clone(),
+            duration: self.is_transient.then_some(to.time - from.time),
+        }
+    }
+
+    /// Adds changes of the pressures that are not given (Pa).
+    pub(crate) fn add(&self, potentials: &mut [f64], changes: &[f64]) {
+        for (&row, change) in self.topology.free.iter().zip(changes) {
+            potentials[row as usize] += change;
+        }
+    }
+
+    /// Apertures to conduct with after an iteration that has led to `reached` from where fractures
+    /// conducted with `before` (m).
+    pub(crate) fn conducting(&self, before: &[f64], reached: &[f64]) -> Vec<f64> {
+        let pairs = before.iter().zip(reached);
+        pairs
+            .map(|(before, reached)| reached.max(LEAST_SHARE * before))
+            .collect()
+    }
+
+    /// Pressure at each facet point (Pa); 0 where nothing flows.
+    pub(crate) fn point_pressures(&self, potentials: &[f64], load: &Load) -> Vec<f64> {
+        let loaded = Loaded::of(&self.topology, load).counted_from_means();
+        self.points
+            .at_points(|row| potentials[row] + loaded.weight(row))
+    }
+
+    /// The flow at apertures and potentials in an increment to a load.
+    pub(crate) fn at(
+        &self,
+        walls: Walls<'_>,
+        potentials: &[f64],
+        (increment, load): (&FlowIncrement, &Load),
+    ) -> FlowAtWalls {
+        let viscosity = self.topology.flow.fluid.viscosity;
+        let conduction = |point: usize| {
+            let hydraulic = self.hydraulic[point];
+            hydraulic.map(|hydraulic| hydraulic.at(walls.conducting[point]))
+        };
+        let transmissivity = self.points.at_facets(|point| {
+            conduction(point).map_or(0.0, |conduction| conduction.transmissivity(viscosity))
+        });
+        let slope =
+            |point: usize| conduction(point).map_or(0.0, |own| own.transmissivity_slope(viscosity));
+        let Topology {
+            nodes, stencils, ..
+        } = &*self.topology;
+        let conductance = Conductance::of(nodes, stencils, transmissivity);
+        let operator = FlowOperator::of(&self.topology, conductance);
+        let mut loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let compressibility = self.topology.flow.fluid.compressibility;
+        let density = potentials.iter().enumerate().map(|(row, potential)| {
+            1.0 + compressibility * (potential + loaded.weight(row) - self.initial(row))
+        });
+        let density: Vec<f64> = density.collect();
+        let spaces = self.points.at_rows(walls.storing);
+        let volumes = density.iter().zip(&spaces).map(|(rho, space)| rho * space);
+        let volumes: Vec<f64> = volumes.collect();
+        if let Some(duration) = increment.duration {
+            let pairs = volumes.iter().zip(&increment.volumes);
+            loaded.stored = Some(Stored {
+                rates: pairs.map(|(now, then)| (now - then) / duration).collect(),
+                terms: volumes.iter().map(|volume| volume.abs()).sum::<f64>() / duration,
+            });
+        }
+        let missing = loaded.missing(&operator, potentials);
+        let state = loaded.state(&operator, potentials.to_vec());
+        FlowAtWalls {
+            slopes: (0..self.hydraulic.len()).map(slope).collect(),
+            balance: state.balance,
+            conditions: state.conditions,
+            operator,
+            missing,
+            volumes,
+            density,
+            spaces,
+        }
+    }
+
+    /// A converged flow as the state that the next increment starts from.
+    pub(crate) fn commit(
+        &self,
+        fluid: &mut FluidState,
+        flow: &FlowAtWalls,
+        increment: &FlowIncrement,
+    ) {
+        fluid.volumes.clone_from(&flow.volumes);
+        fluid.conditions.clone_from(&flow.conditions);
+        fluid.balance = flow.balance;
+        for (entered, condition) in fluid.entered.iter_mut().zip(&flow.conditions) {
+            *entered += condition.rate * increment.duration.unwrap_or(0.0);
+        }
+    }
+
+    /// The flow in a state under a load, for results.
+    pub fn state(&self, fluid: &FluidState, load: &Load) -> FlowState {
+        let loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let rows = fluid.potentials.iter().enumerate();
+        FlowState {
+            pressures: rows.map(|(row, phi)| phi + loaded.weight(row)).collect(),
+            potentials: fluid.potentials.clone(),
+            conditions: fluid.conditions.clone(),
+            entered: fluid.entered.clone(),
+            balance: fluid.balance,
+        }
+    }
+
+    /// The fields of a state under a load; `apertures` (m) are those at the nodes of the facets.
+    pub fn fields(&self, fluid: &FluidState, load: &Load, apertures: &[f64]) -> FlowFields {
+        let system = self.system(fluid);
+        system.fields(&self.state(fluid, load), apertures)
+    }
+
+    /// The flow through walls as far apart as they are.
+    fn system(&self, fluid: &FluidState) -> FlowSystem<'a> {
+        let (nodes, stencils) = (&self.topology.nodes, &self.topology.stencils);
+        let viscosity = self.topology.flow.fluid.viscosity;
+        let transmissivity = self.points.at_facets(|point| {
+            let hydraulic = self.hydraulic[point];
+            hydraulic.map_or(0.0, |own| {
+                own.at(fluid.apertures[point]).transmissivity(viscosity)
+            })
+        });
+        let conductance = Conductance::of(nodes, stencils, transmissivity);
+        FlowSystem::with(self.topology.clone(), conductance)
+    }
+}
+
+/// Refuses walls in contact between which nothing could flow.
+fn shut_contacts(problem: &Problem, flow: &Flow, interface: &Interface) -> Result<(), Vec<Defect>> {
+    let leaves_nothing = |conduit: &Conduit| {
+        matches!(
+            conduit,
+            Conduit::Open(HydraulicAperture::OfWalls { residual, .. }) if *residual == 0.0
+        )
+    };
+    let fractures = problem.mesh.fractures.iter().zip(interface.laws());
+    let shut = fractures.zip(&flow.conduits).filter(|((_, law), conduit)| {
+        law.closure.kind == ClosureKind::Contact && leaves_nothing(conduit)
+    });
+    let defects: Vec<Defect> = shut
+        .map(|((name, _), _)| {
+            Defect::new(
+                format!("fracture `{name}`"),
+                "its walls come into contact, and nothing could flow between them then",
+                "give it a residual hydraulic aperture (residual_hydraulic_aperture = 1e-6)",
+            )
+        })
+        .collect();
+    match defects.is_empty() {
+        true => Ok(()),
+        false => Err(defects),
+    }
+}
+
+/// Refuses fractures integrated at Gauss points.
+fn gauss_points(problem: &Problem, interface: &Interface) -> Result<(), Vec<Defect>> {
+    let fractures = problem.mesh.fractures.iter().zip(0_u32..);
+    let gauss = fractures.filter(|(_, index)| interface.rule_of(*index) == FacetQuadrature::Gauss);
+    let defects: Vec<Defect> = gauss
+        .map(|(name, _)| {
+            Defect::new(
+                format!("fracture `{name}`"),
+                "it is integrated at Gauss points, where flow cannot follow its walls",
+                "integrate it at its nodes (facets = \"nodal\")",
+            )
+        })
+        .collect();
+    match defects.is_empty() {
+        true => Ok(()),
+        false => Err(defects),
+    }
+}

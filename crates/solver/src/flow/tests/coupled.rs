@@ -1,0 +1,282 @@
+//! Flow that follows the walls of a joint between two slabs, and opens it.
+//!
+//! The slabs are soft against the joint and nothing holds them together, so that each part of the
+//! joint opens by what the pressure there does to its law.
+
+use glam::DVec3;
+use kluft_mesh::structured::Patch;
+use kluft_mesh::{Mesh, Shape};
+use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
+
+use super::{SHAPES, block, flow, is_close, on_side, pressure};
+use crate::flow::FlowState;
+use crate::newton::{Newton, NewtonSettings, StepRecord, unobserved};
+use crate::problem::{
+    Condition, Flow, FlowCondition, Fracture, InitialStress, Load, Problem, Schedule, Step,
+    Support, SurfaceLoad,
+};
+use crate::system::{Discretisation, State, System};
+
+const NORMAL_STIFFNESS: f64 = 1e11;
+const APERTURE: f64 = 1e-5;
+
+/// A slab of `n` by 1 by 2 cells and this length (m), its joint half way up.
+fn slab(shape: Shape, n: usize, length: f64) -> Mesh {
+    let right = move |x: [f64; 3]| x[0] == length;
+    let surfaces = [
+        Patch::new("joint", &|x| x[2] == 0.5),
+        Patch::new("side left", &|x| x[0] == 0.0),
+        Patch::new("side right", &right),
+        Patch::new("side bottom", &|x| x[2] == 0.0),
+        Patch::new("side top", &|x| x[2] == 1.0),
+        Patch::new("side front", &|x| x[1] == 0.0),
+        Patch::new("side back", &|x| x[1] == 1.0),
+    ];
+    block(shape, ([n, 1, 2], [length, 1.0, 1.0]), &surfaces, |x| x)
+}
+
+fn linear() -> Closure {
+    Closure::new(APERTURE, NORMAL_STIFFNESS, ClosureKind::Linear)
+}
+
+fn problem(mesh: &Mesh, closure: Closure, schedule: Schedule) -> Problem {
+    let rock = Rock {
+        young_modulus: 1e7,
+        poisson_ratio: 0.0,
+        density: 0.0,
+    };
+    let side = |name: &str| mesh.boundaries.iter().position(|side| side.name == name);
+    let held = |name: &str, support: Support| Condition {
+        boundary: side(name).expect("a side"),
+        load: None,
+        support: Some(support),
+    };
+    Problem {
+        fractures: vec![Fracture {
+            law: FractureLaw::elastic(closure, NORMAL_STIFFNESS),
+            fluid_pressure: 0.0,
+        }],
+        conditions: vec![
+            held("side bottom", Support::Displacement([Some(0.0); 3])),
+            held("side front", Support::Symmetry),
+            held("side back", Support::Symmetry),
+        ],
+        schedule,
+        ..Problem::of_rock(mesh.clone(), rock)
+    }
+}
+
+fn times(end: f64, count: usize) -> Schedule {
+    let step = |index: usize| Step {
+        load: Load {
+            time: end * (index + 1) as f64 / count as f64,
+            factors: vec![1.0],
+        },
+        phase: None,
+    };
+    Schedule {
+        steps: (0..count).map(step).collect(),
+        is_timed: true,
+        sudden: vec![1.0],
+        ..Schedule::proportional(vec![1.0])
+    }
+}
+
+/// A path of load steps.
+struct Path {
+    records: Vec<StepRecord>,
+    state: FlowState,
+    walls: State,
+}
+
+fn solved(problem: &Problem, flow: &Flow) -> Path {
+    let discretisation = Discretisation::of(problem).expect("held");
+    let mut system = System::assemble(problem, discretisation);
+    system.couple(flow).expect("sound");
+    let settings = NewtonSettings {
+        time: 1.0,
+        ..NewtonSettings::default()
+    };
+    let mut newton = Newton::new(&system, settings).expect("analysis");
+    let mut walls = system.initial_state();
+    let steps = problem.schedule.steps.iter();
+    let records = steps.map(|step| {
+        let record = newton.solve_step(&system, &mut walls, &step.load, unobserved);
+        assert!(record.converged(), "{record:#?}");
+        record
+    });
+    let records = records.collect();
+    let coupling = system.coupling().expect("coupled");
+    let fluid = walls.fluid.as_ref().expect("a fluid");
+    let state = coupling.state(fluid, &walls.load);
+    Path {
+        records,
+        state,
+        walls,
+    }
+}
+
+fn ends(mesh: &Mesh, left: f64, right: f64) -> Vec<FlowCondition> {
+    vec![
+        on_side(mesh, "side left", pressure(left)),
+        on_side(mesh, "side right", pressure(right)),
+    ]
+}
+
+/// With a linear law `b^4` is linear: `q = K_n (b_1^4 - b_2^4) / (48 mu L)`, of second order in the
+/// size of the cells, and better where jumps are of second order.
+#[test]
+fn a_steady_flow_opens_its_joint() {
+    for shape in SHAPES {
+        let errors = [8, 16].map(|n| {
+            let mesh = slab(shape, n, 2.0);
+            let problem = problem(&mesh, linear(), Schedule::proportional(vec![1.0]));
+            let flow = flow(&mesh, ends(&mesh, 9e5, 0.0));
+            let path = solved(&problem, &flow);
+            assert!(path.records[0].iterations.len() <= 6, "{shape:?}");
+            assert!(path.state.balance.mass_error <= 1e-10, "{shape:?}");
+            (path.state.conditions[0].rate / 1.253_344e-7 - 1.0).abs()
+        });
+        assert!(errors[1] < 1.5e-3, "{shape:?} {errors:?}");
+        let is_second_order = (3.5..4.5).contains(&(errors[0] / errors[1]));
+        assert!(is_second_order || errors[1] < 1e-6, "{shape:?} {errors:?}");
+    }
+}
+
+/// The similarity solution of `b_t = (b^3 K_n b_x)_x / (12 mu)` (Wijesinghe 1986): what has entered
+/// after 100 s, of first order in the time step where that decides.
+#[test]
+fn a_joint_fills_as_the_similarity_solution_says() {
+    for shape in [Shape::Tet4, Shape::Hex8, Shape::Prism6] {
+        let mesh = slab(shape, 100, 25.0);
+        let problem = problem(&mesh, linear(), times(100.0, 20));
+        let flow = flow(&mesh, ends(&mesh, 9e5, 0.0)[..1].to_vec());
+        let path = solved(&problem, &flow);
+        is_close(path.state.entered[0], 1.868_300e-5, 5e-3);
+        for record in &path.records {
+            assert!(
+                record.substeps.iter().all(|count| *count <= 6),
+                "{record:#?}"
+            );
+        }
+        assert!(path.state.balance.mass_error <= 1e-10, "{shape:?}");
+    }
+}
+
+/// A fluid that neither gives way nor leaves carries the whole load: no effective stress, no
+/// motion, the same pressure at every node.
+#[test]
+fn a_closed_joint_hands_its_load_to_the_fluid() {
+    for shape in SHAPES {
+        let mesh = slab(shape, 4, 2.0);
+        let mut problem = problem(&mesh, linear(), times(1e-6, 1));
+        let top = mesh
+            .boundaries
+            .iter()
+            .position(|side| side.name == "side top");
+        problem.conditions.push(Condition {
+            boundary: top.expect("a side"),
+            load: Some(SurfaceLoad::Pressure(1e6)),
+            support: None,
+        });
+        let path = solved(&problem, &flow(&mesh, Vec::new()));
+        for pressure in &path.state.pressures {
+            is_close(*pressure, 1e6, 1e-6);
+        }
+        for point in &path.walls.facet_points {
+            is_close(point.joint.separation.aperture, APERTURE, 1e-9);
+        }
+    }
+}
+
+/// A cube of 10 m with a joint that carries 10 MPa beside water of 10 MPa, of which 15 MPa come in
+/// at one end; from free to stiff joints, from undrained to drained steps and to steady flow.
+#[test]
+fn a_logarithmic_joint_opens_in_one_increment() {
+    let side = |x: [f64; 3], axis: usize, at: f64| x[axis] == at;
+    let right = |x: [f64; 3]| side(x, 0, 10.0);
+    let surfaces = [
+        Patch::new("joint", &|x| x[2] == 5.0),
+        Patch::new("side left", &|x| x[0] == 0.0),
+        Patch::new("side right", &right),
+        Patch::new("side bottom", &|x| x[2] == 0.0),
+        Patch::new("side top", &|x| x[2] == 10.0),
+        Patch::new("side front", &|x| x[1] == 0.0),
+        Patch::new("side back", &|x| x[1] == 10.0),
+    ];
+    let mesh = block(Shape::Hex8, ([6; 3], [10.0; 3]), &surfaces, |x| x);
+    for stiffness in [1e10, 1e11, 1e13] {
+        let kind = ClosureKind::Logarithmic { cutoff: None };
+        let closure = Closure::new(1e-4, stiffness, kind);
+        let law = FractureLaw::elastic(closure, stiffness);
+        let walls = law
+            .under_initial_stress(-10e6 * DVec3::Z, DVec3::Z)
+            .separation;
+        let slope = closure.at(walls).tangent * walls.aperture.powi(3) / 12e-3;
+        for ratio in [None, Some(1e-9), Some(1e-3), Some(1.0), Some(1e9)] {
+            let schedule = match ratio {
+                None => Schedule::proportional(vec![1.0]),
+                Some(ratio) => times(ratio * 100.0 / slope, 1),
+            };
+            let record = opened(&mesh, law, schedule);
+            let count = record.iterations.len();
+            assert!(
+                record.converged() && count <= 8,
+                "{stiffness:e} {ratio:?} {record:#?}"
+            );
+            assert_eq!(record.substeps, [count], "{stiffness:e} {ratio:?}");
+            let linear = record.linear_iterations();
+            assert!(linear <= 12 * count, "{stiffness:e} {ratio:?} {linear}");
+        }
+    }
+}
+
+fn opened(mesh: &Mesh, law: FractureLaw, schedule: Schedule) -> StepRecord {
+    let conditions = (0..mesh.boundaries.len()).map(|boundary| Condition {
+        boundary,
+        load: None,
+        support: Some(Support::Symmetry),
+    });
+    let mut initial_stress = InitialStress::default();
+    initial_stress.components[2].value = -20e6;
+    let rock = Rock {
+        young_modulus: 25e9,
+        poisson_ratio: 0.25,
+        density: 0.0,
+    };
+    let takes_time = schedule.is_timed;
+    let problem = Problem {
+        fractures: vec![Fracture {
+            law,
+            fluid_pressure: 0.0,
+        }],
+        conditions: conditions.collect(),
+        schedule,
+        initial_stress: Some(initial_stress),
+        ..Problem::of_rock(mesh.clone(), rock)
+    };
+    let mut conditions = ends(mesh, 15e6, 10e6);
+    if takes_time {
+        conditions.truncate(1);
+    }
+    let mut flow = flow(mesh, conditions);
+    flow.initial_pressure.value = 10e6;
+    solved(&problem, &flow).records.remove(0)
+}
+
+/// What the solver makes of a problem does not depend on the threads, to the last bit.
+#[test]
+fn threads_change_no_bit_of_a_coupled_flow() {
+    let mesh = slab(Shape::Tet4, 12, 2.0);
+    let problem = problem(&mesh, linear(), times(10.0, 2));
+    let flow = flow(&mesh, ends(&mesh, 9e5, 0.0));
+    let [one, three] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let path = pool
+            .build()
+            .expect("threads")
+            .install(|| solved(&problem, &flow));
+        (path.state, path.walls.unknowns)
+    });
+    assert!(one == three);
+}

@@ -1,0 +1,130 @@
+//! Flow that follows the walls of fractures, beside closed forms and mechanics alone.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::harness::{Workshop, files, kluft, summary};
+
+fn is_close(found: f64, expected: f64, tolerance: f64) {
+    let error = (found - expected).abs();
+    assert!(error <= tolerance * expected.abs(), "{found} {expected}");
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+/// What has entered through the only source at the end of the last load step (m^3).
+fn entered(folder: &Path) -> f64 {
+    let text = fs::read_to_string(folder.join("sources.csv")).expect("sources.csv");
+    let last = text
+        .lines()
+        .last()
+        .and_then(|line| line.split(',').next_back());
+    last.and_then(|cell| cell.parse().ok()).expect("a number")
+}
+
+/// The similarity solution of a joint that fills (Wijesinghe 1986), step by step as given and as
+/// the program divides the steps.
+#[test]
+fn a_joint_that_fills_takes_up_what_the_closed_form_says() {
+    let workshop = Workshop::new("filling-joint", &[]);
+    let out = workshop.solve("out", &[]);
+    is_close(entered(&out), 1.868_300e-5, 3e-3);
+    let said = summary(&out);
+    let steps = said["steps"].as_array().expect("steps");
+    for step in steps {
+        assert!(number(&step["flow"]["mass_error"]) <= 1e-10, "{step}");
+    }
+    let kept = number(&steps[9]["flow"]["stored"]) / number(&steps[9]["flow"]["inflow"]);
+    is_close(kept, 1.0, 1e-9);
+    let coarse = Workshop::new(
+        "filling-joint",
+        &[("[load]", "[solver]\ntime_accuracy = 1\n\n[load]")],
+    );
+    let coarse = coarse.solve("out", &[]);
+    let error = |folder: &Path| (entered(folder) / 1.868_300e-5 - 1.0).abs();
+    assert!(
+        error(&coarse) > 2.0 * error(&out),
+        "{} {}",
+        error(&coarse),
+        error(&out)
+    );
+}
+
+#[test]
+fn a_filling_joint_is_the_same_on_any_threads() {
+    let short = (
+        "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]",
+        "times = [10, 20, 30]",
+    );
+    let workshop = Workshop::new("filling-joint", &[short]);
+    let one = workshop.solve("one", &["--threads", "1"]);
+    let two = workshop.solve("two", &["--threads", "2"]);
+    let (mut ones, mut twos) = (files(&one), files(&two));
+    for name in ["summary.json", "resume.bin"] {
+        assert!(
+            ones.remove(name).is_some() && twos.remove(name).is_some(),
+            "{name}"
+        );
+    }
+    assert_eq!(ones, twos);
+}
+
+/// A pressure given all over a crack in contact, which slides against friction, does to it what the
+/// same pressure does without a fluid.
+#[test]
+fn friction_slips_by_the_pressure_of_the_fluid() {
+    let slip = |name: &str, edits: &[(&str, &str)]| {
+        let coarse = [
+            ("parameters = { h = 0.02 }", "parameters = { h = 0.16 }"),
+            ("order = 2", "order = 1"),
+        ];
+        let edits: Vec<_> = coarse.iter().chain(edits).copied().collect();
+        let workshop = Workshop::new("inclined-crack", &edits);
+        let said = summary(&workshop.solve(name, &[]));
+        let crack = &said["fractures"]["crack"];
+        [&crack["slip_max"], &crack["normal_traction"]["mean"]].map(number)
+    };
+    let angle = "friction_angle = 30.0";
+    let given = slip(
+        "given",
+        &[(angle, "friction_angle = 30.0\nfluid_pressure = 5e6")],
+    );
+    let flowing = [
+        (
+            angle,
+            "friction_angle = 30.0\nfluid_pressure = 5e6\nresidual_hydraulic_aperture = 1e-6",
+        ),
+        ("[rock.rock]", "[fluid]\nviscosity = 1e-3\n\n[rock.rock]"),
+    ];
+    let flowing = slip("flowing", &flowing);
+    for (flowing, given) in flowing.into_iter().zip(given) {
+        is_close(flowing, given, 1e-8);
+    }
+}
+
+#[test]
+fn contact_that_leaves_nothing_open_is_refused() {
+    let fluid = ("[rock.rock]", "[fluid]\nviscosity = 1e-3\n\n[rock.rock]");
+    let pressed = (
+        "friction_angle = 30.0",
+        "friction_angle = 30.0\nfluid_pressure = 5e6",
+    );
+    let workshop = Workshop::new(
+        "inclined-crack",
+        &[
+            ("parameters = { h = 0.02 }", "parameters = { h = 0.16 }"),
+            fluid,
+            pressed,
+        ],
+    );
+    let scene = workshop.scene();
+    let run = kluft(&["run".as_ref(), scene.as_os_str()]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    for said in ["fracture `crack`", "residual_hydraulic_aperture"] {
+        assert!(run.err.contains(said), "{said}: {}", run.err);
+    }
+}
