@@ -19,6 +19,8 @@
 //! | `nodal` | conditions as they act on nodes |
 //! | `topology` | all of a flow that stays whatever the apertures |
 //! | `networks` | what hangs together hydraulically, and what has no steady state |
+//! | `isolated` | networks that nothing drives |
+//! | `permeability` | how the body conducts as a whole |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
 //! | `walls` | the push of the fluid on the walls of fractures |
@@ -28,9 +30,11 @@ mod balance;
 mod conductance;
 mod edges;
 mod fields;
+mod isolated;
 mod networks;
 mod nodal;
 mod numbering;
+mod permeability;
 mod places;
 mod solve;
 mod steady;
@@ -41,6 +45,7 @@ mod wells;
 pub use balance::{ConditionFlow, FlowBalance};
 pub use fields::FlowFields;
 pub use networks::{FlowNetwork, NO_PRESSURE};
+pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTensor};
 pub use solve::FlowState;
 pub use steady::FlowSystem;
 

@@ -1,6 +1,7 @@
 //! Flow against closed forms and in words of its defects, on meshes of all shapes.
 
 mod closed_forms;
+mod permeability;
 mod push;
 mod refusals;
 
@@ -56,6 +57,7 @@ fn flow(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
             density: 0.0,
         },
         conduits: vec![smooth(); mesh.fractures.len()],
+        inactive: Vec::new(),
         conditions,
         gravity: DVec3::ZERO,
         gravity_case: 0,
