@@ -12,8 +12,8 @@ use kluft_network::{
 use super::keys::{read_orientation, read_seed, read_sides, read_text};
 use super::passages::{Passages, passages};
 use super::sets::{Set, read_set};
-use kluft_scene::check_conditions;
 use kluft_scene::reader::{Section, Source};
+use kluft_scene::{FluidUse, check_conditions};
 
 /// What the command line says.
 pub(super) struct Overrides {
@@ -29,6 +29,8 @@ pub(super) struct Input {
     pub(super) sizes: CellSizes,
     pub(super) sets: Vec<Set>,
     pub(super) given: Vec<InputFracture>,
+    /// Whether a fluid flows, and in what rock.
+    pub(super) fluid: FluidUse,
     /// Sections for the scene, as the input has them.
     pub(super) passages: Passages,
     /// What was assumed because nobody said it, one line each.
@@ -86,6 +88,7 @@ impl Input {
             sizes: sizes(h, None, None, overrides),
             sets,
             given,
+            fluid: FluidUse::None,
             passages: Passages::default(),
             assumptions,
         })
@@ -200,6 +203,7 @@ fn read_description(
         sizes: sizes?,
         sets,
         given,
+        fluid: setting.fluid,
         passages: passages(root),
         assumptions: Vec::new(),
     })

@@ -1,5 +1,6 @@
 //! From a list of fractures or a description of random sets to a geometry and a scene.
 
+mod apertures;
 mod input;
 mod keys;
 mod passages;
@@ -58,6 +59,7 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
         keep_small: options.keep_small,
     };
     let input = Input::read(file, &overrides)?;
+    apertures::check_grouping(&input.sets, options.grouping)?;
     let name = file.file_name().unwrap_or_default().display();
     report.entry("network", &format!("{name}  {}", input.title));
     let network = Network::build(input.domain, input.sizes, input.given.clone())?;

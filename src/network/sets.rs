@@ -4,10 +4,11 @@ use std::path::Path;
 
 use kluft_mesh::Defect;
 use kluft_network::{
-    Amount, Domain, DrawnFracture, Fisher, FractureShape, InputFracture, SizeLaw, StochasticSet,
-    check_name, read_list,
+    Amount, ApertureLaw, Domain, DrawnFracture, Fisher, FractureShape, InputFracture, SizeLaw,
+    StochasticSet, check_name, read_list,
 };
 
+use super::apertures::read_aperture_law;
 use super::keys::{read_orientation, read_seed, read_sides, read_text};
 use super::passages::{Passage, passage};
 use kluft_scene::reader::{Section, Source};
@@ -18,6 +19,8 @@ pub(super) struct Set {
     pub(super) name: String,
     /// Its material as keys and values; none if the input has no word on it.
     pub(super) material: Option<Passage>,
+    /// How wide its fractures are for a fluid, by their size.
+    pub(super) aperture_law: Option<ApertureLaw>,
     /// The random part of it, as asked and as drawn.
     pub(super) drawn: Option<(StochasticSet, Vec<DrawnFracture>)>,
 }
@@ -28,6 +31,7 @@ impl Set {
         Self {
             name: name.to_owned(),
             material: None,
+            aperture_law: None,
             drawn: None,
         }
     }
@@ -47,7 +51,10 @@ pub(super) fn read_set(
     if let Err((problem, remedy)) = check_name(&name) {
         source.report(&section.at, problem, remedy);
     }
-    read_fracture(&section, setting);
+    let aperture_law = read_aperture_law(&section, setting);
+    if !section.has("hydraulic_aperture_law") {
+        read_fracture(&section, setting);
+    }
     let list = section.text("list").map(|list| folder.join(list));
     let is_random = ["p32", "count", "orientation", "size"]
         .into_iter()
@@ -89,6 +96,7 @@ pub(super) fn read_set(
     let set = Set {
         name,
         material: Some(material),
+        aperture_law,
         drawn,
     };
     Ok(Some((set, given)))

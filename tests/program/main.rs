@@ -16,6 +16,7 @@ mod machine;
 mod manners;
 mod mesh_once;
 mod network;
+mod network_flow;
 mod network_seeds;
 mod one_answer;
 mod pressed_joints;

@@ -59,6 +59,7 @@ pub(crate) fn bind_flow(
     Ok(Some(Flow {
         fluid: fluid.value,
         conduits,
+        inactive: Vec::new(),
         conditions,
         gravity: scene.body.gravity,
         gravity_case: cases.gravity,

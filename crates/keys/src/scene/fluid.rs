@@ -46,6 +46,20 @@ pub static FLUID: KeySection = KeySection {
             example: "1000",
             says: "Mass per volume",
         },
+        Key {
+            name: "isolated",
+            kind: Kind::Choice("treatment of isolated networks", &["refuse", "inactive"]),
+            need: Need::Default("\"refuse\""),
+            example: "\"inactive\"",
+            says: "Networks of fractures that no pressure and no rate acts on are refused, or left out of the flow",
+        },
+        Key {
+            name: "equivalent_permeability",
+            kind: Kind::Flag,
+            need: Need::Default("false"),
+            example: "true",
+            says: "Whether the permeability tensor of the whole body is computed, by linear pressures on all of its outer surface; in rigid rock",
+        },
     ],
     also: None,
 };
