@@ -20,6 +20,7 @@ pub(super) struct Overrides {
     pub(super) domain: Option<Domain>,
     pub(super) h: Option<f64>,
     pub(super) keep_small: bool,
+    pub(super) hydraulic_aperture: Option<f64>,
 }
 
 /// What a network is made of.
@@ -47,6 +48,11 @@ impl Input {
         )?;
         match file.extension().and_then(|ending| ending.to_str()) {
             Some("csv") => Self::from_list(&text, &name, overrides),
+            Some("toml") if overrides.hydraulic_aperture.is_some() => Err(vec![Defect::new(
+                name,
+                "--hydraulic-aperture is for lists, and this is a description",
+                "write [fluid] and hydraulic_aperture under [fracture_set.NAME]",
+            )]),
             Some("toml") => Self::from_description(&text, &name, file, overrides),
             _ => Err(vec![Defect::new(
                 name,
@@ -79,17 +85,24 @@ impl Input {
         let mut sets: Vec<Set> = Vec::new();
         for fracture in &given {
             if sets.iter().all(|set| set.name != fracture.set) {
-                sets.push(Set::listed(&fracture.set));
+                sets.push(Set::listed(&fracture.set, overrides.hydraulic_aperture));
             }
         }
+        let is_wet = overrides.hydraulic_aperture.is_some();
         Ok(Self {
             title: "Fracture network".into(),
             domain,
             sizes: sizes(h, None, None, overrides),
             sets,
             given,
-            fluid: FluidUse::None,
-            passages: Passages::default(),
+            fluid: match is_wet {
+                true => FluidUse::InRigidRock,
+                false => FluidUse::None,
+            },
+            passages: match is_wet {
+                true => Passages::of_water(),
+                false => Passages::default(),
+            },
             assumptions,
         })
     }

@@ -12,6 +12,12 @@ pub(super) type Passage = Vec<(String, String)>;
 pub(super) struct Passages(pub(super) Vec<(String, Passage)>);
 
 impl Passages {
+    /// Water, and nothing else.
+    pub(super) fn of_water() -> Self {
+        let viscosity = ("viscosity".to_owned(), "1e-3".to_owned());
+        Self(vec![("[fluid]".to_owned(), vec![viscosity])])
+    }
+
     /// Whether there is one for a key with another key in it.
     pub(super) fn says(&self, key: &str, inner: &str) -> bool {
         let mut own = self.0.iter().filter(|(head, _)| is_for(head, key));

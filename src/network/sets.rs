@@ -26,11 +26,13 @@ pub(super) struct Set {
 }
 
 impl Set {
-    /// A set of which nothing is known but its fractures.
-    pub(super) fn listed(name: &str) -> Self {
+    /// A set of which nothing is known but its fractures, and how wide they are for water (m) if
+    /// any flows.
+    pub(super) fn listed(name: &str, hydraulic_aperture: Option<f64>) -> Self {
+        let entry = |width: f64| vec![("hydraulic_aperture".to_owned(), format!("{width:?}"))];
         Self {
             name: name.to_owned(),
-            material: None,
+            material: hydraulic_aperture.map(entry),
             aperture_law: None,
             drawn: None,
         }

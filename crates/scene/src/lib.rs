@@ -24,12 +24,13 @@ mod remedies;
 mod roles;
 mod scene;
 mod setting;
+mod sources;
 mod surfaces;
 mod warning;
 
 pub use bind::{Binding, bind};
 pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
-pub use fluid::SourceEntry;
+pub use fluid::{SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
 pub use join::{JoinedDraft, join};

@@ -8,6 +8,7 @@ const OVERRIDES: Overrides = Overrides {
     domain: None,
     h: None,
     keep_small: false,
+    hydraulic_aperture: None,
 };
 
 /// Every key but those that exclude others.
