@@ -298,8 +298,19 @@ fn the_star_needs_no_cells() {
         assert_eq!(run.code, Some(2));
         run.err
     };
-    let said = refused(&[("parameters = { h = 0.2 }", "dimension = 2\nrefine = 1")]);
-    assert!(said.contains("`refine` of [mesh] needs cells"), "{said}");
+    let said = refused(&[("parameters = { h = 0.2 }", "dimension = 2\nweld = true")]);
+    assert!(said.contains("`weld` of [mesh] needs cells"), "{said}");
+    let finer = (
+        "parameters = { h = 0.2 }",
+        "parameters = { h = 0.4 }\ndimension = 2\nrefine = 2",
+    );
+    let out = Workshop::new("flow-star", &[finer]).solve("finer", &[]);
+    crate::flow::check_star(&out);
+    assert!(
+        summary(&out)["decisions"]
+            .to_string()
+            .contains("each facet divided into 4, 2 times")
+    );
     let said = refused(&[
         alone,
         (

@@ -49,8 +49,26 @@ pub fn surface_mesh(scene: &Scene, draft: Draft) -> Result<SurfaceMesh, Vec<Defe
     }
     let text = "the mesh holds surfaces alone: flow in rigid rock needs no cells";
     roles.decisions.insert(0, text.to_owned());
+    let draft = refined(scene, draft, &mut roles)?;
     let mesh = Mesh::of_surfaces(draft, &roles.of_group).map_err(in_terms_of_scene)?;
     Ok(SurfaceMesh { mesh, roles })
+}
+
+/// The draft with its facets divided as often as the scene wants; it is checked before, so that
+/// defects name its own facets and not their parts.
+fn refined(scene: &Scene, mut draft: Draft, roles: &mut Roles) -> Result<Draft, Vec<Defect>> {
+    if scene.refine == 0 {
+        return Ok(draft);
+    }
+    Mesh::of_surfaces(draft.clone(), &roles.of_group).map_err(in_terms_of_scene)?;
+    let before = draft.facets.elements.len();
+    draft.refine(scene.refine)?;
+    let after = draft.facets.elements.len();
+    roles.decisions.push(format!(
+        "each facet divided into 4, {} times: {before} -> {after} facets",
+        scene.refine
+    ));
+    Ok(draft)
 }
 
 /// What a scene asks for that needs cells.
@@ -61,9 +79,6 @@ fn unfit(scene: &Scene, draft: &Draft) -> Vec<Defect> {
         let remedy = "remove it, or mesh the rock as well (dimension = 3; gmsh -3)";
         defects.push(Defect::new(place, problem, remedy));
     };
-    if scene.refine > 0 {
-        refuse(&draft.source, "`refine` of [mesh]");
-    }
     if scene.weld {
         refuse(&draft.source, "`weld` of [mesh]");
     }

@@ -57,6 +57,22 @@ fn surfaces_keep_what_cells_would_tell_of_the_outside() {
     }
 }
 
+/// Facets divided twice: sixteen times as many, the same areas, and nodes still shared.
+#[test]
+fn surfaces_can_be_refined() {
+    for shape in [Shape::Tet4, Shape::Tet10, Shape::Hex8, Shape::Hex27] {
+        let mut draft = surfaces(shape);
+        let roles = roles(&draft);
+        let before = draft.facets.elements.len();
+        draft.refine(2).expect("few facets");
+        assert_eq!(draft.facets.elements.len(), 16 * before);
+        let mesh = Mesh::of_surfaces(draft, &roles).expect("sound surfaces");
+        let area: f64 = mesh.facet_areas().iter().map(|area| area.length()).sum();
+        assert!((area - 2.0).abs() < 1e-13, "{area}");
+        assert!((mesh.volume().expect("closed") - 2.0).abs() < 1e-13);
+    }
+}
+
 #[test]
 fn an_open_outside_has_no_volume() {
     let draft = surfaces(Shape::Tet4);
