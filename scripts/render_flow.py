@@ -14,7 +14,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 SIZE = (1200, 800)
 VIEW = np.array([0.75, -1.0, 0.55])  # from the body's centre to the camera
-COLOURS = [(0.19, 0.07, 0.23), (0.15, 0.47, 0.71), (0.30, 0.78, 0.66), (0.98, 0.80, 0.30), (0.80, 0.20, 0.12)]
+COLOURS = [(0.27, 0.23, 0.58), (0.20, 0.52, 0.80), (0.30, 0.78, 0.66), (0.98, 0.80, 0.30), (0.80, 0.20, 0.12)]
 IDLE = (0.78, 0.78, 0.76)
 
 
@@ -45,8 +45,8 @@ def actor_of(mapper, colour=None, opacity=1.0):
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     actor.GetProperty().SetOpacity(opacity)
-    actor.GetProperty().SetAmbient(0.35)
-    actor.GetProperty().SetDiffuse(0.65)
+    actor.GetProperty().SetAmbient(0.5)
+    actor.GetProperty().SetDiffuse(0.5)
     if colour:
         actor.GetProperty().SetColor(*colour)
     return actor
@@ -123,7 +123,7 @@ def main():
     camera.SetPosition(*(centre + VIEW * grid.GetLength()))
     camera.SetViewUp(0, 0, 1)
     renderer.ResetCamera()
-    camera.Zoom(1.35)
+    camera.Zoom(1.0)
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(8)

@@ -510,3 +510,42 @@ fn a_fracture_may_be_fed_all_over() {
     let found = number(&said["flow"]["fractures"][0]["pressure"]["mean"]);
     assert!((found / expected - 1.0).abs() < 5e-3, "{found} {expected}");
 }
+
+/// `geometries/network-flow` on coarse facets: nothing is lost, and the permeability is symmetric,
+/// positive and in no direction above that of fractures which all go through the block.
+#[test]
+fn a_network_conducts_less_than_through_going_fractures() {
+    let sizes = (
+        "parameters = { h = 1.0, h_fracture = 0.4, h_intersection = 0.3 }",
+        "parameters = { h = 3.0, h_fracture = 1.5, h_intersection = 1.0 }",
+    );
+    let said = summary(&Workshop::new("network-flow", &[sizes]).solve("out", &[]));
+    let flow = &said["steps"][0]["flow"];
+    assert!(
+        number(&flow["inflow"]) > 0.0 && number(&flow["mass_error"]) < 1e-10,
+        "{flow}"
+    );
+    assert!((number(&flow["inflow"]) / number(&flow["outflow"]) - 1.0).abs() < 1e-10);
+    let found = &said["permeability"];
+    assert!(number(&found["asymmetry"]) < 1e-9 && number(&found["mass_error"]) < 1e-9);
+    let quadratic = |tensor: &Value, along: [f64; 3]| -> f64 {
+        let terms = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+        terms
+            .map(|(i, j)| along[i] * along[j] * number(&tensor["components"][i][j]))
+            .sum()
+    };
+    for along in [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 1.0, 0.0],
+        [1.0, -1.0, 1.0],
+        [0.0, 1.0, -2.0],
+    ] {
+        let (own, most) = (
+            quadratic(found, along),
+            quadratic(&found["through_going"], along),
+        );
+        assert!(own > 0.0 && own < most, "{along:?}: {own} {most}");
+    }
+}
