@@ -53,10 +53,7 @@ pub(super) fn read_set(
     if let Err((problem, remedy)) = check_name(&name) {
         source.report(&section.at, problem, remedy);
     }
-    let aperture_law = read_aperture_law(&section, setting);
-    if !section.has("hydraulic_aperture_law") {
-        read_fracture(&section, setting);
-    }
+    let aperture_law = read_fractures_of_set(&section, setting);
     let list = section.text("list").map(|list| folder.join(list));
     let is_random = ["p32", "count", "orientation", "size"]
         .into_iter()
@@ -102,6 +99,15 @@ pub(super) fn read_set(
         drawn,
     };
     Ok(Some((set, given)))
+}
+
+/// Reads what a set says of its fractures, and the law of their apertures if it has one.
+fn read_fractures_of_set(section: &Section<'_, '_>, setting: Setting) -> Option<ApertureLaw> {
+    if section.has("hydraulic_aperture_law") {
+        return read_aperture_law(section, setting);
+    }
+    read_fracture(section, setting);
+    None
 }
 
 /// The drawn fractures that reach the domain, numbered.

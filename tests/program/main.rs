@@ -3,6 +3,7 @@
 mod adapt;
 mod bad_input;
 mod book;
+mod boreholes;
 mod doubled;
 mod doubts;
 mod examples;

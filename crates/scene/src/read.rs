@@ -101,9 +101,7 @@ pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Setting 
         });
     }
     let body = read_body(root, clock);
-    if let Some(section) = root.section("fluid") {
-        read_flow_section(section, &body, setting);
-    }
+    read_flow(root, &body, setting);
     read_sources(source, root, setting);
     root.section("initial_stress").map(read_initial_stress);
     read_solver(root);
@@ -144,9 +142,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     root.section("study");
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
-    let flowing = root.section("fluid");
-    let flowing = flowing.map(|section| read_flow_section(section, &body, setting));
-    let flowing = flowing.unwrap_or_default();
+    let flowing = read_flow(root, &body, setting);
     Some(Scene {
         oracles,
         fluid: flowing.fluid,
@@ -226,10 +222,7 @@ fn read_mesh(
             "write order = 1 (linear) or order = 2 (quadratic)",
         );
     }
-    let dimension = section.number("dimension");
-    if dimension == Some(2.0) && !setting.is_rigid() {
-        refuse_surfaces(&section);
-    }
+    let surfaces_alone = read_dimension(&section, setting);
     let adapt = section.section("adapt").and_then(read_adapt);
     if adapt.is_some() && refine > 0 {
         refuse_both(&section);
@@ -239,16 +232,11 @@ fn read_mesh(
             geometry,
             parameters,
             order: if order == Some(2.0) { 2 } else { 1 },
-            surfaces_alone: dimension == Some(2.0),
+            surfaces_alone,
             adapt,
         }),
         (None, Some(file)) => {
-            let all = ["order", "dimension", "adapt", "parameters"];
-            let is_said = |key: &&'static str| match *key {
-                "parameters" => !parameters.is_empty(),
-                key => section.has(key),
-            };
-            let Some(key) = all.into_iter().find(is_said) else {
+            let Some(key) = idle_beside_file(&section, &parameters) else {
                 section.finish();
                 return Some(MeshSource::File(file));
             };
@@ -276,11 +264,28 @@ fn read_mesh(
     mesh
 }
 
-/// Refuses a mesh without cells where the rock deforms.
-fn refuse_surfaces(section: &Section<'_, '_>) {
-    let problem = "dimension = 2 meshes no rock, and this rock deforms";
-    let remedy = "remove dimension, or leave out young_modulus for flow in rigid rock";
-    section.refuse("dimension", problem.into(), remedy);
+/// The first key that only a geometry has a use for.
+fn idle_beside_file(
+    section: &Section<'_, '_>,
+    parameters: &[(String, f64)],
+) -> Option<&'static str> {
+    let is_said = |key: &&'static str| match *key {
+        "parameters" => !parameters.is_empty(),
+        key => section.has(key),
+    };
+    let all = ["order", "dimension", "adapt", "parameters"];
+    all.into_iter().find(is_said)
+}
+
+/// Whether only surfaces are meshed, which serves no rock that deforms.
+fn read_dimension(section: &Section<'_, '_>, setting: Setting) -> bool {
+    let surfaces_alone = section.number("dimension") == Some(2.0);
+    if surfaces_alone && !setting.is_rigid() {
+        let problem = "dimension = 2 meshes no rock, and this rock deforms";
+        let remedy = "remove dimension, or leave out young_modulus for flow in rigid rock";
+        section.refuse("dimension", problem.into(), remedy);
+    }
+    surfaces_alone
 }
 
 /// Refuses to refine what follows the error.
@@ -333,6 +338,12 @@ struct FlowSection {
     fluid: Option<Named<Fluid>>,
     isolated: Isolated,
     equivalent_permeability: bool,
+}
+
+fn read_flow(root: &Section<'_, '_>, body: &BodyEntry, setting: Setting) -> FlowSection {
+    let section = root.section("fluid");
+    let flowing = section.map(|section| read_flow_section(section, body, setting));
+    flowing.unwrap_or_default()
 }
 
 fn read_flow_section(section: Section<'_, '_>, body: &BodyEntry, setting: Setting) -> FlowSection {

@@ -67,7 +67,7 @@ pub static FLUID: KeySection = KeySection {
 /// A borehole.
 pub static SOURCE: KeySection = KeySection {
     pattern: "[[source]]",
-    says: "A borehole through one fracture or all that it crosses, or a whole fracture, by its rate or its pressure",
+    says: "A borehole through one or more fractures, or a fracture, by its rate or its pressure",
     keys: &[
         Key {
             name: "name",

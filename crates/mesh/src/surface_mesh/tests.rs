@@ -98,13 +98,13 @@ fn cells_have_the_volume_of_the_box() {
     assert!((mesh.volume().expect("cells") - 2.0).abs() < 1e-14);
 }
 
-/// Everything wrong at once is named with its place.
+fn refused(draft: Draft, roles: &[SurfaceRole]) -> String {
+    let defects = Mesh::of_surfaces(draft, roles).expect_err("defects");
+    defects.iter().map(|defect| format!("{defect}\n")).collect()
+}
+
 #[test]
 fn defects_of_surfaces_are_named() {
-    let refused = |draft: Draft, roles: &[SurfaceRole]| -> String {
-        let defects = Mesh::of_surfaces(draft, roles).expect_err("defects");
-        defects.iter().map(|defect| format!("{defect}\n")).collect()
-    };
     let draft = surfaces(Shape::Tet4);
     let mut both = roles(&draft);
     both[2] = SurfaceRole::Fracture;
@@ -138,7 +138,11 @@ fn defects_of_surfaces_are_named() {
         said.contains("share their place") && said.contains("9999"),
         "{said}"
     );
+}
 
+#[test]
+fn facets_that_are_not_a_fractures_own_are_named() {
+    let draft = surfaces(Shape::Tet4);
     let mut twice = draft.clone();
     let own = twice.facets.elements.nodes_of(0).to_vec();
     twice.facets.elements.push(Shape::Tri3, &own);

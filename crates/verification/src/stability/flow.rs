@@ -167,7 +167,16 @@ fn five_spot(n: usize) -> [f64; 2] {
     [at_wall, high - low].map(|found| (found / drop - 1.0).abs())
 }
 
-fn run(effort: Effort) -> Finding {
+/// All cases of the study.
+struct Cases {
+    /// Angles (degrees) with errors of rates and mass.
+    crossings: Vec<(f64, [f64; 2])>,
+    poor: Vec<Facets>,
+    /// Facets along the side with errors at the wall and at the node.
+    wells: Vec<(usize, [f64; 2])>,
+}
+
+fn cases(effort: Effort) -> Cases {
     let (angles, shapes, sizes): (&[f64], &[(f64, f64)], &[usize]) = match effort {
         Effort::Quick => (&[90.0, 1.0], &[(1.0, 0.0), (100.0, 20.0)], &[8, 16]),
         Effort::Full => (
@@ -185,57 +194,87 @@ fn run(effort: Effort) -> Finding {
             &[8, 16, 32, 64, 128],
         ),
     };
-    let crossings: Vec<(f64, [f64; 2])> = angles.iter().map(|&a| (a, crossing(a))).collect();
-    let poor: Vec<Facets> = shapes
-        .iter()
-        .map(|&(aspect, shear)| facets(aspect, shear))
-        .collect();
-    let wells: Vec<(usize, [f64; 2])> = sizes.iter().map(|&n| (n, five_spot(n))).collect();
-    let misses = misses(&crossings, &poor, &wells);
-    let crossed = largest(crossings.iter().map(|(_, errors)| errors[0]));
-    let stretched = largest(poor.iter().map(|case| case.error));
-    let outside = largest(poor.iter().map(|case| case.outside));
-    let walls = largest(wells.iter().map(|(_, errors)| errors[0]));
-    let [first, last] = [wells[0].1[1], wells[wells.len() - 1].1[1]];
-    let widest = largest(poor.iter().map(|case| case.angle));
+    let poor = shapes.iter();
+    Cases {
+        crossings: angles
+            .iter()
+            .map(|&angle| (angle, crossing(angle)))
+            .collect(),
+        poor: poor.map(|&(aspect, shear)| facets(aspect, shear)).collect(),
+        wells: sizes.iter().map(|&n| (n, five_spot(n))).collect(),
+    }
+}
+
+impl Cases {
+    /// What it says of angles and facets, then of boreholes.
+    fn story(&self) -> [String; 2] {
+        let crossed = largest(self.crossings.iter().map(|(_, errors)| errors[0]));
+        let stretched = largest(self.poor.iter().map(|case| case.error));
+        let outside = largest(self.poor.iter().map(|case| case.outside));
+        let widest = largest(self.poor.iter().map(|case| case.angle));
+        let (first, last) = (&self.wells[0], &self.wells[self.wells.len() - 1]);
+        [
+            format!(
+                "Four half planes that meet in a line exchange fluid through it; where they cross \
+                 at a small angle the facets between become long and thin. Rates stay exact, to \
+                 {crossed:.0e}, down to {}°. A channel of facets up to {} times longer than wide, \
+                 with angles up to {widest:.1}°, has its rate to {stretched:.0e}. Obtuse angles let \
+                 some edges drive fluid backwards; `kluft inspect` counts them. They do not spoil \
+                 rates, but a pressure may lie outside of those that are given: in a channel with a \
+                 patch a hundred times narrower at up to {} of the nodes.",
+                self.crossings[self.crossings.len() - 1].0,
+                largest(self.poor.iter().map(|case| case.aspect)),
+                percent(outside)
+            ),
+            format!(
+                "The pressure at the node of a borehole belongs to a radius that shrinks with the \
+                 facets, so that it never converges: in a quarter of the five-spot pattern it is {} \
+                 off with {} facets along the side, and {} with {}. The pressure at the wall, which \
+                 results tell, is {} off at most (boreholes of 0.1 mm, Muskat's formula).",
+                percent(first.1[1]),
+                first.0,
+                percent(last.1[1]),
+                last.0,
+                percent(self.at_walls())
+            ),
+        ]
+    }
+
+    fn at_walls(&self) -> f64 {
+        largest(self.wells.iter().map(|(_, errors)| errors[0]))
+    }
+}
+
+fn run(effort: Effort) -> Finding {
+    let cases = cases(effort);
+    let rates = cases.crossings.iter().map(|(_, errors)| errors[0]);
+    let rates = largest(rates.chain(cases.poor.iter().map(|case| case.error)));
+    let nodes = cases.wells.iter().map(|(_, errors)| percent(errors[1]));
+    let nodes: Vec<String> = nodes.collect();
+    let [of_facets, of_wells] = cases.story();
+    let Cases {
+        crossings,
+        poor,
+        wells,
+    } = &cases;
     Finding::new([
         format!(
             "the pressure of a node in the place of that of a borehole: {} to {} off, by the mesh",
-            percent(first),
-            percent(last)
+            nodes[0],
+            nodes[nodes.len() - 1]
         ),
         format!(
-            "rates to {:.0e}, whatever angles and facets; boreholes to {}",
-            crossed.max(stretched),
-            percent(walls)
+            "rates to {rates:.0e}, whatever angles and facets; boreholes to {}",
+            percent(cases.at_walls())
         ),
     ])
-    .text(format!(
-        "Four half planes that meet in a line exchange fluid through it; where they cross at a small \
-         angle the facets between become long and thin. Rates stay exact, to {crossed:.0e}, down to \
-         {}°. A channel of facets up to 1000 times longer than wide, with angles up to \
-         {widest:.1}°, has its rate to {stretched:.0e}. Obtuse angles let some edges drive fluid \
-         backwards; `kluft inspect` counts them. They do not spoil rates, but a pressure may lie \
-         outside of those that are given: in a channel with a patch a hundred times narrower at up \
-         to {} of the nodes.",
-        angles[angles.len() - 1],
-        percent(outside)
-    ))
-    .charts(charts(&crossings, &wells))
-    .text(format!(
-        "The pressure at the node of a borehole belongs to a radius that shrinks with the facets, so \
-         that it never converges: in a quarter of the five-spot pattern it is {} off with 8 facets \
-         along the side, and {} with {}. The pressure at the wall, which results tell, is {} off at \
-         most (boreholes of 0.1 mm, Muskat's formula).",
-        percent(first),
-        percent(last),
-        sizes[sizes.len() - 1],
-        percent(walls)
-    ))
-    .table(crossing_table(&crossings))
-    .table_in("flow-facets", facet_table(&poor))
-    .table_in("flow-wells", well_table(&wells))
-    .missing(misses)
+    .text(of_facets)
+    .charts(charts(crossings, wells))
+    .text(of_wells)
+    .table(crossing_table(crossings))
+    .table_in("flow-facets", facet_table(poor))
+    .table_in("flow-wells", well_table(wells))
+    .missing(misses(crossings, poor, wells))
 }
 
 fn misses(
