@@ -7,10 +7,10 @@
 //! k_ij = mu / V sum_b x_i(b) Q_b(phi = x_j)
 //! ```
 //!
-//! by the theorem of Gauss, as nothing is lost inside. `Q` is a symmetric operator on pressures of
-//! the outer surface, so that `k` is symmetric but for rounding, and it is never negative (Long et
-//! al. 1982 ask for both; pressure drops between closed sides give them only by chance). Where each
-//! fracture goes through the body, pressure is linear in it and `k` is the tensor of Snow (1969),
+//! by the theorem of Gauss, as nothing is lost inside (linear pressures on the sides: Long et al.
+//! 1982). `Q` is a symmetric operator on pressures of the outer surface, so that `k` is symmetric
+//! but for rounding, and it is never negative. Where each fracture goes through the body, pressure
+//! is linear in it and `k` is the tensor of Snow (1969),
 //!
 //! ```text
 //! k = mu / V sum_f T_f A_f (1 - n n^T),
