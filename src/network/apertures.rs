@@ -1,11 +1,8 @@
 //! Hydraulic apertures by the size of fractures.
 
-use kluft_mesh::Defect;
-use kluft_network::{ApertureLaw, Grouping};
+use kluft_network::ApertureLaw;
 use kluft_scene::reader::Section;
 use kluft_scene::{FluidUse, Setting, read_fracture};
-
-use super::sets::Set;
 
 /// Reads the law of a set, and what else the set says of its fractures.
 pub(super) fn read_aperture_law(
@@ -52,25 +49,4 @@ pub(super) fn read_aperture_law(
         coefficient: coefficient?,
         exponent: exponent?,
     })
-}
-
-/// Fractures of one physical surface have one aperture.
-pub(super) fn check_grouping(sets: &[Set], grouping: Grouping) -> Result<(), Vec<Defect>> {
-    if grouping == Grouping::Fracture {
-        return Ok(());
-    }
-    let with_law = sets.iter().filter(|set| set.aperture_law.is_some());
-    let defects = with_law.map(|set| {
-        Defect::new(
-            format!("[fracture_set.{}]", set.name),
-            "hydraulic_aperture_law needs a physical surface for each fracture, and --group set \
-             gives one to each set",
-            "leave out --group set",
-        )
-    });
-    let defects: Vec<Defect> = defects.collect();
-    match defects.is_empty() {
-        true => Ok(()),
-        false => Err(defects),
-    }
 }

@@ -67,7 +67,7 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
         hydraulic_aperture: options.hydraulic_aperture,
     };
     let input = Input::read(file, &overrides)?;
-    apertures::check_grouping(&input.sets, options.grouping)?;
+    sets::check_grouping(&input.sets, options.grouping)?;
     let name = file.file_name().unwrap_or_default().display();
     report.entry("network", &format!("{name}  {}", input.title));
     let network = Network::build(input.domain, input.sizes, input.given.clone())?;

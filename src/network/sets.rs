@@ -4,8 +4,8 @@ use std::path::Path;
 
 use kluft_mesh::Defect;
 use kluft_network::{
-    Amount, ApertureLaw, Domain, DrawnFracture, Fisher, FractureShape, InputFracture, SizeLaw,
-    StochasticSet, check_name, read_list,
+    Amount, ApertureLaw, Domain, DrawnFracture, Fisher, FractureShape, Grouping, InputFracture,
+    SizeLaw, StochasticSet, check_name, read_list,
 };
 
 use super::apertures::read_aperture_law;
@@ -108,6 +108,27 @@ fn read_fractures_of_set(section: &Section<'_, '_>, setting: Setting) -> Option<
     }
     read_fracture(section, setting);
     None
+}
+
+/// Fractures of one physical surface have one aperture.
+pub(super) fn check_grouping(sets: &[Set], grouping: Grouping) -> Result<(), Vec<Defect>> {
+    if grouping == Grouping::Fracture {
+        return Ok(());
+    }
+    let with_law = sets.iter().filter(|set| set.aperture_law.is_some());
+    let defects = with_law.map(|set| {
+        Defect::new(
+            format!("[fracture_set.{}]", set.name),
+            "hydraulic_aperture_law needs a physical surface for each fracture, and --group set \
+             gives one to each set",
+            "leave out --group set",
+        )
+    });
+    let defects: Vec<Defect> = defects.collect();
+    match defects.is_empty() {
+        true => Ok(()),
+        false => Err(defects),
+    }
 }
 
 /// The drawn fractures that reach the domain, numbered.

@@ -305,7 +305,8 @@ fn the_star_needs_no_cells() {
         "parameters = { h = 0.2 }",
         "parameters = { h = 0.4 }\ndimension = 2\nrefine = 2",
     );
-    let out = Workshop::new("flow-star", &[finer]).solve("finer", &[]);
+    let workshop = Workshop::new("flow-star", &[finer]);
+    let out = workshop.solve("finer", &[]);
     crate::flow::check_star(&out);
     assert!(
         summary(&out)["decisions"]
@@ -399,7 +400,8 @@ fn a_network_conducts_less_than_through_going_fractures() {
         "parameters = { h = 1.0, h_fracture = 0.4, h_intersection = 0.3 }",
         "parameters = { h = 3.0, h_fracture = 1.5, h_intersection = 1.0 }",
     );
-    let said = summary(&Workshop::new("network-flow", &[sizes]).solve("out", &[]));
+    let workshop = Workshop::new("network-flow", &[sizes]);
+    let said = summary(&workshop.solve("out", &[]));
     let flow = &said["steps"][0]["flow"];
     assert!(
         number(&flow["inflow"]) > 0.0 && number(&flow["mass_error"]) < 1e-10,

@@ -16,8 +16,8 @@ use kluft_defect::Defect;
 
 /// A checked, fractured mesh; see the crate documentation for what it promises.
 ///
-/// [`Mesh::build`] is the only way to one, [`Mesh::of_surfaces`] to one without cells, and its data can be read but not written, so that the
-/// promises hold wherever a mesh is met:
+/// [`Mesh::build`] is the only way to one, [`Mesh::of_surfaces`] to one without cells; its data can
+/// be read but not written, so that the promises hold wherever a mesh is met:
 ///
 /// ```compile_fail
 /// fn flatten(mesh: &mut kluft_mesh::Mesh) {

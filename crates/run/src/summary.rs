@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
-use crate::permeability::PermeabilitySummary;
+use crate::permeability_summary::PermeabilitySummary;
 use crate::spread::Spread;
 
 /// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].

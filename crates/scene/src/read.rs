@@ -118,10 +118,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let title = root.text("title").unwrap_or("untitled").to_owned();
     let mesh = read_mesh_section(root, folder, setting);
     match setting.is_rigid() {
-        true => {
-            refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "oracle", "solver"]);
-            refuse_adapted_mesh(root);
-        }
+        true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
     }
     let rocks =
@@ -402,8 +399,9 @@ fn refuse_in_rigid_rock(root: &Section<'_, '_>, keys: &[&'static str]) {
     }
 }
 
-/// Refuses a mesh that is to follow an error which nobody estimates.
-fn refuse_adapted_mesh(root: &Section<'_, '_>) {
+/// The same in a scene, and a mesh that is to follow an error which nobody estimates.
+fn refuse_in_rigid_scene(root: &Section<'_, '_>) {
+    refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "oracle", "solver"]);
     if let Some(mesh) = root.section("mesh").filter(|mesh| mesh.has("adapt")) {
         let problem = "no error of a mesh in rigid rock is estimated: no rock has a young_modulus";
         let remedy = "remove adapt, or add young_modulus to [rock]";
