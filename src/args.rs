@@ -170,6 +170,15 @@ pub struct NetworkArgs {
     /// Leave features that are too small for the mesh as they are
     #[arg(long)]
     keep_small: bool,
+    /// Let water flow in the fractures of a list, all so wide for it, in rigid rock, m; without
+    /// more the scene asks for the permeability of the box
+    #[arg(long, value_name = "M", value_parser = length)]
+    hydraulic_aperture: Option<f64>,
+    /// Run the scene that is made
+    #[arg(long)]
+    run: bool,
+    #[command(flatten)]
+    gmsh: GmshArgs,
     /// Print nothing but errors
     #[arg(long, short, conflicts_with = "verbose")]
     quiet: bool,
@@ -266,6 +275,9 @@ impl From<NetworkArgs> for NetworkOptions {
             domain: args.domain,
             h: args.h,
             keep_small: args.keep_small,
+            hydraulic_aperture: args.hydraulic_aperture,
+            run: args.run,
+            gmsh: args.gmsh.into(),
             verbosity: verbosity(args.quiet, args.verbose),
         }
     }

@@ -34,7 +34,7 @@ pub fn topology(mesh: &Mesh, survey: &Survey, inspection: &mut Inspection) {
         })
         .collect();
     inspection.blocks = survey.blocks.iter().map(|b| block(mesh, b)).collect();
-    inspection.cells = Some(cells(mesh, survey));
+    inspection.cells = (!mesh.cells.is_empty()).then(|| cells(mesh, survey));
     warn(inspection);
 }
 

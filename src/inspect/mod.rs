@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use kluft_io::{GmshOptions, NOT_WRITTEN, write_atomically, write_vtu};
-use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey};
+use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey, outer_surfaces};
 use kluft_solver::{Discretisation, Problem, Workload};
 
 use crate::failure::Failure;
@@ -25,7 +25,8 @@ use crate::stdout::print;
 use crate::threads::{pool, thread_count};
 use kluft_run::{MESH, Output, RunFlow, folder_for, inputs, mesh_file, read_mesh};
 use kluft_scene::{
-    Binding, JoinedDraft, MeshSource, Scene, bind, in_terms_of_scene, join, refine, roles,
+    Binding, JoinedDraft, MeshSource, Scene, SurfaceMesh, bind, in_terms_of_scene, join, refine,
+    roles, surface_mesh,
 };
 
 use findings::{Inspection, MeshCounts};
@@ -123,8 +124,10 @@ fn look(
     let survey = Survey::of(&mesh);
     gather::topology(&mesh, &survey, inspection);
     let mut defects = Vec::new();
-    let grid = grid::of(&mesh, &survey);
-    defects.extend(output.write(GRID, |path| write_vtu(path, grid)).err());
+    if !mesh.cells.is_empty() {
+        let grid = grid::of(&mesh, &survey);
+        defects.extend(output.write(GRID, |path| write_vtu(path, grid)).err());
+    }
     let Some(scene) = scene else {
         cost::predict(&mesh, None, Workload::one_step(&mesh, &[]), inspection);
         return defects;
@@ -149,6 +152,9 @@ fn mesh(
     scene: Option<&Scene>,
     inspection: &mut Inspection,
 ) -> Result<Mesh, Vec<Defect>> {
+    if let Some(scene) = scene.filter(|scene| scene.takes_surfaces(&draft)) {
+        return surfaces(draft, scene, inspection);
+    }
     let mut joined = joined(draft, faces, scene, inspection)?;
     let inner = joined.faces.inner_surfaces(&joined.draft);
     let Some(scene) = scene else {
@@ -165,6 +171,18 @@ fn mesh(
     inspection.mesh = MeshCounts::of(&joined.draft);
     let built = Mesh::build_on(joined.draft, joined.faces, &found.of_group);
     built.map_err(in_terms_of_scene)
+}
+
+/// The mesh of fractures and outer faces alone.
+fn surfaces(draft: Draft, scene: &Scene, inspection: &mut Inspection) -> Result<Mesh, Vec<Defect>> {
+    let groups = draft.groups.iter().zip(outer_surfaces(&draft));
+    let inner: Vec<bool> = groups
+        .map(|(group, outer)| group.dimension == 2 && !outer)
+        .collect();
+    let SurfaceMesh { mesh, roles } = surface_mesh(scene, draft.clone())?;
+    inspection.warnings.extend(roles.warnings);
+    inspection.groups = groups::list(&draft, &inner, Some(&roles.of_group), Some(scene));
+    Ok(mesh)
 }
 
 /// Tells where outer faces lie on one another, and joins what the scene wants joined. A mesh alone

@@ -12,14 +12,15 @@ use kluft_network::{
 use super::keys::{read_orientation, read_seed, read_sides, read_text};
 use super::passages::{Passages, passages};
 use super::sets::{Set, read_set};
-use kluft_scene::check_conditions;
 use kluft_scene::reader::{Section, Source};
+use kluft_scene::{FluidUse, check_conditions};
 
 /// What the command line says.
 pub(super) struct Overrides {
     pub(super) domain: Option<Domain>,
     pub(super) h: Option<f64>,
     pub(super) keep_small: bool,
+    pub(super) hydraulic_aperture: Option<f64>,
 }
 
 /// What a network is made of.
@@ -29,6 +30,8 @@ pub(super) struct Input {
     pub(super) sizes: CellSizes,
     pub(super) sets: Vec<Set>,
     pub(super) given: Vec<InputFracture>,
+    /// Whether a fluid flows, and in what rock.
+    pub(super) fluid: FluidUse,
     /// Sections for the scene, as the input has them.
     pub(super) passages: Passages,
     /// What was assumed because nobody said it, one line each.
@@ -45,6 +48,11 @@ impl Input {
         )?;
         match file.extension().and_then(|ending| ending.to_str()) {
             Some("csv") => Self::from_list(&text, &name, overrides),
+            Some("toml") if overrides.hydraulic_aperture.is_some() => Err(vec![Defect::new(
+                name,
+                "--hydraulic-aperture is for lists, and this is a description",
+                "write [fluid] and hydraulic_aperture under [fracture_set.NAME]",
+            )]),
             Some("toml") => Self::from_description(&text, &name, file, overrides),
             _ => Err(vec![Defect::new(
                 name,
@@ -77,16 +85,24 @@ impl Input {
         let mut sets: Vec<Set> = Vec::new();
         for fracture in &given {
             if sets.iter().all(|set| set.name != fracture.set) {
-                sets.push(Set::listed(&fracture.set));
+                sets.push(Set::listed(&fracture.set, overrides.hydraulic_aperture));
             }
         }
+        let is_wet = overrides.hydraulic_aperture.is_some();
         Ok(Self {
             title: "Fracture network".into(),
             domain,
             sizes: sizes(h, None, None, overrides),
             sets,
             given,
-            passages: Passages::default(),
+            fluid: match is_wet {
+                true => FluidUse::InRigidRock,
+                false => FluidUse::None,
+            },
+            passages: match is_wet {
+                true => Passages::of_water(),
+                false => Passages::default(),
+            },
             assumptions,
         })
     }
@@ -200,6 +216,7 @@ fn read_description(
         sizes: sizes?,
         sets,
         given,
+        fluid: setting.fluid,
         passages: passages(root),
         assumptions: Vec::new(),
     })

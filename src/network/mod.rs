@@ -1,5 +1,6 @@
 //! From a list of fractures or a description of random sets to a geometry and a scene.
 
+mod apertures;
 mod input;
 mod keys;
 mod passages;
@@ -10,12 +11,13 @@ mod sets;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use kluft_io::{ClaimedFolder, sync_folder, write_atomically};
+use kluft_io::{ClaimedFolder, GmshOptions, sync_folder, write_atomically};
 use kluft_mesh::Defect;
 use kluft_network::{Domain, Grouping, Network, write_geo};
 
 use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
+use crate::run::{RunOptions, run};
 use input::{Input, Overrides};
 use record::NetworkRecord;
 use scene::MADE;
@@ -41,6 +43,12 @@ pub struct NetworkOptions {
     pub h: Option<f64>,
     /// Whether features too small for the mesh stay as they are.
     pub keep_small: bool,
+    /// How wide the fractures of a list are for water (m), if any is to flow in them.
+    pub hydraulic_aperture: Option<f64>,
+    /// Whether the scene is run as well.
+    pub run: bool,
+    /// How a run starts gmsh, and what a geometry may do.
+    pub gmsh: GmshOptions,
     /// How much to tell.
     pub verbosity: Verbosity,
 }
@@ -56,8 +64,10 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
         domain: options.domain,
         h: options.h,
         keep_small: options.keep_small,
+        hydraulic_aperture: options.hydraulic_aperture,
     };
     let input = Input::read(file, &overrides)?;
+    sets::check_grouping(&input.sets, options.grouping)?;
     let name = file.file_name().unwrap_or_default().display();
     report.entry("network", &format!("{name}  {}", input.title));
     let network = Network::build(input.domain, input.sizes, input.given.clone())?;
@@ -72,8 +82,19 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
     }
     write(file, options, &input, &network, &record)?;
     let scene = options.out.join(SCENE);
-    report.entry("next", &format!("kluft run {}", scene.display()));
-    Ok(())
+    if !options.run {
+        report.entry("next", &format!("kluft run {}", scene.display()));
+        return Ok(());
+    }
+    let running = RunOptions {
+        out: None,
+        threads: None,
+        verbosity: options.verbosity,
+        resume: false,
+        is_tied: false,
+        gmsh: options.gmsh.clone(),
+    };
+    run(&scene, &running)
 }
 
 fn write(

@@ -12,12 +12,26 @@ pub(super) type Passage = Vec<(String, String)>;
 pub(super) struct Passages(pub(super) Vec<(String, Passage)>);
 
 impl Passages {
+    /// Water, and nothing else.
+    pub(super) fn of_water() -> Self {
+        let viscosity = ("viscosity".to_owned(), "1e-3".to_owned());
+        Self(vec![("[fluid]".to_owned(), vec![viscosity])])
+    }
+
+    /// Whether there is one for a key with another key in it.
+    pub(super) fn says(&self, key: &str, inner: &str) -> bool {
+        let mut own = self.0.iter().filter(|(head, _)| is_for(head, key));
+        own.any(|(_, passage)| passage.iter().any(|(name, _)| name == inner))
+    }
+
     /// Whether there is one for a key.
     pub(super) fn has(&self, key: &str) -> bool {
-        self.0
-            .iter()
-            .any(|(head, _)| head.trim_start_matches('[').starts_with(key))
+        self.0.iter().any(|(head, _)| is_for(head, key))
     }
+}
+
+fn is_for(head: &str, key: &str) -> bool {
+    head.trim_start_matches('[').starts_with(key)
 }
 
 /// Keys and values of a table without those named.
@@ -38,6 +52,8 @@ pub(super) fn passages(root: &Section<'_, '_>) -> Passages {
         "boundary",
         "fixed_point",
         "body",
+        "fluid",
+        "source",
         "initial_stress",
         "load",
     ] {

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use kluft_keys::{quoted, section_head};
 use kluft_network::{Grouping, Network};
 
+use kluft_scene::FluidUse;
+
 use super::input::Input;
 use super::passages::Passage;
 
@@ -16,6 +18,13 @@ const ROCK: &str = "
 young_modulus = 50e9
 poisson_ratio = 0.25
 ";
+
+const SURFACES: &str = "dimension = 2                     # the rock is rigid\n";
+
+const ISOLATED: &str = "isolated = \"inactive\"             # assumed\n";
+
+const PERMEABILITY: &str =
+    "equivalent_permeability = true    # assumed: nothing else drives the fluid\n";
 
 const MATERIAL: [(&str, &str); 4] = [
     ("aperture", "1e-3"),
@@ -50,17 +59,41 @@ pub(super) fn text(input: &Input, network: &Network, grouping: Grouping, geometr
         sizes.h_fracture,
         sizes.h_intersection
     );
-    if !input.passages.has("rock") {
+    let is_rigid = input.fluid == FluidUse::InRigidRock;
+    if is_rigid {
+        out.push_str(SURFACES);
+    } else if !input.passages.has("rock") {
         out.push_str(ROCK);
     }
     for (head, passage) in &input.passages.0 {
         section(&mut out, head, passage);
+        if head == "[fluid]" {
+            assumptions(&mut out, input, is_rigid);
+        }
     }
-    if !input.passages.has("boundary") {
+    if !is_rigid && !input.passages.has("boundary") {
         out.push_str(BOUNDARIES);
     }
     fractures(&mut out, input, network, grouping);
     out
+}
+
+/// What is assumed of a fluid.
+fn assumptions(out: &mut String, input: &Input, is_rigid: bool) {
+    let passages = &input.passages;
+    if !passages.says("fluid", "isolated") {
+        out.push_str(ISOLATED);
+    }
+    let drives = ["fluid_pressure", "fluid_inflow"];
+    let of_boundaries = drives.iter().any(|key| passages.says("boundary", key));
+    let materials = || input.sets.iter().filter_map(|set| set.material.as_ref());
+    let of_sets = materials()
+        .flatten()
+        .any(|(key, _)| key == "fluid_pressure");
+    let is_driven = of_boundaries || of_sets || passages.has("source");
+    if is_rigid && !is_driven && !passages.says("fluid", "equivalent_permeability") {
+        out.push_str(PERMEABILITY);
+    }
 }
 
 fn section(out: &mut String, head: &str, passage: &Passage) {
@@ -72,7 +105,8 @@ fn section(out: &mut String, head: &str, passage: &Passage) {
 
 /// One section a physical surface; a single set is the default of all.
 fn fractures(out: &mut String, input: &Input, network: &Network, grouping: Grouping) {
-    if let [only] = &input.sets[..] {
+    let has_law = input.sets.iter().any(|set| set.aperture_law.is_some());
+    if let ([only], false) = (&input.sets[..], has_law) {
         material(out, "[fracture.default]", input, &only.name);
         return;
     }
@@ -90,12 +124,16 @@ fn fractures(out: &mut String, input: &Input, network: &Network, grouping: Group
         }
         Grouping::Fracture => {
             for fracture in &network.fractures {
-                material(
-                    out,
-                    &section_head("fracture", &fracture.name),
-                    input,
-                    &fracture.set,
-                );
+                let head = section_head("fracture", &fracture.name);
+                material(out, &head, input, &fracture.set);
+                let set = input.sets.iter().find(|set| set.name == fracture.set);
+                if let Some(law) = set.and_then(|set| set.aperture_law) {
+                    let _ = writeln!(
+                        out,
+                        "hydraulic_aperture = {:?}",
+                        law.of_area(fracture.area_given)
+                    );
+                }
             }
         }
     }

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use kluft_mesh::Defect;
 use kluft_network::{
-    Amount, Domain, DrawnFracture, Fisher, FractureShape, InputFracture, SizeLaw, StochasticSet,
-    check_name, read_list,
+    Amount, ApertureLaw, Domain, DrawnFracture, Fisher, FractureShape, Grouping, InputFracture,
+    SizeLaw, StochasticSet, check_name, read_list,
 };
 
+use super::apertures::read_aperture_law;
 use super::keys::{read_orientation, read_seed, read_sides, read_text};
 use super::passages::{Passage, passage};
 use kluft_scene::reader::{Section, Source};
@@ -18,16 +19,21 @@ pub(super) struct Set {
     pub(super) name: String,
     /// Its material as keys and values; none if the input has no word on it.
     pub(super) material: Option<Passage>,
+    /// How wide its fractures are for a fluid, by their size.
+    pub(super) aperture_law: Option<ApertureLaw>,
     /// The random part of it, as asked and as drawn.
     pub(super) drawn: Option<(StochasticSet, Vec<DrawnFracture>)>,
 }
 
 impl Set {
-    /// A set of which nothing is known but its fractures.
-    pub(super) fn listed(name: &str) -> Self {
+    /// A set of which nothing is known but its fractures, and how wide they are for water (m) if
+    /// any flows.
+    pub(super) fn listed(name: &str, hydraulic_aperture: Option<f64>) -> Self {
+        let entry = |width: f64| vec![("hydraulic_aperture".to_owned(), format!("{width:?}"))];
         Self {
             name: name.to_owned(),
-            material: None,
+            material: hydraulic_aperture.map(entry),
+            aperture_law: None,
             drawn: None,
         }
     }
@@ -47,7 +53,7 @@ pub(super) fn read_set(
     if let Err((problem, remedy)) = check_name(&name) {
         source.report(&section.at, problem, remedy);
     }
-    read_fracture(&section, setting);
+    let aperture_law = read_fractures_of_set(&section, setting);
     let list = section.text("list").map(|list| folder.join(list));
     let is_random = ["p32", "count", "orientation", "size"]
         .into_iter()
@@ -89,9 +95,40 @@ pub(super) fn read_set(
     let set = Set {
         name,
         material: Some(material),
+        aperture_law,
         drawn,
     };
     Ok(Some((set, given)))
+}
+
+/// Reads what a set says of its fractures, and the law of their apertures if it has one.
+fn read_fractures_of_set(section: &Section<'_, '_>, setting: Setting) -> Option<ApertureLaw> {
+    if section.has("hydraulic_aperture_law") {
+        return read_aperture_law(section, setting);
+    }
+    read_fracture(section, setting);
+    None
+}
+
+/// Fractures of one physical surface have one aperture.
+pub(super) fn check_grouping(sets: &[Set], grouping: Grouping) -> Result<(), Vec<Defect>> {
+    if grouping == Grouping::Fracture {
+        return Ok(());
+    }
+    let with_law = sets.iter().filter(|set| set.aperture_law.is_some());
+    let defects = with_law.map(|set| {
+        Defect::new(
+            format!("[fracture_set.{}]", set.name),
+            "hydraulic_aperture_law needs a physical surface for each fracture, and --group set \
+             gives one to each set",
+            "leave out --group set",
+        )
+    });
+    let defects: Vec<Defect> = defects.collect();
+    match defects.is_empty() {
+        true => Ok(()),
+        false => Err(defects),
+    }
 }
 
 /// The drawn fractures that reach the domain, numbered.

@@ -3,7 +3,7 @@
 
 use kluft_verification::report::{Effort, Finding, Study};
 use kluft_verification::stability::{
-    contact, contrast, cutoff, cycles, front, hopeless, increments,
+    contact, contrast, cutoff, cycles, flow, front, hopeless, increments,
 };
 use kluft_verification::stability::{locking, opening, sliding, slivers, steps, units};
 
@@ -43,6 +43,12 @@ fn newton_does_not_see_the_cutoff_and_plain_newton_does() {
     assert!(column(&finding, "Kluft").iter().all(|count| *count <= 8.0));
     let plain = column(&finding, "plain Newton");
     assert!(plain.iter().any(|count| count.is_nan()), "{plain:?}");
+}
+
+#[test]
+fn flow_does_not_see_small_angles_and_flat_facets() {
+    let finding = hold(&flow::STUDY);
+    assert!(column(&finding, "rates").iter().all(|error| *error < 1e-9));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod adapt;
 mod bad_input;
 mod book;
+mod boreholes;
 mod coupled_flow;
 mod doubled;
 mod doubts;
@@ -17,6 +18,7 @@ mod machine;
 mod manners;
 mod mesh_once;
 mod network;
+mod network_flow;
 mod network_seeds;
 mod one_answer;
 mod pressed_joints;

@@ -291,7 +291,7 @@ fn a_seed_gives_the_same_bytes() {
 
 #[test]
 fn the_committed_networks_are_what_the_command_makes() {
-    for name in ["network-20", "network-100"] {
+    for name in ["network-20", "network-100", "network-flow"] {
         let source = root().join("geometries").join(name);
         let folder = scratch();
         let copy = folder.path().join("network.toml");

@@ -14,7 +14,9 @@ mod vtu_array;
 pub use atomic::{NOT_WRITTEN, sync_folder, write_atomically};
 pub use claimed_folder::ClaimedFolder;
 pub use fingerprint::{Fingerprint, fingerprint, fingerprint_of};
-pub use gmsh::{GmshOptions, MeshCache, Meshed, Meshing, mesh_geometry, write_size_field};
+pub use gmsh::{
+    Dimension, GmshOptions, MeshCache, Meshed, Meshing, mesh_geometry, write_size_field,
+};
 pub use load::load_msh;
 pub use msh::{parse_msh, read_msh};
 pub use pvd::write_pvd;

@@ -57,12 +57,14 @@ pub static ROOT: KeySection = KeySection {
         },
         scene::ROCKS,
         Key {
-            need: Need::Without("10 MPa on top, rollers"),
+            need: Need::Without("10 MPa on top, rollers; in rigid rock closed"),
             says: "Conditions by physical surface: `top`, `bottom`, `left`, `right`, `front`, `back`",
             ..scene::BOUNDARIES
         },
         scene::FIXED_POINTS,
         scene::BODIES,
+        scene::FLUIDS,
+        scene::SOURCES,
         scene::INITIAL_STRESSES,
         scene::LOADS,
         scene::SOLVING,

@@ -54,20 +54,8 @@ pub static ROOT: KeySection = KeySection {
         BOUNDARIES,
         FIXED_POINTS,
         BODIES,
-        Key {
-            name: "fluid",
-            kind: Kind::Table(&FLUID),
-            need: Need::Without("nothing flows"),
-            example: "[fluid]",
-            says: "A fluid that flows in the fractures",
-        },
-        Key {
-            name: "source",
-            kind: Kind::Listed(&SOURCE),
-            need: Need::Without("none"),
-            example: "[[source]]",
-            says: "Boreholes",
-        },
+        FLUIDS,
+        SOURCES,
         INITIAL_STRESSES,
         LOADS,
         SOLVING,
@@ -118,6 +106,22 @@ pub(crate) const BOUNDARIES: Key = Key {
     need: Need::Without("free"),
     example: "[boundary.top]",
     says: "Conditions by physical surface; surfaces that are not named are free",
+};
+
+pub(crate) const FLUIDS: Key = Key {
+    name: "fluid",
+    kind: Kind::Table(&FLUID),
+    need: Need::Without("nothing flows"),
+    example: "[fluid]",
+    says: "A fluid that flows in the fractures",
+};
+
+pub(crate) const SOURCES: Key = Key {
+    name: "source",
+    kind: Kind::Listed(&SOURCE),
+    need: Need::Without("none"),
+    example: "[[source]]",
+    says: "Boreholes",
 };
 
 pub(crate) const FIXED_POINTS: Key = Key {

@@ -300,7 +300,7 @@ struct Placed {
 }
 
 /// The facets of each set of groups, in the order of the file.
-fn facets_of_sets(draft: &Draft) -> Vec<Vec<u32>> {
+pub(crate) fn facets_of_sets(draft: &Draft) -> Vec<Vec<u32>> {
     let mut of_set = vec![Vec::new(); draft.group_sets.len()];
     for (facet, &set) in (0..).zip(&draft.facets.group_set) {
         of_set[set as usize].push(facet);

@@ -124,6 +124,9 @@ fn key(nodes: &[u32]) -> Key {
 
 /// Edges of faces with a cell on one side only, as far as both ends are on fractures.
 fn outer_edges(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Vec<[u32; 2]> {
+    if mesh.cells.is_empty() {
+        return boundary_edges(mesh, at_nodes);
+    }
     let mut faces: Vec<(Key, [u32; 4], u8)> = Vec::new();
     for (cell, shape) in mesh.cells.shapes.iter().enumerate() {
         let nodes = mesh.cells.nodes_of(cell);
@@ -148,6 +151,21 @@ fn outer_edges(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Vec<[u32; 2]> {
     for run in faces.chunk_by(|a, b| a.0 == b.0) {
         if let [(_, ring, count)] = run {
             let own = ring_edges(&ring[..*count as usize]);
+            edges.extend(own.filter(|nodes| nodes.iter().all(|&node| at_nodes.any(node))));
+        }
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+/// Edges of the parts of the outer surface, as far as both ends are on fractures.
+fn boundary_edges(mesh: &Mesh, at_nodes: &FracturesAtNodes) -> Vec<[u32; 2]> {
+    let mut edges = Vec::new();
+    for part in mesh.boundaries.iter().map(|boundary| &boundary.elements) {
+        for facet in 0..part.len() {
+            let corners = part.shapes[facet].corner_count();
+            let own = ring_edges(&part.nodes_of(facet)[..corners]);
             edges.extend(own.filter(|nodes| nodes.iter().all(|&node| at_nodes.any(node))));
         }
     }

@@ -14,6 +14,9 @@
 //! - around every node, the cells that reach each other without crossing a fracture facet form one
 //!   *sector*, and every cell knows the sector of each of its nodes.
 //!
+//! A mesh of surfaces alone, [`Mesh::of_surfaces`], has no cells, and promises only that no facet
+//! lies on another, and that no two nodes are at one place.
+//!
 //! Which side of a fracture is plus is decided here, once.
 
 mod adjacency;
@@ -30,6 +33,7 @@ mod join;
 mod merge;
 mod mesh;
 mod orient;
+mod outside;
 mod pairing;
 mod quarter_points;
 mod refine;
@@ -37,6 +41,7 @@ mod roles;
 mod sectors;
 mod shape;
 pub mod structured;
+mod surface_mesh;
 mod surfaces;
 mod survey;
 
@@ -52,6 +57,7 @@ pub use geometry::{cell_volume, facet_area_vector, facet_centre};
 pub use join::{CommonSurface, Joined, Joining};
 pub use kluft_defect::{Defect, nearest, sample};
 pub use mesh::{Mesh, MeshData};
+pub use outside::outer_surfaces;
 pub use roles::{Faces, SurfaceRole};
 pub use sectors::Sectors;
 pub use shape::{Face, Shape};

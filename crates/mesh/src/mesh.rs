@@ -16,8 +16,8 @@ use kluft_defect::Defect;
 
 /// A checked, fractured mesh; see the crate documentation for what it promises.
 ///
-/// [`Mesh::build`] is the only way to one, and its data can be read but not written, so that the
-/// promises hold wherever a mesh is met:
+/// [`Mesh::build`] is the only way to one, [`Mesh::of_surfaces`] to one without cells; its data can
+/// be read but not written, so that the promises hold wherever a mesh is met:
 ///
 /// ```compile_fail
 /// fn flatten(mesh: &mut kluft_mesh::Mesh) {
@@ -163,6 +163,11 @@ impl Mesh {
         Ok(Self { data })
     }
 
+    /// A mesh of data whose promises have been checked.
+    pub(crate) fn new(data: MeshData) -> Self {
+        Self { data }
+    }
+
     /// Multiplies all coordinates by a factor, as another unit of length does.
     ///
     /// # Panics
@@ -197,13 +202,14 @@ impl Mesh {
         self.nodes[a as usize].distance(self.nodes[b as usize])
     }
 
-    /// Lowest and highest coordinates of the nodes that are in cells (m).
+    /// Lowest and highest coordinates of the nodes that are in cells (m), or on facets if there are
+    /// none.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let used = self
-            .cells
-            .nodes
-            .iter()
-            .map(|&node| self.nodes[node as usize]);
+        let elements = match self.cells.is_empty() {
+            true => &self.facets.elements,
+            false => &self.cells,
+        };
+        let used = elements.nodes.iter().map(|&node| self.nodes[node as usize]);
         used.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| {
             (low.min(x), high.max(x))
         })

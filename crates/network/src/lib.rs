@@ -3,6 +3,7 @@
 //! A fracture is a convex planar polygon. Whatever is done to one (clipping, snapping ends that
 //! nearly touch) happens within its plane, so planes never change. All lengths are in metres.
 
+mod aperture_law;
 mod arrangement;
 mod clip;
 mod fisher;
@@ -26,6 +27,7 @@ mod snap;
 mod statistics;
 mod stochastic;
 
+pub use aperture_law::ApertureLaw;
 pub use arrangement::{Arrangement, Face, Moved, Plane, Sheet, collapse, faces};
 pub use clip::{Domain, FACES};
 pub use fisher::Fisher;

@@ -39,12 +39,7 @@ impl<'p> RunFlow<'p> {
     /// As [`FlowSystem::of`].
     pub fn of(problem: &'p Problem, flow: &'p Flow) -> Result<Self, Vec<Defect>> {
         let mesh = &problem.mesh;
-        let facets = mesh.facets.fracture.iter().enumerate();
-        let apertures = facets.flat_map(|(facet, &fracture)| {
-            let aperture = problem.fractures[fracture as usize].law.closure.aperture;
-            std::iter::repeat_n(aperture, mesh.facets.elements.range(facet).len())
-        });
-        let apertures: Vec<f64> = apertures.collect();
+        let apertures = problem.initial_apertures();
         Ok(Self {
             system: FlowSystem::of(mesh, flow, &apertures)?,
             mesh,

@@ -9,6 +9,7 @@
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
+//! | `permeability`, `flow_history` | the equivalent permeability; the history in rigid rock |
 //! | `rigid`, `fluid_step` | flow alone in rigid rock; what a fluid adds in rock that deforms |
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
@@ -39,6 +40,7 @@ mod decisions;
 mod doubts;
 mod failures;
 mod flow;
+mod flow_history;
 mod flow_summary;
 mod fluid_step;
 mod former;
@@ -51,6 +53,8 @@ pub mod memory;
 mod observer;
 mod outcome;
 mod output;
+mod permeability;
+mod permeability_summary;
 mod prepare;
 mod request;
 mod resume;
@@ -71,6 +75,7 @@ pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};
 pub use outcome::{Ending, Outcome, StepResult};
 pub use output::Output;
+pub use permeability_summary::{PermeabilitySummary, PrincipalPermeability, TensorSummary};
 pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kluft_io::{GmshOptions, Meshed, Meshing, load_msh, mesh_geometry};
+use kluft_io::{Dimension, GmshOptions, Meshed, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{MeshSource, Scene};
 
@@ -117,6 +117,7 @@ pub fn mesh_file(
             geometry,
             parameters,
             order,
+            surfaces_alone,
             ..
         } => {
             let unfinished = output.unfinished(MESH);
@@ -124,6 +125,10 @@ pub fn mesh_file(
                 geometry,
                 parameters,
                 order: *order,
+                dimension: match surfaces_alone {
+                    true => Dimension::Surfaces,
+                    false => Dimension::Volumes,
+                },
                 sizes,
                 output: &unfinished,
                 gmsh,

@@ -1,49 +1,75 @@
 //! A run in rigid rock: flow alone.
 
+use std::io::Write;
+use std::path::Path;
 use std::time::Instant;
 
-use kluft_io::Grid;
-use kluft_mesh::Mesh;
+use kluft_io::{Grid, write_atomically};
+use kluft_mesh::{Elements, Mesh};
 use kluft_scene::in_terms_of_scene;
 use kluft_solver::{Flow, Problem, Step};
 
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
+use crate::flow_history::FlowHistory;
 use crate::flow_summary;
 use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, integer_field, real_field};
+use crate::history;
 use crate::observer::Stage;
 use crate::stages::{Interruption, Run};
 use crate::summary::StepSummary;
 
 impl Run<'_> {
-    /// Solves and writes the flow of all load steps.
+    /// Solves and writes the flow of all load steps, and the permeability of the body if the scene
+    /// asks for it; that alone if nothing drives the fluid.
     ///
     /// # Errors
     /// Conditions that make no flow, numbers that are not finite, files that cannot be written.
     pub fn solve_flow(&mut self, problem: &Problem, flow: &Flow) -> Result<(), Interruption> {
-        let made = self.stage(Stage::Assemble, |_| RunFlow::driven(problem, flow));
-        let mut made = made.map_err(in_terms_of_scene)?;
-        self.summary.unknowns.total = made.system().unknown_count();
-        self.note_timed("assembled", &made.words());
         for decision in &self.summary.decisions {
             self.observer.note("decided", decision);
         }
-        self.output.expect_steps(problem.schedule.steps.len())?;
+        let is_driven = !flow.conditions.is_empty();
+        let steps = match is_driven || !self.request.scene.equivalent_permeability {
+            true => problem.schedule.steps.len(),
+            false => 0,
+        };
+        let made = (steps > 0)
+            .then(|| self.flow_system(problem, flow))
+            .transpose()?;
+        self.output.expect_steps(steps)?;
         self.output.remove_former()?;
         self.write_summary()?;
+        self.permeability(problem, flow)?;
+        let Some(mut made) = made else {
+            return Ok(());
+        };
         let factor = self.stage(Stage::PrepareSolver, |_| made.factorise());
         factor.map_err(failed)?;
-        for index in 0..problem.schedule.steps.len() {
-            self.flow_step(problem, &made, index)?;
+        let mut history = FlowHistory::default();
+        for index in 0..steps {
+            self.flow_step(problem, (&made, &mut history), index)?;
         }
         Ok(())
+    }
+
+    fn flow_system<'p>(
+        &mut self,
+        problem: &'p Problem,
+        flow: &'p Flow,
+    ) -> Result<RunFlow<'p>, Interruption> {
+        let made = self.stage(Stage::Assemble, |_| RunFlow::driven(problem, flow));
+        let made = made.map_err(in_terms_of_scene)?;
+        self.summary.unknowns.total = made.system().unknown_count();
+        self.note_timed("assembled", &made.words());
+        Ok(made)
     }
 
     fn flow_step(
         &mut self,
         problem: &Problem,
-        made: &RunFlow<'_>,
+        (made, history): (&RunFlow<'_>, &mut FlowHistory),
         index: usize,
     ) -> Result<(), Interruption> {
         let step: &Step = &problem.schedule.steps[index];
@@ -65,12 +91,18 @@ impl Run<'_> {
         });
         let summary = made.summary(&solved);
         self.summary.measures = flow_summary::measures(&solved.step, &summary.fractures);
+        history.add(index + 1, step, &solved.step, &summary.fractures);
         self.summary.flow = Some(summary);
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(problem);
             let fractures = || fracture_grid(&problem.mesh, made, &solved);
             run.output.write_step(step.load.time, rock, fractures)?;
             run.write_sources(problem)?;
+            let text = history.text().as_bytes();
+            let write = |path: &Path| write_atomically(path, |out| out.write_all(text));
+            if run.output.is_kept() {
+                run.output.write(history::NAME, write)?;
+            }
             if run.request.keep_results {
                 run.keep(rock(), fractures());
             }
@@ -81,9 +113,13 @@ impl Run<'_> {
     }
 }
 
-/// The rock, which has neither moved nor carries anything that is known.
+/// The rock, which has neither moved nor carries anything that is known; where the mesh holds
+/// surfaces alone, its outer faces.
 fn rock_grid(problem: &Problem) -> Grid {
     let mesh = &problem.mesh;
+    if mesh.cells.is_empty() {
+        return outer_grid(mesh);
+    }
     let rocks = problem.rock_of_cell.iter().map(|&rock| rock as i32);
     Grid {
         points: mesh.nodes.iter().map(|x| x.to_array()).collect(),
@@ -92,6 +128,31 @@ fn rock_grid(problem: &Problem) -> Grid {
         nodes: mesh.cells.nodes.clone(),
         point_fields: Vec::new(),
         cell_fields: vec![integer_field("rock", rocks)],
+    }
+}
+
+/// The parts of the outer surface, numbered in the order of the mesh.
+fn outer_grid(mesh: &Mesh) -> Grid {
+    let mut whole = Elements::new();
+    let mut part_of_facet = Vec::new();
+    for (part, boundary) in (0..).zip(&mesh.boundaries) {
+        whole.extend(&boundary.elements);
+        part_of_facet.resize(whole.len(), part);
+    }
+    let mut used = whole.nodes.clone();
+    used.sort_unstable();
+    used.dedup();
+    let number = |node: &u32| used.partition_point(|other| other < node) as u32;
+    Grid {
+        points: used
+            .iter()
+            .map(|&node| mesh.nodes[node as usize].to_array())
+            .collect(),
+        nodes: whole.nodes.iter().map(number).collect(),
+        shapes: whole.shapes,
+        offsets: whole.offsets,
+        point_fields: Vec::new(),
+        cell_fields: vec![integer_field("boundary", part_of_facet.into_iter())],
     }
 }
 

@@ -208,7 +208,10 @@ impl<'a> Run<'a> {
         let mesh = &binding.problem.mesh;
         let counts = mesh.sectors.count.iter();
         self.summary.mesh = MeshSummary {
-            nodes: counts.clone().filter(|&&count| count > 0).count(),
+            nodes: match mesh.cells.is_empty() {
+                true => mesh.nodes.len(),
+                false => counts.clone().filter(|&&count| count > 0).count(),
+            },
             cells: mesh.cells.len(),
             fracture_facets: mesh.facets.elements.len(),
             max_sectors: counts.copied().max().unwrap_or(0),

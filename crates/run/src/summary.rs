@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
+use crate::permeability_summary::PermeabilitySummary;
 use crate::spread::Spread;
 
 /// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].
@@ -219,6 +220,9 @@ pub struct Summary {
     /// The flow after the last converged step, if there is a fluid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowSummary>,
+    /// The equivalent permeability of the body, if it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub permeability: Option<PermeabilitySummary>,
     /// Estimated error of the stress in the rock, as a share of it in the energy norm.
     pub stress_error: f64,
     /// Numbers by which runs are compared, after the last converged step.

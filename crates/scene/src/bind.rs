@@ -9,12 +9,14 @@ use crate::bind_flow::bind_flow;
 use crate::cases::{Bound, schedule};
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
+use crate::isolated::leave_out;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
+use crate::surfaces::{SurfaceMesh, surface_mesh};
 
 /// A problem and what was decided on the way to it.
 pub struct Binding {
@@ -36,13 +38,16 @@ impl Scene {
     /// # Errors
     /// Every defect of the mesh, and everything in the scene that does not fit it.
     pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
+        if self.takes_surfaces(&draft) {
+            return self.surface_problem(draft);
+        }
         let faces = Faces::of(&draft);
         let joined = join(self, draft, faces)?;
         let inner = joined.faces.inner_surfaces(&joined.draft);
         let Roles {
             of_group,
             decisions: unused,
-            mut warnings,
+            warnings,
         } = roles(self, &joined.draft, &inner)?;
         let JoinedDraft {
             draft,
@@ -51,14 +56,26 @@ impl Scene {
         } = refine(self, joined, &of_group).map_err(in_terms_of_scene)?;
         decisions.extend(unused);
         let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
-        let mut binding = bind(self, mesh)?;
-        decisions.append(&mut binding.decisions);
-        warnings.append(&mut binding.warnings);
-        Ok(Binding {
+        Ok(bind(self, mesh)?.after(decisions, warnings))
+    }
+
+    /// The problem on a mesh without cells.
+    fn surface_problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
+        let SurfaceMesh { mesh, roles } = surface_mesh(self, draft)?;
+        Ok(bind(self, mesh)?.after(roles.decisions, roles.warnings))
+    }
+}
+
+impl Binding {
+    /// The same after what was decided and doubted before.
+    fn after(mut self, mut decisions: Vec<String>, mut warnings: Vec<String>) -> Self {
+        decisions.append(&mut self.decisions);
+        warnings.append(&mut self.warnings);
+        Self {
             decisions,
             warnings,
-            ..binding
-        })
+            ..self
+        }
     }
 }
 
@@ -93,7 +110,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     };
     let mut idle = Vec::new();
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
-    let flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
+    let mut flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
     let rocks = scene.rocks.iter().map(|entry| entry.value);
     let problem = Problem {
         conditions,
@@ -114,6 +131,9 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         facet_quadrature: scene.solver.facets,
         mesh,
     };
+    if let Some(flow) = &mut flow {
+        leave_out(scene, &problem, flow, &mut decisions)?;
+    }
     Ok(Binding {
         warnings: [warnings(scene, &problem), idle].concat(),
         problem,

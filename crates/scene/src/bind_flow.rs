@@ -1,18 +1,13 @@
 //! Where what a scene says of a fluid meets a mesh.
 
-use std::collections::BTreeSet;
-
 use kluft_keys::section_head;
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Profile};
 
 use crate::cases::Bound;
-use crate::fluid::SourceEntry;
 use crate::history::Timetable;
-use crate::scene::{Named, Scene};
-
-/// A borehole further from its node than this share of the edges there is told.
-const BESIDE: f64 = 1e-6;
+use crate::scene::Scene;
+use crate::sources::Drilling;
 
 /// The flow of a scene, if it has a fluid; what the user should know of it goes to `decisions`.
 ///
@@ -42,14 +37,17 @@ pub(crate) fn bind_flow(
     let mut conditions = on_boundaries(mesh, bound, cases);
     conditions.extend(in_fractures(mesh, bound, cases));
     let mut defects = Vec::new();
+    let fluid_weight = fluid.value.fluid.density * scene.body.gravity.z;
     for (index, entry) in bound.sources.iter().enumerate() {
-        match well(mesh, &conduits, entry, decisions) {
-            Ok(place) => conditions.push(FlowCondition {
-                name: entry.name.clone(),
-                place,
-                drive: entry.value.drive,
-                case: cases.of_source(index),
-            }),
+        let drilling = Drilling {
+            mesh,
+            conduits: &conduits,
+            bound,
+            weight: fluid_weight,
+            case: cases.of_source(index),
+        };
+        match drilling.conditions(entry, decisions) {
+            Ok(own) => conditions.extend(own),
             Err(defect) => defects.push(defect),
         }
     }
@@ -60,6 +58,7 @@ pub(crate) fn bind_flow(
         fluid: fluid.value.fluid,
         initial_pressure: fluid.value.initial_pressure,
         conduits,
+        inactive: Vec::new(),
         conditions,
         gravity: scene.body.gravity,
         gravity_case: cases.gravity,
@@ -98,55 +97,6 @@ fn in_fractures(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondit
         })
     });
     conditions.collect()
-}
-
-/// The node of a borehole.
-fn well(
-    mesh: &Mesh,
-    conduits: &[Conduit],
-    entry: &Named<SourceEntry>,
-    decisions: &mut Vec<String>,
-) -> Result<FlowPlace, Defect> {
-    let at = entry.value.at;
-    let facets = &mesh.facets;
-    let conducts = |facet: &usize| conduits[facets.fracture[*facet] as usize] != Conduit::Sealed;
-    let all = (0..facets.elements.len()).filter(conducts);
-    let corners = |facet: usize| {
-        let count = facets.elements.shapes[facet].corner_count();
-        &facets.elements.nodes_of(facet)[..count]
-    };
-    let nodes: BTreeSet<u32> = all.clone().flat_map(corners).copied().collect();
-    let distance = |node: u32| mesh.nodes[node as usize].distance(at);
-    let nearest = nodes.into_iter();
-    let nearest = nearest.min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-    let Some(node) = nearest else {
-        return Err(Defect::new(&entry.place, "it hits no fracture", "add one"));
-    };
-    let around = all.filter(|facet| corners(*facet).contains(&node));
-    let edges = around
-        .flat_map(corners)
-        .map(|&other| mesh.edge_length([node, other]));
-    let longest = edges.fold(0.0, f64::max);
-    let (x, tag) = (mesh.nodes[node as usize], mesh.node_tags[node as usize]);
-    let found = format!("node {tag} at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z);
-    let wanted = format!("({}, {}, {})", at.x, at.y, at.z);
-    if distance(node) > longest {
-        return Err(Defect::new(
-            &entry.place,
-            format!("the borehole at {wanted} hits no fracture that conducts"),
-            format!("the nearest such is {found}"),
-        ));
-    }
-    if distance(node) > BESIDE * longest {
-        let name = &entry.name;
-        decisions.push(format!(
-            "{name}: no node of a fracture at {wanted}; {found} is taken instead"
-        ));
-    }
-    Ok(FlowPlace::Well {
-        node,
-        radius: entry.value.radius,
-    })
 }
 
 /// How much model the flow needs.

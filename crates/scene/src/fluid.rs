@@ -10,13 +10,34 @@ use crate::profile::read_profile;
 use crate::reader::Section;
 use crate::setting::{FluidUse, Setting};
 
-/// A borehole.
+/// Where fluid is driven inside the body.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SourcePlace {
+    /// A borehole through a fracture.
+    At {
+        /// Where (m).
+        at: DVec3,
+        /// Its radius (m).
+        radius: f64,
+    },
+    /// A borehole through every fracture that it crosses.
+    Along {
+        /// Where it begins (m).
+        from: DVec3,
+        /// Where it ends (m).
+        to: DVec3,
+        /// Its radius (m).
+        radius: f64,
+    },
+    /// All of a fracture of this name.
+    Fracture(String),
+}
+
+/// What drives fluid inside the body.
 #[derive(Debug, Clone)]
 pub struct SourceEntry {
-    /// Where it is (m).
-    pub at: DVec3,
-    /// Its radius (m).
-    pub radius: f64,
+    /// Where it is.
+    pub place: SourcePlace,
     /// What it does.
     pub drive: FlowDrive,
     /// How that changes with time.
@@ -80,13 +101,57 @@ pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<Flu
     })
 }
 
-/// Reads a borehole.
+/// Reads where a source is: by one of `at`, `from` and `fracture`.
+fn read_place(section: &Section<'_, '_>) -> Option<SourcePlace> {
+    let given: Vec<&str> = ["at", "from", "fracture"]
+        .into_iter()
+        .filter(|key| section.has(key))
+        .collect();
+    if let [first, second, ..] = given[..] {
+        let problem = format!("both {first} and {second} are given");
+        let remedy = "keep one: a place, a borehole from and to, or a fracture";
+        section.refuse(
+            if second == "from" { "from" } else { "fracture" },
+            problem,
+            remedy,
+        );
+    }
+    if section.has("to") && !section.has("from") {
+        let remedy = "add from: where the borehole begins";
+        section.refuse("to", "to is given, but not from".into(), remedy);
+    }
+    if section.has("fracture") {
+        return section
+            .text("fracture")
+            .map(|name| SourcePlace::Fracture(name.to_owned()));
+    }
+    section.require("radius");
+    let radius = section.number("radius");
+    if !section.has("from") {
+        section.require("at");
+        let at = section.vector("at");
+        return Some(SourcePlace::At {
+            at: at?.into(),
+            radius: radius?,
+        });
+    }
+    section.require("to");
+    let (from, to) = (section.vector("from"), section.vector("to"));
+    if from.is_some() && from == to {
+        let remedy = "let it end elsewhere, or write at = [...] for one place";
+        section.refuse("to", "the borehole has no length".into(), remedy);
+    }
+    Some(SourcePlace::Along {
+        from: from?.into(),
+        to: to?.into(),
+        radius: radius?,
+    })
+}
+
+/// Reads what drives fluid inside the body.
 pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option<SourceEntry> {
     refuse_without_fluid(section, setting, &["rate", "pressure"]);
-    section.require("at");
-    section.require("radius");
-    let at = section.vector("at");
-    let radius = section.number("radius");
+    let place = read_place(section);
     let drive = read_drive(section, ["pressure", "rate"]);
     if drive.is_none() {
         section.require("rate");
@@ -97,8 +162,7 @@ pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option
     };
     let history = read_history(section, setting.clock, scaled);
     Some(SourceEntry {
-        at: at?.into(),
-        radius: radius?,
+        place: place?,
         drive: drive?,
         history,
     })

@@ -14,8 +14,8 @@ use crate::load::{Clock, read_timetable};
 use crate::oracle;
 use crate::profile::read_profile;
 use crate::reader::{Section, Source};
-use crate::scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
-use crate::setting::{FluidUse, Setting};
+use crate::scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
+use crate::setting::Setting;
 
 impl Scene {
     /// Reads a scene file; paths in it are relative to its folder.
@@ -75,14 +75,17 @@ impl Scene {
 }
 
 /// Finds the defects of everything in a scene that speaks of neither mesh nor fractures; another
-/// file, without a fluid, may hold those sections for a scene to be made from it. Returns what they
-/// mean for its fractures.
+/// file may hold those sections for a scene to be made from it. Returns what they mean for its
+/// fractures.
 pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Setting {
     let (_, clock) = read_timetable(root);
     let setting = Setting {
         clock,
-        fluid: FluidUse::None,
+        fluid: fluid_use(root),
     };
+    if setting.is_rigid() {
+        refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "solver"]);
+    }
     root.text("title");
     for (name, section) in root.named_sections("rock") {
         entry(source, name, section, |section| read_rock(section, setting));
@@ -97,7 +100,9 @@ pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Setting 
             read_fixed_point(section, clock)
         });
     }
-    read_body(root, clock);
+    let body = read_body(root, clock);
+    read_flow(root, &body, setting);
+    read_sources(source, root, setting);
     root.section("initial_stress").map(read_initial_stress);
     read_solver(root);
     setting
@@ -111,9 +116,9 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fluid: fluid_use(root),
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    let mesh = read_mesh_section(root, folder);
+    let mesh = read_mesh_section(root, folder, setting);
     match setting.is_rigid() {
-        true => refuse_in_rigid_rock(root),
+        true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
     }
     let rocks =
@@ -134,9 +139,12 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     root.section("study");
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
+    let flowing = read_flow(root, &body, setting);
     Some(Scene {
         oracles,
-        fluid: read_named_fluid(root, &body),
+        fluid: flowing.fluid,
+        isolated: flowing.isolated,
+        equivalent_permeability: flowing.equivalent_permeability,
         body,
         sources: read_sources(source, root, setting),
         fixed_points: read_fixed_points(source, root, clock),
@@ -167,7 +175,7 @@ struct MeshSection {
     refine: u32,
 }
 
-fn read_mesh_section(root: &Section<'_, '_>, folder: &Path) -> MeshSection {
+fn read_mesh_section(root: &Section<'_, '_>, folder: &Path, setting: Setting) -> MeshSection {
     root.require("mesh");
     let section = root.section("mesh");
     let flag = |key| section.as_ref().and_then(|section| section.flag(key));
@@ -179,7 +187,7 @@ fn read_mesh_section(root: &Section<'_, '_>, folder: &Path) -> MeshSection {
         quarter_points: flag("quarter_points").unwrap_or(true),
         weld: flag("weld").unwrap_or(false),
         refine,
-        source: section.and_then(|section| read_mesh(section, folder, refine)),
+        source: section.and_then(|section| read_mesh(section, folder, (refine, setting))),
     }
 }
 
@@ -195,7 +203,11 @@ fn entry<'a, 'i, T>(
     value.map(|value| Named { name, place, value })
 }
 
-fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<MeshSource> {
+fn read_mesh(
+    section: Section<'_, '_>,
+    folder: &Path,
+    (refine, setting): (u32, Setting),
+) -> Option<MeshSource> {
     let geometry = read_path(&section, "geometry", folder);
     let file = read_path(&section, "file", folder);
     let parameters = section.free_numbers("parameters");
@@ -207,6 +219,7 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<Mes
             "write order = 1 (linear) or order = 2 (quadratic)",
         );
     }
+    let surfaces_alone = read_dimension(&section, setting);
     let adapt = section.section("adapt").and_then(read_adapt);
     if adapt.is_some() && refine > 0 {
         refuse_both(&section);
@@ -216,16 +229,13 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<Mes
             geometry,
             parameters,
             order: if order == Some(2.0) { 2 } else { 1 },
+            surfaces_alone,
             adapt,
         }),
-        (None, Some(file)) if parameters.is_empty() && order.is_none() && adapt.is_none() => {
-            Some(MeshSource::File(file))
-        }
-        (None, Some(_)) => {
-            let key = match (order, adapt) {
-                (Some(_), _) => "order",
-                (_, Some(_)) => "adapt",
-                _ => "parameters",
+        (None, Some(file)) => {
+            let Some(key) = idle_beside_file(&section, &parameters) else {
+                section.finish();
+                return Some(MeshSource::File(file));
             };
             section.refuse(
                 key,
@@ -249,6 +259,30 @@ fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<Mes
     };
     section.finish();
     mesh
+}
+
+/// The first key that only a geometry has a use for.
+fn idle_beside_file(
+    section: &Section<'_, '_>,
+    parameters: &[(String, f64)],
+) -> Option<&'static str> {
+    let is_said = |key: &&'static str| match *key {
+        "parameters" => !parameters.is_empty(),
+        key => section.has(key),
+    };
+    let all = ["order", "dimension", "adapt", "parameters"];
+    all.into_iter().find(is_said)
+}
+
+/// Whether only surfaces are meshed, which serves no rock that deforms.
+fn read_dimension(section: &Section<'_, '_>, setting: Setting) -> bool {
+    let surfaces_alone = section.number("dimension") == Some(2.0);
+    if surfaces_alone && !setting.is_rigid() {
+        let problem = "dimension = 2 meshes no rock, and this rock deforms";
+        let remedy = "remove dimension, or leave out young_modulus for flow in rigid rock";
+        section.refuse("dimension", problem.into(), remedy);
+    }
+    surfaces_alone
 }
 
 /// Refuses to refine what follows the error.
@@ -295,16 +329,42 @@ fn read_fixed_points(
     entries.collect()
 }
 
-/// The fluid with its place.
-fn read_named_fluid(root: &Section<'_, '_>, body: &BodyEntry) -> Option<Named<FluidEntry>> {
-    let section = root.section("fluid")?;
+/// What the section of the fluid says.
+#[derive(Default)]
+struct FlowSection {
+    fluid: Option<Named<FluidEntry>>,
+    isolated: Isolated,
+    equivalent_permeability: bool,
+}
+
+fn read_flow(root: &Section<'_, '_>, body: &BodyEntry, setting: Setting) -> FlowSection {
+    let section = root.section("fluid");
+    let flowing = section.map(|section| read_flow_section(section, body, setting));
+    flowing.unwrap_or_default()
+}
+
+fn read_flow_section(section: Section<'_, '_>, body: &BodyEntry, setting: Setting) -> FlowSection {
+    let isolated = match section.choice("isolated") {
+        Some("inactive") => Isolated::Inactive,
+        _ => Isolated::Refused,
+    };
+    let is_asked = section.flag("equivalent_permeability").unwrap_or(false);
+    if is_asked && !setting.is_rigid() {
+        let problem = "the equivalent permeability is computed in rigid rock only";
+        let remedy = "remove equivalent_permeability, or leave out young_modulus everywhere";
+        section.refuse("equivalent_permeability", problem.into(), remedy);
+    }
     let (place, title) = (section.place(), section.title.clone());
-    let value = read_fluid(section, body.gravity)?;
-    Some(Named {
-        place: format!("{place} {title}"),
-        name: title,
-        value,
-    })
+    let fluid = read_fluid(section, body.gravity);
+    FlowSection {
+        fluid: fluid.map(|value| Named {
+            place: format!("{place} {title}"),
+            name: title,
+            value,
+        }),
+        isolated,
+        equivalent_permeability: is_asked,
+    }
 }
 
 /// Boreholes, each under the name it has or else that of its section.
@@ -327,8 +387,8 @@ fn read_sources(
 }
 
 /// Sections that speak of what cannot happen in rigid rock.
-fn refuse_in_rigid_rock(root: &Section<'_, '_>) {
-    for key in ["fixed_point", "initial_stress", "oracle", "solver"] {
+fn refuse_in_rigid_rock(root: &Section<'_, '_>, keys: &[&'static str]) {
+    for &key in keys {
         if root.has(key) {
             root.refuse(
                 key,
@@ -337,6 +397,11 @@ fn refuse_in_rigid_rock(root: &Section<'_, '_>) {
             );
         }
     }
+}
+
+/// The same in a scene, and a mesh that is to follow an error which nobody estimates.
+fn refuse_in_rigid_scene(root: &Section<'_, '_>) {
+    refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "oracle", "solver"]);
     if let Some(mesh) = root.section("mesh").filter(|mesh| mesh.has("adapt")) {
         let problem = "no error of a mesh in rigid rock is estimated: no rock has a young_modulus";
         let remedy = "remove adapt, or add young_modulus to [rock]";

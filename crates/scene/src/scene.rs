@@ -32,6 +32,8 @@ pub enum MeshSource {
         parameters: Vec<(String, f64)>,
         /// Order of the elements, 1 or 2.
         order: u32,
+        /// Whether only fractures and outer faces are meshed.
+        surfaces_alone: bool,
         /// How far to refine it, if not as the geometry says.
         adapt: Option<Adapt>,
     },
@@ -66,6 +68,16 @@ pub struct SolverEntry {
     pub facets: FacetQuadrature,
 }
 
+/// What becomes of networks of fractures that no pressure and no rate acts on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Isolated {
+    /// They are refused by their names.
+    #[default]
+    Refused,
+    /// They are left out of the flow.
+    Inactive,
+}
+
 /// A scene, all values in SI units.
 #[derive(Debug, Clone)]
 pub struct Scene {
@@ -91,6 +103,10 @@ pub struct Scene {
     pub body: BodyEntry,
     /// What flows in the fractures.
     pub fluid: Option<Named<FluidEntry>>,
+    /// What becomes of networks that nothing drives.
+    pub isolated: Isolated,
+    /// Whether the equivalent permeability is asked for.
+    pub equivalent_permeability: bool,
     /// Boreholes.
     pub sources: Vec<Named<SourceEntry>>,
     /// Stress before any load.

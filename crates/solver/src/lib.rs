@@ -44,8 +44,8 @@ pub use assembly::interface::Interface;
 pub use assembly::loads::{CaseLoads, Loads};
 pub use estimate::{Estimator, MeanError, StressError, target_sizes};
 pub use flow::{
-    ConditionFlow, Coupling, FlowBalance, FlowFields, FlowNetwork, FlowState, FlowSystem,
-    FluidState, NO_PRESSURE,
+    ConditionFlow, Coupling, EquivalentPermeability, FlowBalance, FlowFields, FlowNetwork,
+    FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor,
 };
 pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
 pub use linear::{

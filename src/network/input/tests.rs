@@ -8,6 +8,7 @@ const OVERRIDES: Overrides = Overrides {
     domain: None,
     h: None,
     keep_small: false,
+    hydraulic_aperture: None,
 };
 
 /// Every key but those that exclude others.
@@ -25,10 +26,21 @@ growth = 0.3
 small = 0.1
 small_angle = "0.1 rad"
 mend = false
+[rock.rock]
+young_modulus = "50 GPa"
+poisson_ratio = 0.25
+[fluid]
+viscosity = "1 mPa s"
+isolated = "refuse"
+[[source]]
+at = [5, 5, 5]
+rate = 1e-4
+radius = 0.1
 [fracture_set.disc]
 orientation = { dip = "80 degrees", dip_direction = 10, kappa = 30 }
 size = { law = "power", exponent = 2.5, min = "1 m", max = 4 }
 p32 = "0.1 m2/m3"
+hydraulic_aperture = "0.1 mm"
 shape = "disc"
 sides = 8
 seed = 5
@@ -41,6 +53,7 @@ size = { law = "lognormal", mean = 2, sd = 0.5, min = 1, max = 4 }
 shape = "rectangle"
 aspect = 1.5
 count = 4
+sealed = true
 aperture = 5e-4
 normal_stiffness = 4e10
 shear_stiffness = 1e10
@@ -48,6 +61,7 @@ shear_stiffness = 1e10
 orientation = { dip = 10, dip_direction = 100, kappa = 50 }
 size = { law = "constant", radius = 1 }
 count = 2
+hydraulic_aperture_law = { coefficient = "10 um", exponent = 0.5 }
 aperture = 5e-4
 normal_stiffness = 4e10
 shear_stiffness = 1e10

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use kluft_mesh::Defect;
 
-use super::options::NOT_MESHED;
+use super::options::{Dimension, NOT_MESHED};
 use super::script::{Token, Tokens};
 
 /// The option of gmsh that chooses how volumes are meshed.
@@ -58,7 +58,11 @@ const fn way(name: &'static str, options: &'static [(&'static str, f64)]) -> Att
 
 /// The ways to try: the forms that a network offers, or gmsh's usual way and another where that
 /// fails; one way if the geometry, a file that it opens, or a parameter chooses.
-pub(super) fn attempts(scripts: &[PathBuf], parameters: &[(String, f64)]) -> &'static [Attempt] {
+pub(super) fn attempts(
+    scripts: &[PathBuf],
+    parameters: &[(String, f64)],
+    dimension: Dimension,
+) -> &'static [Attempt] {
     let is_given = parameters.iter().any(|(name, _)| name == ALGORITHM);
     let scripts = scripts.iter().map(std::fs::read);
     let scripts: Vec<Vec<u8>> = scripts.map(Result::unwrap_or_default).collect();
@@ -67,6 +71,8 @@ pub(super) fn attempts(scripts: &[PathBuf], parameters: &[(String, f64)]) -> &'s
         &[AS_GIVEN]
     } else if !is_any_given(parameters) && any(offers_forms) {
         &FORMS
+    } else if dimension == Dimension::Surfaces {
+        &[AS_GIVEN]
     } else {
         &[AS_GIVEN, HXT]
     }

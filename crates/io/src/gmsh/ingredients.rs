@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 use super::attempts::Attempt;
-use super::options::Meshing;
+use super::options::{Dimension, Meshing};
 use super::review::{Review, folder_of};
 use crate::fingerprint::{Fingerprint, fingerprint, fingerprint_of};
 
@@ -27,6 +27,9 @@ pub(super) fn sum(
     let mut all = format!("{FORMAT}\n{}\n", program_identity(program)?);
     // Writing to a string cannot fail.
     let _ = writeln!(all, "order {}\n{attempts:?}", meshing.order);
+    if meshing.dimension == Dimension::Surfaces {
+        all.push_str("surfaces alone\n");
+    }
     for (name, value) in meshing.parameters {
         let _ = writeln!(all, "parameter {name} {:x}", value.to_bits());
     }

@@ -6,12 +6,16 @@ use std::path::Path;
 
 use kluft_mesh::{Defect, cell_defects};
 
-use super::options::NOT_MESHED;
-use crate::msh::{holds_cells, read_msh};
+use super::options::{Dimension, NOT_MESHED};
+use crate::msh::{holds_elements, read_msh};
 
 /// gmsh answers with success and a file also when it has found nothing to mesh, or when the disk is
 /// full.
-pub(super) fn check_made(made: &Path, geometry: &Path, output: &Path) -> Result<(), Defect> {
+pub(super) fn check_made(
+    made: &Path,
+    (geometry, dimension): (&Path, Dimension),
+    output: &Path,
+) -> Result<(), Defect> {
     let place = geometry.display().to_string();
     if !made.exists() {
         let remedy = "remove `Exit` and `Abort` from the geometry";
@@ -27,12 +31,23 @@ pub(super) fn check_made(made: &Path, geometry: &Path, output: &Path) -> Result<
         let remedy = format!("free some space where {output} goes, or write to another disk");
         return Err(Defect::new(place, problem, remedy).with_code(NOT_MESHED));
     }
-    if !holds_cells(made).unwrap_or(false) {
-        let problem = "the mesh that gmsh made holds no volume elements";
-        let remedy = "define a volume, and a `Physical Volume` if there are other physical groups";
-        return Err(Defect::new(place, problem, remedy));
+    let (number, what, remedy) = match dimension {
+        Dimension::Volumes => (
+            3,
+            "volume elements",
+            "define a volume, and a `Physical Volume` if there are other physical groups",
+        ),
+        Dimension::Surfaces => (
+            2,
+            "surface elements",
+            "give the fractures `Physical Surface`s",
+        ),
+    };
+    if holds_elements(made, number).unwrap_or(false) {
+        return Ok(());
     }
-    Ok(())
+    let problem = format!("the mesh that gmsh made holds no {what}");
+    Err(Defect::new(place, problem, remedy))
 }
 
 /// Whether every cell has a volume.

@@ -10,7 +10,7 @@ use super::attempts::{Attempt, attempts, is_worth_another};
 use super::cache::MeshCache;
 use super::ending::{cannot_start, judge};
 use super::made::{check_cells, check_made};
-use super::options::{Meshed, Meshing};
+use super::options::{Dimension, Meshed, Meshing};
 use super::review::reviewed;
 use super::run::{Gmsh, Scope, path_argument};
 use super::workspace::Workspace;
@@ -40,7 +40,7 @@ pub(super) fn mesh_with(gmsh: &Gmsh, meshing: &Meshing) -> Result<Meshed, Vec<De
     check(meshing)?;
     let review = reviewed(meshing.geometry, meshing.gmsh)?;
     let scripts: Vec<PathBuf> = review.scripts().cloned().collect();
-    let attempts = attempts(&scripts, meshing.parameters);
+    let attempts = attempts(&scripts, meshing.parameters, meshing.dimension);
     let kept = meshing.gmsh.cache.as_ref().and_then(|cache| {
         let program = gmsh.find().ok()?;
         let key = ingredients::sum(meshing, &review, attempts, &program)?;
@@ -114,7 +114,14 @@ fn make(
         let is_last = left.len() == 0;
         let tried = try_once(gmsh, meshing, &arguments, &scope);
         // What is wrong with the last is told by who reads it.
-        let sound = |made: &Path| if is_last { Ok(()) } else { check_cells(made) };
+        let is_judged_later = is_last || meshing.dimension == Dimension::Surfaces;
+        let sound = |made: &Path| {
+            if is_judged_later {
+                Ok(())
+            } else {
+                check_cells(made)
+            }
+        };
         match tried.and_then(|warnings| sound(&made).map(|()| warnings)) {
             Ok(warnings) => break warnings,
             Err(defects) if !is_last && is_worth_another(&defects) => {
@@ -148,7 +155,8 @@ fn try_once(
     let ended = ended.map_err(|error| vec![cannot_start(gmsh, &error)])?;
     let warnings = judge(gmsh, meshing.geometry, &ended)?;
     let made = scope.folder.as_deref().unwrap_or(Path::new("")).join(MADE);
-    check_made(&made, meshing.geometry, meshing.output).map_err(|defect| vec![defect])?;
+    let asked = (meshing.geometry, meshing.dimension);
+    check_made(&made, asked, meshing.output).map_err(|defect| vec![defect])?;
     Ok(warnings)
 }
 
@@ -174,7 +182,10 @@ fn check(meshing: &Meshing) -> Result<(), Vec<Defect>> {
 fn arguments(meshing: &Meshing, attempt: Attempt, [input, made]: [&Path; 2]) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = vec![
         path_argument(input),
-        "-3".into(),
+        match meshing.dimension {
+            Dimension::Surfaces => "-2".into(),
+            Dimension::Volumes => "-3".into(),
+        },
         "-format".into(),
         "msh41".into(),
         "-bin".into(),

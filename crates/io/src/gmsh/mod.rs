@@ -31,7 +31,7 @@ pub use cache::MeshCache;
 use ending::{cannot_start, judge};
 pub use meshing::mesh_geometry;
 use meshing::{MADE, QUIETLY};
-pub use options::{GmshOptions, Launcher, Meshed, Meshing, NOT_MESHED, NOT_STARTED};
+pub use options::{Dimension, GmshOptions, Launcher, Meshed, Meshing, NOT_MESHED, NOT_STARTED};
 use review::reviewed;
 use run::{Gmsh, Scope, path_argument};
 pub use size_field::write_size_field;

@@ -6,6 +6,16 @@ use std::time::Duration;
 
 use super::cache::MeshCache;
 
+/// How far gmsh goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Dimension {
+    /// Surfaces alone.
+    Surfaces,
+    /// Volumes, with their surfaces.
+    #[default]
+    Volumes,
+}
+
 /// A mesh to be made.
 #[derive(Debug, Clone, Copy)]
 pub struct Meshing<'a> {
@@ -16,6 +26,8 @@ pub struct Meshing<'a> {
     pub parameters: &'a [(String, f64)],
     /// Order of the elements: 1 or 2.
     pub order: u32,
+    /// What is meshed.
+    pub dimension: Dimension,
     /// A view of cell sizes to go by (see [`super::write_size_field`]), instead of those of the
     /// geometry.
     pub sizes: Option<&'a Path>,

@@ -44,6 +44,7 @@ impl Scene {
             geometry: &self.folder.join("in.geo"),
             parameters,
             order: 1,
+            dimension: Dimension::default(),
             sizes: None,
             output: &self.folder.join("out put.msh"),
             gmsh: options,
@@ -138,6 +139,7 @@ fn a_missing_geometry_and_a_wrong_order_are_defects() {
             geometry,
             parameters: &[],
             order,
+            dimension: Dimension::default(),
             sizes: None,
             output: Path::new("out.msh"),
             gmsh: &GmshOptions::default(),
@@ -271,6 +273,39 @@ fn what_a_geometry_opens_is_reviewed_too() {
     );
 }
 
+/// Surfaces alone are another mesh than volumes, which is kept by itself.
+#[test]
+fn surfaces_are_meshed_without_volumes() {
+    let scene = Scene::new("surfaces", BOX);
+    let kept = tempfile::tempdir().expect("a temporary folder");
+    let options = GmshOptions {
+        cache: Some(MeshCache::at(kept.path().to_owned())),
+        ..GmshOptions::default()
+    };
+    let counts = |dimension| {
+        let output = scene.folder.join("out.msh");
+        let meshing = Meshing {
+            geometry: &scene.folder.join("in.geo"),
+            parameters: &[],
+            order: 1,
+            dimension,
+            sizes: None,
+            output: &output,
+            gmsh: &options,
+        };
+        let is_kept = mesh_geometry(&meshing).expect("a mesh").is_kept;
+        let draft = crate::read_msh(&output).expect("a mesh");
+        (
+            draft.cells.elements.is_empty(),
+            draft.facets.elements.is_empty(),
+            is_kept,
+        )
+    };
+    assert_eq!(counts(Dimension::Surfaces), (true, false, false));
+    assert_eq!(counts(Dimension::Volumes), (false, false, false));
+    assert_eq!(counts(Dimension::Surfaces), (true, false, true));
+}
+
 /// What a mesh is made into, and whether it was there.
 fn meshed(scene: &Scene, h: f64, options: &GmshOptions) -> (bool, Vec<u8>) {
     let output = scene.folder.join("out put.msh");
@@ -278,6 +313,7 @@ fn meshed(scene: &Scene, h: f64, options: &GmshOptions) -> (bool, Vec<u8>) {
         geometry: &scene.folder.join("in.geo"),
         parameters: &[("h".to_owned(), h)],
         order: 1,
+        dimension: Dimension::default(),
         sizes: None,
         output: &output,
         gmsh: options,

@@ -63,14 +63,18 @@ pub(super) fn survey(
     })
 }
 
-/// Whether the file holds elements of dimension 3; looks at nothing else.
-pub(super) fn holds_cells(source: MshSource, encoding: Encoding) -> Result<bool, Defect> {
+/// Whether the file holds elements of a dimension; looks at nothing else.
+pub(super) fn holds_elements(
+    source: MshSource,
+    encoding: Encoding,
+    dimension: usize,
+) -> Result<bool, Defect> {
     let sections = split(source)?;
     let body = required(source, &sections, "Elements")?.body.clone();
     let blocks = elements::walk(Cursor::new(source, encoding, body))?;
     Ok(blocks
         .iter()
-        .any(|block| block.entity.0 == 3 && block.count > 0))
+        .any(|block| block.entity.0 == dimension && block.count > 0))
 }
 
 /// Puts a defect aside.

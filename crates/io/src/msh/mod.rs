@@ -72,8 +72,8 @@ pub(crate) fn older_names(bytes: &[u8], name: &str) -> Vec<Group> {
     named.unwrap_or_default()
 }
 
-/// Whether an MSH 4.1 file holds elements of dimension 3.
-pub(crate) fn holds_cells(path: &Path) -> Result<bool, Defect> {
+/// Whether an MSH 4.1 file holds elements of a dimension.
+pub(crate) fn holds_elements(path: &Path, dimension: usize) -> Result<bool, Defect> {
     let bytes = bytes_of(path)?;
     let name = path.display().to_string();
     let source = MshSource {
@@ -81,7 +81,7 @@ pub(crate) fn holds_cells(path: &Path) -> Result<bool, Defect> {
         bytes: &bytes,
     };
     match header::read(source)? {
-        Format::Current(encoding) => guard::holds_cells(source, encoding),
+        Format::Current(encoding) => guard::holds_elements(source, encoding, dimension),
         Format::Older(version) => Err(older(source, version)),
     }
 }

@@ -66,6 +66,13 @@ pub static FRACTURE_SET: KeySection = KeySection {
             says: "Seed of this set",
             ..SEED
         },
+        Key {
+            name: "hydraulic_aperture_law",
+            kind: Kind::Table(&APERTURE_LAW),
+            need: Need::Without("`hydraulic_aperture` or `aperture`, the same for all"),
+            example: "{ coefficient = 1e-5, exponent = 0.5 }",
+            says: "Hydraulic aperture of each fracture by its size; needs `[fluid]` and a physical surface for each fracture",
+        },
     ],
     also: Some(&scene::FRACTURE),
 };
@@ -97,6 +104,29 @@ const fn size(name: &'static str, need: &'static str, says: &'static str) -> Key
         says,
     }
 }
+
+/// How wide fractures are by their size.
+pub static APERTURE_LAW: KeySection = KeySection {
+    pattern: "[fracture_set.NAME.hydraulic_aperture_law]",
+    says: "Hydraulic aperture `coefficient r^exponent` by the radius r of a disc of the same area",
+    keys: &[
+        Key {
+            name: "coefficient",
+            kind: number(Dimension::Length, Range::Positive),
+            need: Need::Required,
+            example: "1e-5",
+            says: "Hydraulic aperture at a radius of 1 m; the size is that before the fracture is cut",
+        },
+        Key {
+            name: "exponent",
+            kind: number(Dimension::One, Range::Finite),
+            need: Need::Required,
+            example: "0.5",
+            says: "Exponent of the radius",
+        },
+    ],
+    also: None,
+};
 
 /// How sizes are distributed.
 pub static SIZE: KeySection = KeySection {

@@ -60,6 +60,20 @@ pub static FLUID: KeySection = KeySection {
             example: "10e6",
             says: "Pressure before any load, in balance with `[initial_stress]`, which is total: constant, or linear in the elevation",
         },
+        Key {
+            name: "isolated",
+            kind: Kind::Choice("treatment of isolated networks", &["refuse", "inactive"]),
+            need: Need::Default("\"refuse\""),
+            example: "\"inactive\"",
+            says: "Networks of fractures that no pressure and no rate acts on are refused, or left out of the flow",
+        },
+        Key {
+            name: "equivalent_permeability",
+            kind: Kind::Flag,
+            need: Need::Default("false"),
+            example: "true",
+            says: "Whether the permeability tensor of the whole body is computed, by linear pressures on all of its outer surface; in rigid rock",
+        },
     ],
     also: None,
 };
@@ -74,7 +88,7 @@ static COMPRESSIBILITY: Plausible = Plausible {
 /// A borehole.
 pub static SOURCE: KeySection = KeySection {
     pattern: "[[source]]",
-    says: "A borehole through the fractures at one place, by its rate or its pressure",
+    says: "A borehole through one or more fractures, or a fracture, by its rate or its pressure",
     keys: &[
         Key {
             name: "name",
@@ -86,9 +100,30 @@ pub static SOURCE: KeySection = KeySection {
         Key {
             name: "at",
             kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
-            need: Need::Required,
+            need: Need::Unless("there is `from` or `fracture`"),
             example: "[0.0, 0.0, 0.0]",
             says: "Where it is; the nearest node of a fracture is taken, and the run names it if it lies elsewhere",
+        },
+        Key {
+            name: "from",
+            kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
+            need: Need::Without("`at`"),
+            example: "[0.0, 0.0, 0.0]",
+            says: "Where a borehole begins that is open to every fracture it crosses; its `pressure` is that here, and hydrostatic along it",
+        },
+        Key {
+            name: "to",
+            kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
+            need: Need::Unless("there is no `from`"),
+            example: "[0.0, 0.0, -10.0]",
+            says: "Where it ends",
+        },
+        Key {
+            name: "fracture",
+            kind: Kind::Text,
+            need: Need::Without("`at`"),
+            example: "\"fault\"",
+            says: "The fracture all of which it feeds, a rate by area times transmissivity; no borehole, and without `radius`",
         },
         Key {
             name: "rate",
@@ -107,7 +142,7 @@ pub static SOURCE: KeySection = KeySection {
         Key {
             name: "radius",
             kind: watched(Dimension::Length, Range::Positive, &WELL_RADIUS),
-            need: Need::Required,
+            need: Need::Unless("there is `fracture`"),
             example: "0.1",
             says: "Its radius, small beside the facets around it; the pressure at its wall depends on it",
         },

@@ -38,6 +38,13 @@ pub static MESH: KeySection = KeySection {
             says: "Order of the elements; with `geometry` only",
         },
         Key {
+            name: "dimension",
+            kind: Kind::Whole(Range::Within(2.0, 3.0)),
+            need: Need::Default("3"),
+            example: "2",
+            says: "2 meshes fractures and outer faces without the rock between them, for flow in rigid rock; with `geometry` only",
+        },
+        Key {
             name: "quarter_points",
             kind: Kind::Flag,
             need: Need::Default("true"),

@@ -21,6 +21,9 @@ pub struct BlockSurvey {
 
 /// Surveys the blocks of a mesh, given the volumes of its cells (m^3).
 pub(super) fn survey(mesh: &Mesh, volumes: &[f64]) -> Vec<BlockSurvey> {
+    if mesh.cells.is_empty() {
+        return Vec::new();
+    }
     let empty = BlockSurvey {
         cells: 0,
         volume: 0.0,

@@ -63,6 +63,9 @@ pub(super) fn find(
 }
 
 fn is_unresolved(mesh: &Mesh, facet: usize) -> bool {
+    if mesh.cells.is_empty() {
+        return false;
+    }
     let range = mesh.facets.elements.range(facet);
     let (plus, minus) = (
         &mesh.facets.plus_slots[range.clone()],

@@ -178,20 +178,20 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
     let warnings = scene.expect("a scene").warnings;
     for (warning, says) in warnings.iter().zip([
         [
-            "scene.toml:14: `young_modulus` = 50 in [rock.default]",
+            "scene.toml:15: `young_modulus` = 50 in [rock.default]",
             "50 GPa = 5e10 Pa",
         ],
-        ["scene.toml:16: `density` = 2.7", "2.7 g/cm3 = 2700 kg/m3"],
+        ["scene.toml:17: `density` = 2.7", "2.7 g/cm3 = 2700 kg/m3"],
         [
-            "scene.toml:24: `aperture` = 0.2 in [fracture.default]",
+            "scene.toml:25: `aperture` = 0.2 in [fracture.default]",
             "0.2 mm",
         ],
         [
-            "scene.toml:30: `aperture` = 0.2 in [fracture.joint]",
+            "scene.toml:31: `aperture` = 0.2 in [fracture.joint]",
             "0.2 mm",
         ],
         [
-            "scene.toml:64: `gravity` = 981 in [body]",
+            "scene.toml:65: `gravity` = 981 in [body]",
             "981 cm/s2 = 9.81 m/s2",
         ],
     ]) {

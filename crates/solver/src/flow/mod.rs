@@ -19,6 +19,8 @@
 //! | `nodal` | conditions as they act on nodes |
 //! | `topology` | all of a flow that stays whatever the apertures |
 //! | `networks` | what hangs together hydraulically, and what has no steady state |
+//! | `isolated` | networks that nothing drives |
+//! | `permeability` | how the body conducts as a whole |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
 //! | `walls` | the push of the fluid on the walls of fractures |
@@ -29,12 +31,14 @@ mod conductance;
 mod coupling;
 mod edges;
 mod fields;
+mod isolated;
 mod linearised;
 mod loaded;
 mod networks;
 mod nodal;
 mod numbering;
 mod operator;
+mod permeability;
 mod places;
 mod solve;
 mod steady;
@@ -50,6 +54,7 @@ pub use fields::FlowFields;
 pub(crate) use linearised::LinearisedFlow;
 pub use loaded::FlowState;
 pub use networks::{FlowNetwork, NO_PRESSURE};
+pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTensor};
 pub use steady::FlowSystem;
 
 #[cfg(test)]

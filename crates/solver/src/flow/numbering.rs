@@ -31,9 +31,10 @@ impl FlowNodes {
     pub(super) fn of(mesh: &Mesh, flow: &Flow) -> Self {
         let fractures = mesh.facets.fracture.iter();
         let conducts = |fracture: u32| flow.conduits[fracture as usize] != Conduit::Sealed;
+        let is_active = |facet: u32| flow.inactive.binary_search(&facet).is_err();
         let facets: Vec<u32> = (0..)
             .zip(fractures)
-            .filter(|(_, fracture)| conducts(**fracture))
+            .filter(|(facet, fracture)| conducts(**fracture) && is_active(*facet))
             .map(|(facet, _)| facet)
             .collect();
         let mut of_node = vec![NONE; mesh.nodes.len()];

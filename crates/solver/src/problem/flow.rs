@@ -78,6 +78,9 @@ pub struct Flow {
     pub fluid: Fluid,
     /// One entry for each of [`kluft_mesh::MeshData::fractures`].
     pub conduits: Vec<Conduit>,
+    /// Facets, ascending, in which nothing flows although their fractures conduct: indices into
+    /// [`kluft_mesh::MeshData::facets`].
+    pub inactive: Vec<u32>,
     /// What drives it. Outer surfaces without a condition are closed.
     pub conditions: Vec<FlowCondition>,
     /// Pressure before any load (Pa), in equilibrium with the initial stress, which is total.

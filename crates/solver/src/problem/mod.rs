@@ -66,6 +66,17 @@ impl Problem {
         }
     }
 
+    /// Apertures without load (m), one for each entry of the flat node list of the facets.
+    pub fn initial_apertures(&self) -> Vec<f64> {
+        let facets = &self.mesh.facets;
+        let all = facets.fracture.iter().enumerate();
+        let apertures = all.flat_map(|(facet, &fracture)| {
+            let aperture = self.fractures[fracture as usize].law.closure.aperture;
+            std::iter::repeat_n(aperture, facets.elements.range(facet).len())
+        });
+        apertures.collect()
+    }
+
     /// Rock of a cell.
     pub fn rock(&self, cell: usize) -> &Rock {
         &self.rocks[self.rock_of_cell[cell] as usize]

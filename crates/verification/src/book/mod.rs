@@ -9,7 +9,9 @@ mod oscillation;
 mod parts;
 mod patch_test;
 mod paths;
+mod permeability;
 mod scene;
+mod steady_flow;
 
 use crate::report::{Layout, Report};
 
@@ -37,6 +39,8 @@ pub fn report() -> Report {
             oscillation::PAGE,
             paths::PAGE,
             estimate::PAGE,
+            steady_flow::PAGE,
+            permeability::PAGE,
         ],
         layout: Layout::PageEach,
     }

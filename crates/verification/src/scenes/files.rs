@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
+use kluft_io::{Dimension, GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
 use kluft_run::{MeshInput, Origin, Outcome, Request};
 use kluft_scene::Scene;
@@ -33,6 +33,7 @@ pub fn meshed_file(geometry: &Path, parameters: &[(&str, f64)], order: u32) -> D
         geometry,
         parameters: &parameters,
         order,
+        dimension: Dimension::Volumes,
         sizes: None,
         output: &file,
         gmsh: &GmshOptions::default(),

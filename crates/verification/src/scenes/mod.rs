@@ -5,6 +5,7 @@ pub mod block;
 pub mod closing;
 pub mod crack_front;
 mod files;
+pub mod flow;
 pub mod joint_sets;
 pub mod networks;
 pub mod pressed;

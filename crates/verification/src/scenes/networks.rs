@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use glam::DVec3;
-use kluft_io::{GmshOptions, Meshing, load_msh, mesh_geometry};
+use kluft_io::{Dimension, GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft, Group, Mesh, SurfaceRole};
 use kluft_solver::{Condition, Fracture, Problem, Support, SurfaceLoad};
 use lie_core::{Closure, ClosureKind, FractureLaw};
@@ -125,6 +125,7 @@ pub fn meshed(polygons: &[Polygon], size: f64) -> Result<Draft, Vec<Defect>> {
         geometry: &script,
         parameters: &[],
         order: 1,
+        dimension: Dimension::Volumes,
         sizes: None,
         output: &file,
         gmsh: &GmshOptions::default(),

@@ -9,6 +9,7 @@ pub mod contrast;
 mod counts;
 pub mod cutoff;
 pub mod cycles;
+pub mod flow;
 pub mod front;
 pub mod hopeless;
 pub mod increments;
@@ -51,6 +52,7 @@ pub fn report() -> Report {
             slivers::STUDY,
             units::STUDY,
             steps::STUDY,
+            flow::STUDY,
         ],
         layout: Layout::OnePage { promise: promise() },
     }

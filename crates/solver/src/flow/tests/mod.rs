@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod coupled;
+mod permeability;
 mod push;
 mod refusals;
 
@@ -59,6 +60,7 @@ fn flow(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
         },
         initial_pressure: Profile::default(),
         conduits: vec![smooth(); mesh.fractures.len()],
+        inactive: Vec::new(),
         conditions,
         gravity: DVec3::ZERO,
         gravity_case: 0,
