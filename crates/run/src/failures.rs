@@ -99,7 +99,8 @@ pub fn not_converged(
     format!("step {number} ({step}): {why}{rest}")
 }
 
-fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
+/// A facet point in words.
+pub fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
     let facet_point = system.discretisation().interface().points()[point];
     let facet = facet_point.facet as usize;
     let node = problem.mesh.facets.elements.nodes_of(facet)[0] as usize;

@@ -2,6 +2,7 @@
 //! one, else the path of the last states continued.
 
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
+use super::acceleration::Acceleration;
 use super::damping;
 use super::facet_points::{self, LastTrial, Linearisation};
 use super::forcing_term;
@@ -44,6 +45,7 @@ impl Newton {
             first_force: force,
             damping: damping::LEAST,
             linearisation: Linearisation::Tangents,
+            acceleration: Acceleration::default(),
             rock_forces,
             forcing_term: forcing_term::first(system, &self.settings),
             merit: None,

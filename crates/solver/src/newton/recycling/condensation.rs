@@ -4,7 +4,7 @@ use glam::DVec3;
 use kluft_algebra::largest;
 use rayon::prelude::*;
 
-use super::dense;
+use crate::newton::dense;
 use super::space::{PRINCIPAL_DIRECTIONS, RecycledSpace};
 use crate::newton::facet_points;
 use crate::problem::Load;

@@ -3,7 +3,7 @@
 use kluft_algebra::dot;
 use rayon::prelude::*;
 
-use super::dense;
+use crate::newton::dense;
 use super::space::{MOST_DIRECTIONS, RecycledSpace};
 use crate::newton::facet_points::{self, LastTrial, interface};
 use crate::newton::iterate::LastCorrection;
