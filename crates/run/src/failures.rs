@@ -115,10 +115,11 @@ pub fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> Stri
 /// Why a flow could not be solved.
 pub fn flow_failure(failure: &LinearFailure) -> String {
     match failure {
-        LinearFailure::OutOfMemory => {
-            "the factor of the flow does not fit in memory; mesh fractures coarser (a larger h)"
-                .into()
-        }
+        LinearFailure::OutOfMemory(bytes) => format!(
+            "the solver of the flow asked for {} of memory more, and did not get them; mesh \
+             fractures coarser (a larger h), or raise the limit (ulimit -v, container)",
+            gigabytes(*bytes)
+        ),
         LinearFailure::NotFinite => {
             "a number of the flow is not finite; check the units of apertures, viscosity, pressures \
              and rates"
@@ -137,9 +138,11 @@ pub fn flow_failure(failure: &LinearFailure) -> String {
 /// Why a linear system could not be solved.
 pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFailure) -> String {
     match failure {
-        LinearFailure::OutOfMemory => {
-            "the factor does not fit in memory; mesh coarser (a larger h)".into()
-        }
+        LinearFailure::OutOfMemory(bytes) => format!(
+            "the linear solver asked for {} of memory more, and did not get them; mesh coarser (a \
+             larger h), run on fewer threads, or raise the limit (ulimit -v, container)",
+            gigabytes(*bytes)
+        ),
         LinearFailure::Indefinite(row) => {
             let node = system.discretisation().points().node[*row] as usize;
             let x = problem.mesh.nodes[node];

@@ -7,8 +7,8 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, System,
-    block_motions, determinacy, solution, surface_resultants,
+    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, System, block_motions,
+    determinacy, solution, surface_resultants,
 };
 
 use crate::accuracy::{self, Accuracy};

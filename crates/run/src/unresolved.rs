@@ -27,7 +27,11 @@ pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
 
 /// What the user should know of it: the first load step, and how many there are.
 pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
-    let told = || (1..).zip(steps).filter(|(_, step)| step.unresolved.is_some());
+    let told = || {
+        (1..)
+            .zip(steps)
+            .filter(|(_, step)| step.unresolved.is_some())
+    };
     let (number, first) = told().next()?;
     let others = match told().count() - 1 {
         0 => String::new(),

@@ -1,8 +1,8 @@
 //! The first guess for an increment: solved for in the space of former corrections where there is
 //! one, else the path of the last states continued.
 
-use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::acceleration::Acceleration;
+use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::damping;
 use super::facet_points::{self, LastTrial, Linearisation};
 use super::forcing_term;

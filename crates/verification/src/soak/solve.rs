@@ -101,7 +101,9 @@ fn fields(outcome: &Outcome) -> Fields {
 /// Whether a warning says that the scene has other answers.
 fn is_declaration(warning: &str) -> bool {
     let says = |words: &&str| warning.contains(*words);
-    ["not unique", "path of the loads is not resolved"].iter().any(says)
+    ["not unique", "path of the loads is not resolved"]
+        .iter()
+        .any(says)
 }
 
 /// Length of the longest of vectors, three numbers each.
