@@ -143,13 +143,13 @@ mod tests {
         }
     }
 
-    /// Three directions are known after three differences: the slowest share alone would take
+    /// Three directions are known after a few differences: the slowest share alone would take
     /// seven thousand iterations to a thousandth.
     #[test]
     fn slow_directions_are_taken_at_once() {
         let end = DVec3::new(1.0, -2.0, 3.0);
         let (mut accelerated, mut at) = (Acceleration::default(), DVec3::ZERO);
-        for _ in 0..4 {
+        for _ in 0..6 {
             let here = map(at, end);
             at = here.image[0] + accelerated.after(here)[0];
         }
