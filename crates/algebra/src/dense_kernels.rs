@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, StackReq};
 
-use crate::LinearFailure;
+use crate::failure::LinearFailure;
 
 /// Panels that a kernel packs, in units of the largest cache.
 const PANELS: usize = 2;
