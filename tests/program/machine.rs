@@ -142,11 +142,12 @@ fn a_system_that_gives_no_threads_is_a_failure() {
     assert_fails(&run, &["threads: the system does not give 16 threads"]);
 }
 
-/// The kernels of each thread pack panels as large as the cache; what they do not get is named.
+/// The kernels of each thread pack panels as large as the cache; what those of a factor do not get
+/// is named.
 #[test]
 fn memory_that_kernels_do_not_get_is_a_failure() {
     let workshop = Workshop::new("sphere", &[]);
-    for limit in [600_000, 800_000, 1_000_000, 1_200_000] {
+    for limit in [1_000_000, 1_100_000, 1_200_000] {
         let script = format!("ulimit -v {limit}; exec \"$0\" \"$@\"");
         let run = command("bash")
             .args(["-c", &script, KLUFT, "run", "--threads", "2"])
