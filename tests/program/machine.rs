@@ -142,6 +142,29 @@ fn a_system_that_gives_no_threads_is_a_failure() {
     assert_fails(&run, &["threads: the system does not give 16 threads"]);
 }
 
+/// The kernels of each thread pack panels as large as the cache; what those of a factor do not get
+/// is named.
+#[test]
+fn memory_that_kernels_do_not_get_is_a_failure() {
+    let workshop = Workshop::new("sphere", &[]);
+    for limit in [1_000_000, 1_100_000, 1_200_000] {
+        let script = format!("ulimit -v {limit}; exec \"$0\" \"$@\"");
+        let run = command("bash")
+            .args(["-c", &script, KLUFT, "run", "--threads", "2"])
+            .arg(workshop.scene())
+            .output();
+        let run: Run = run.expect("it starts").into();
+        let ended = matches!(run.code, Some(0..=2));
+        assert!(ended, "{limit} kB: {:?}: {}", run.code, run.err);
+        assert!(!run.err.contains("panicked"), "{}", run.err);
+        assert!(
+            run.code != Some(1) || run.err.contains("GB of memory"),
+            "{}",
+            run.err
+        );
+    }
+}
+
 #[test]
 fn a_limit_of_the_address_space_refuses_what_would_not_fit() {
     let workshop = Workshop::new("inclined-joint", &[]);

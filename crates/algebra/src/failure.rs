@@ -3,8 +3,8 @@
 /// Why a linear system could not be solved.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LinearFailure {
-    /// The factor does not fit in memory.
-    OutOfMemory,
+    /// So many bytes were asked for, for a factor or the kernels that make it, and not given.
+    OutOfMemory(usize),
     /// The matrix is not positive definite; the block row where it showed.
     Indefinite(usize),
     /// The ordering or the symbolic analysis failed.

@@ -5,7 +5,7 @@
 //! a new factorisation: conjugate gradients with the last one as preconditioner are cheaper as long
 //! as no stiffness changed by much.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::MemStack;
 use faer::linalg::cholesky::llt::factor::{
     LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
 };
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
-use crate::dense_kernels::parallelism;
+use crate::dense_kernels::{parallelism, reserve_panels, scratch};
 use crate::failure::LinearFailure;
 
 /// Cost of one iteration of conjugate gradients, which reads matrix and factor, in operations of a
@@ -200,7 +200,8 @@ impl SchurComplement {
         }
         let size = self.factor.nrows();
         let request = cholesky_in_place_scratch::<f64>(size, parallelism(), faer::Spec::default());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| LinearFailure::OutOfMemory)?;
+        let mut memory = scratch(request)?;
+        reserve_panels()?;
         cholesky_in_place(
             self.factor.as_mut(),
             LltRegularization::default(),

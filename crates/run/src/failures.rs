@@ -99,7 +99,8 @@ pub fn not_converged(
     format!("step {number} ({step}): {why}{rest}")
 }
 
-fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
+/// A facet point in words.
+pub fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
     let facet_point = system.discretisation().interface().points()[point];
     let facet = facet_point.facet as usize;
     let node = problem.mesh.facets.elements.nodes_of(facet)[0] as usize;
@@ -114,10 +115,11 @@ fn facet_place(problem: &Problem, system: &System<'_>, point: usize) -> String {
 /// Why a flow could not be solved.
 pub fn flow_failure(failure: &LinearFailure) -> String {
     match failure {
-        LinearFailure::OutOfMemory => {
-            "the factor of the flow does not fit in memory; mesh fractures coarser (a larger h)"
-                .into()
-        }
+        LinearFailure::OutOfMemory(bytes) => format!(
+            "the solver of the flow asked for {} of memory more, and did not get them; mesh \
+             fractures coarser (a larger h), or raise the limit (ulimit -v, container)",
+            gigabytes(*bytes)
+        ),
         LinearFailure::NotFinite => {
             "a number of the flow is not finite; check the units of apertures, viscosity, pressures \
              and rates"
@@ -136,9 +138,11 @@ pub fn flow_failure(failure: &LinearFailure) -> String {
 /// Why a linear system could not be solved.
 pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFailure) -> String {
     match failure {
-        LinearFailure::OutOfMemory => {
-            "the factor does not fit in memory; mesh coarser (a larger h)".into()
-        }
+        LinearFailure::OutOfMemory(bytes) => format!(
+            "the linear solver asked for {} of memory more, and did not get them; mesh coarser (a \
+             larger h), run on fewer threads, or raise the limit (ulimit -v, container)",
+            gigabytes(*bytes)
+        ),
         LinearFailure::Indefinite(row) => {
             let node = system.discretisation().points().node[*row] as usize;
             let x = problem.mesh.nodes[node];

@@ -65,6 +65,7 @@ mod stages;
 mod steps;
 mod summary;
 mod undetermined;
+mod unresolved;
 
 pub use flow::RunFlow;
 pub use flow_summary::{

@@ -7,8 +7,8 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord, System,
-    block_motions, determinacy, solution, surface_resultants,
+    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, System, block_motions,
+    determinacy, solution, surface_resultants,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -26,8 +26,9 @@ use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
-use crate::summary::StepSummary;
+use crate::summary::{StepMeasures, StepSummary};
 use crate::undetermined;
+use crate::unresolved;
 
 /// A run that has a system and a solver.
 struct Prepared<'s, 'p> {
@@ -92,8 +93,8 @@ impl Run<'_> {
         };
         prepared.flow = flow.as_ref();
         for index in self.finished.len()..problem.schedule.steps.len() {
-            let record = self.solve_step(&mut prepared, index)?;
-            self.finished.push((&record).into());
+            let measures = self.solve_step(&mut prepared, index)?;
+            self.finished.push(measures);
             self.take_results(&mut prepared)?;
             self.write_summary()?;
             self.write_checkpoint(problem, &prepared)?;
@@ -177,7 +178,7 @@ impl Run<'_> {
         &mut self,
         prepared: &mut Prepared<'_, '_>,
         index: usize,
-    ) -> Result<StepRecord, Interruption> {
+    ) -> Result<StepMeasures, Interruption> {
         let system = prepared.system;
         let schedule = &system.problem().schedule;
         let step = &schedule.steps[index];
@@ -194,7 +195,9 @@ impl Run<'_> {
         });
         self.summary.seconds.factorise += record.factorise_seconds;
         self.summary.seconds.solve += record.solve_seconds;
-        let summary = StepSummary::of(step, (&record).into());
+        let unresolved = unresolved::of_step(system, &record);
+        let measures = StepMeasures::of(&record, unresolved);
+        let summary = StepSummary::of(step, measures.clone());
         self.summary.steps.push(summary);
         if record.outcome == StepOutcome::Stopped {
             return Err(Interruption::Stopped);
@@ -203,7 +206,7 @@ impl Run<'_> {
             let why = failures::not_converged(system.problem(), system, index + 1, &record);
             return Err(Interruption::NotConverged(why));
         }
-        Ok(record)
+        Ok(measures)
     }
 
     /// Estimates the error of a load step, sums it up and writes its results.
@@ -237,7 +240,9 @@ impl Run<'_> {
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
+        let unresolved = unresolved::warning(scene, &self.finished).into_iter();
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
+        self.summary.warnings.extend(unresolved);
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(system, &solution, &accuracy);

@@ -132,6 +132,8 @@ pub struct StepMeasures {
     pub closure_error: f64,
     /// Whether the step converged.
     pub converged: bool,
+    /// What of the path of its loads no division of the step resolves, and where.
+    pub unresolved: Option<String>,
 }
 
 impl StepSummary {
@@ -155,8 +157,9 @@ impl StepSummary {
     }
 }
 
-impl From<&StepRecord> for StepMeasures {
-    fn from(record: &StepRecord) -> Self {
+impl StepMeasures {
+    /// Those of a record, with words for what is not resolved.
+    pub fn of(record: &StepRecord, unresolved: Option<String>) -> Self {
         let last = record.iterations.last();
         let measure = |of: fn(&kluft_solver::Iteration) -> f64| last.map_or(f64::NAN, of);
         Self {
@@ -167,6 +170,7 @@ impl From<&StepRecord> for StepMeasures {
             increment: measure(|last| last.increment),
             closure_error: measure(|last| last.closure_error),
             converged: record.converged(),
+            unresolved,
         }
     }
 }

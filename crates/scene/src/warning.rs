@@ -23,11 +23,13 @@ pub enum Doubt {
     OverlappingWalls,
     /// A state that the loads do not determine.
     NotUnique,
+    /// A path of the loads that no division of a step resolves.
+    UnresolvedPath,
 }
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Values,
         Self::BodySize,
         Self::WideApertures,
@@ -37,6 +39,7 @@ impl Doubt {
         Self::UnnamedSurfaces,
         Self::OverlappingWalls,
         Self::NotUnique,
+        Self::UnresolvedPath,
     ];
 
     /// Its name under `silence`.
@@ -51,6 +54,7 @@ impl Doubt {
             Self::UnnamedSurfaces => "unnamed_surfaces",
             Self::OverlappingWalls => "overlapping_walls",
             Self::NotUnique => "not_unique",
+            Self::UnresolvedPath => "unresolved_path",
         }
     }
 }

@@ -54,7 +54,7 @@ pub use linear::{
 };
 pub use newton::{
     Determinacy, Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord,
-    determinacy, unobserved,
+    UnresolvedPath, determinacy, unobserved,
 };
 pub use problem::{
     Cases, Condition, Conduit, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,

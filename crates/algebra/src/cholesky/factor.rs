@@ -1,7 +1,7 @@
 //! The factor of a scalar matrix, symbolic and numeric, whatever its unknowns stand for.
 
 use faer::Side;
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::MemStack;
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
-use crate::dense_kernels::parallelism;
+use crate::dense_kernels::{parallelism, reserve_panels, scratch};
 use crate::failure::LinearFailure;
 
 /// Analyses the upper triangle of a matrix whose scalars are eliminated in the order `forward` (new
@@ -62,11 +62,12 @@ pub(super) fn numeric(
     factor.clear();
     factor
         .try_reserve_exact(length)
-        .map_err(|_| LinearFailure::OutOfMemory)?;
+        .map_err(|_| LinearFailure::OutOfMemory(length * size_of::<f64>()))?;
     factor.resize(length, 0.0);
     let par = parallelism();
     let request = symbolic.factorize_numeric_llt_scratch::<f64>(par, faer::Spec::default());
-    let mut memory = MemBuffer::try_new(request).map_err(|_| LinearFailure::OutOfMemory)?;
+    let mut memory = scratch(request)?;
+    reserve_panels()?;
     symbolic
         .factorize_numeric_llt(
             factor,

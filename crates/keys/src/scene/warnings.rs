@@ -3,7 +3,7 @@
 use crate::table::{Key, KeySection, Kind, Need};
 
 /// Names of what a run may warn of.
-pub const WARNINGS: [&str; 9] = [
+pub const WARNINGS: [&str; 10] = [
     "values",
     "body_size",
     "wide_apertures",
@@ -13,6 +13,7 @@ pub const WARNINGS: [&str; 9] = [
     "unnamed_surfaces",
     "overlapping_walls",
     "not_unique",
+    "unresolved_path",
 ];
 
 /// What a run does not warn of.

@@ -158,6 +158,16 @@ pub(super) fn linearised_tractions(
         .collect()
 }
 
+/// Adds to the tractions (Pa) of all facet points.
+pub(super) fn pull(system: &System<'_>, state: &mut State, tractions: &[DVec3]) {
+    let points = interface(system).points.iter().zip(tractions);
+    for ((point, traction), state) in points.zip(&mut state.facet_points) {
+        let across = traction.dot(point.normal);
+        state.joint.normal_traction += across;
+        state.joint.shear += *traction - across * point.normal;
+    }
+}
+
 /// Moves all facet points by the change of their jumps (m) to where they are linearised next;
 /// returns their closure errors (Pa).
 pub(super) fn follow(

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use kluft_algebra::largest;
 
+use super::acceleration::Acceleration;
 use super::facet_points::{LastTrial, Linearisation, Linearised};
 use super::fluid::FlowIterate;
 use crate::problem::Load;
@@ -25,6 +26,8 @@ pub(super) struct Iterate {
     pub(super) damping: f64,
     /// What stands for the laws in the next linear solve.
     pub(super) linearisation: Linearisation,
+    /// Former iterates of the splitting.
+    pub(super) acceleration: Acceleration,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     pub(super) forcing_term: f64,
     /// Errors after the last iteration, see `line_search`.

@@ -21,6 +21,10 @@ use crate::system::System;
 /// Forces of an iterate, against those that its increment began with, which no path of the loads
 /// leads to.
 const OVERSHOOT: f64 = 100.0;
+/// Errors below which an iteration is about to end.
+const NEARLY_CONVERGED: f64 = 1e-6;
+/// Iterations beyond the most ones that one may take that is about to end.
+const LAST_ITERATIONS: usize = 5;
 
 impl Iterate {
     /// Adds a correction to the unknowns, lets the facet points follow, and measures the errors.
@@ -41,11 +45,16 @@ impl Iterate {
             return Err(StepOutcome::NotFinite(None));
         }
         self.correct_rock_forces(system, correction);
+        let changes = interface(system).jumps(&correction.unknowns, &Load::NONE);
+        if update.planes.by == Linearisation::Springs {
+            let advance = self.acceleration.advance(system, &self.state, &changes);
+            facet_points::pull(system, &mut self.state, &advance);
+        }
         let errors = facet_points::follow(
             system,
             &mut self.state,
             &mut self.last_trials,
-            &interface(system).jumps(&correction.unknowns, &Load::NONE),
+            &changes,
             update.planes,
         );
         if let Some(flow) = &mut self.flow {
@@ -94,7 +103,7 @@ impl Newton {
         }
     }
 
-    /// Iterates until the tests hold, at `most` so often.
+    /// Iterates until the tests hold, at `most` so often, and a little more if they nearly hold.
     ///
     /// # Errors
     /// [`StepOutcome::OutOfIterations`] if they do not; why, once it is clear that they will not,
@@ -106,12 +115,17 @@ impl Newton {
         iterate: &mut Iterate,
     ) -> Result<(), StepOutcome> {
         let mut rigid_body_motion = RigidBodyMotion::default();
-        for count in 1..=most {
+        let mut is_near = false;
+        for count in 1..=most + LAST_ITERATIONS {
+            if count > most && !is_near {
+                break;
+            }
             let iteration = self.iterate(step, iterate, count)?;
             step.report(iteration);
             if self.settings.accept(step.system, iterate, &iteration) {
                 return Ok(());
             }
+            is_near = line_search::merit(&iteration) < NEARLY_CONVERGED;
             step.go_on()?;
             // Springs hold every block.
             if iterate.linearisation == Linearisation::Tangents {

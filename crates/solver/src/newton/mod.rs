@@ -17,8 +17,10 @@
 //! committed. Where contact and friction lead Newton's method around in circles, the laws and the
 //! rock are solved in turn ([`splitting`]) until it finds its way.
 
+mod acceleration;
 mod convergence;
 mod damping;
+mod dense;
 mod determinacy;
 mod extrapolation;
 mod facet_points;
@@ -43,7 +45,7 @@ mod substepping;
 use step::Step;
 
 pub use determinacy::{Determinacy, determinacy};
-pub use record::{Iteration, StepOutcome, StepRecord};
+pub use record::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
 pub(crate) use recycling::bytes as recycling_bytes;
 pub use restart::RestartState;
 pub use settings::NewtonSettings;

@@ -1,6 +1,7 @@
 //! The first guess for an increment: solved for in the space of former corrections where there is
 //! one, else the path of the last states continued.
 
+use super::acceleration::Acceleration;
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::damping;
 use super::facet_points::{self, LastTrial, Linearisation};
@@ -50,6 +51,7 @@ impl Newton {
             first_force: force,
             damping: damping::LEAST,
             linearisation: Linearisation::Tangents,
+            acceleration: Acceleration::default(),
             rock_forces,
             forcing_term: forcing_term::first(system, &self.settings),
             merit: None,

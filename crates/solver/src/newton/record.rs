@@ -43,6 +43,17 @@ pub enum StepOutcome {
     Stopped,
 }
 
+/// A part of a load step that one increment and two solve differently, however short it is: walls
+/// jump to another place there, and another number of load steps may lead to another equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnresolvedPath {
+    /// Largest difference of the jumps against the largest jump; infinite if two increments lead
+    /// nowhere.
+    pub difference: f64,
+    /// The facet point where it is.
+    pub facet_point: Option<usize>,
+}
+
 /// Record of a load step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepRecord {
@@ -56,6 +67,8 @@ pub struct StepRecord {
     pub completed: f64,
     /// How it ended.
     pub outcome: StepOutcome,
+    /// The part of it, if any, whose path is least resolved.
+    pub unresolved: Option<UnresolvedPath>,
     /// Blocks that nothing held when it failed, each with its free motions.
     pub rigid_motions: Vec<Defect>,
     /// The facet point with the largest closure error at the end.
@@ -73,6 +86,7 @@ impl StepRecord {
             iterations: Vec::new(),
             substeps: Vec::new(),
             completed: 0.0,
+            unresolved: None,
             rigid_motions: Vec::new(),
             outcome: StepOutcome::OutOfIterations,
             worst_facet_point: None,

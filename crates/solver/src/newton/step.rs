@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::free_blocks;
-use super::{Iteration, StepOutcome, StepRecord};
+use super::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
 use crate::problem::Load;
 use crate::system::{State, System};
 
@@ -44,6 +44,14 @@ impl<'a> Step<'a> {
             Err(StepOutcome::Stopped)
         } else {
             Ok(())
+        }
+    }
+
+    /// Records a part of the step whose path is not resolved, if it is the least resolved so far.
+    pub(super) fn leave_unresolved(&mut self, path: UnresolvedPath) {
+        let former = self.record.unresolved.as_ref();
+        if former.is_none_or(|former| former.difference < path.difference) {
+            self.record.unresolved = Some(path);
         }
     }
 

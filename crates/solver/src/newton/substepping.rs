@@ -5,14 +5,15 @@
 //! increment and in two; where the jumps differ by more than
 //! [`NewtonSettings::path`](super::NewtonSettings::path), or what the fluid fills and its pressures
 //! by more than [`NewtonSettings::time`](super::NewtonSettings::time), it is divided. Loads and
-//! what drives the flow walk with it.
+//! what drives the flow walk with it. What no division resolves, walls that jump to another place in an instant, is let be
+//! and recorded.
 
 use glam::DVec3;
 use kluft_algebra::largest;
 
 use super::convergence::ratio;
 use super::facet_points::interface;
-use super::{Newton, Step, StepOutcome};
+use super::{Newton, Step, StepOutcome, UnresolvedPath};
 use crate::FacetPointState;
 use crate::flow::Coupling;
 use crate::problem::Load;
@@ -28,16 +29,36 @@ const GROWTH_SHARE: f64 = 0.25;
 struct Substep {
     middle: Load,
     end: Load,
-    /// Whether it may be divided.
-    is_divisible: bool,
+    /// Whether it is not divided any more.
+    is_smallest: bool,
 }
 
 /// What a substep came to.
 enum Solved {
     /// Its end, and whether the next may be longer.
-    Accepted { end: Box<State>, may_grow: bool },
-    /// It is to be divided; why, if it is not for accuracy.
-    TooLong(Option<StepOutcome>),
+    Accepted { end: State, may_grow: bool },
+    /// It is to be divided.
+    TooLong {
+        /// Why, if it is not for accuracy.
+        why: Option<StepOutcome>,
+        /// Its end in one increment, if that was found.
+        whole: Option<State>,
+    },
+}
+
+impl Solved {
+    fn failed(outcome: StepOutcome, whole: Option<State>) -> Self {
+        Self::TooLong {
+            why: Some(outcome),
+            whole,
+        }
+    }
+}
+
+/// A state on the way, and the share of the step that leads to it.
+struct Reached {
+    state: State,
+    share: f64,
 }
 
 impl Newton {
@@ -51,49 +72,63 @@ impl Newton {
         state: &State,
         load: &Load,
     ) -> Result<State, StepOutcome> {
-        let mut here = state.clone();
         let flows = step.system.coupling().is_some_and(Coupling::is_transient);
         let start = match flows {
             true => step.system.problem.schedule.walked_from(&state.load),
             false => state.load.clone(),
         };
+        let mut here = Reached {
+            state: state.clone(),
+            share: 0.0,
+        };
         let mut increment = 1.0_f64;
-        while step.record.completed < 1.0 {
-            let completed = step.record.completed;
-            let end = f64::min(completed + increment, 1.0);
+        // The end of the shortest substep from here that converged in one increment.
+        let mut coarse: Option<Reached> = None;
+        while here.share < 1.0 {
+            let end = f64::min(here.share + increment, 1.0);
             let substep = Substep {
-                middle: between(&start, load, 0.5 * (completed + end)),
+                middle: between(&start, load, 0.5 * (here.share + end)),
                 end: between(&start, load, end),
-                is_divisible: increment > SMALLEST_SUBSTEP,
+                is_smallest: increment <= SMALLEST_SUBSTEP,
             };
-            match self.solve_substep(step, &here, &substep) {
-                Solved::Accepted {
-                    end: next,
-                    may_grow,
-                } => {
-                    self.path.remember(step.system, &here);
-                    (here, step.record.completed) = (*next, end);
+            let reached = |state: State| Reached { state, share: end };
+            let next = match self.solve_substep(step, &here.state, &substep) {
+                Solved::Accepted { end, may_grow } => {
                     increment *= if may_grow { 2.0 } else { 1.0 };
+                    Some(reached(end))
                 }
-                Solved::TooLong(Some(outcome)) if is_final(step.system, &outcome, increment) => {
-                    return Err(outcome);
+                Solved::TooLong { why, whole } => {
+                    coarse = whole.map(reached).or(coarse);
+                    let is_final = |why: &StepOutcome| is_final(step.system, why, increment);
+                    if let Some(outcome) = why.filter(is_final) {
+                        let end = let_be(step, outcome, coarse.take())?;
+                        increment = end.share - here.share;
+                        Some(end)
+                    } else {
+                        increment *= 0.5;
+                        None
+                    }
                 }
-                Solved::TooLong(_) => increment *= 0.5,
+            };
+            if let Some(next) = next {
+                self.path.remember(step.system, &here.state);
+                (here, coarse) = (next, None);
+                step.record.completed = here.share;
             }
         }
-        Ok(here)
+        Ok(here.state)
     }
 
     fn solve_substep(&mut self, step: &mut Step<'_>, from: &State, substep: &Substep) -> Solved {
         let whole = match self.solve_counted(step, from, &substep.end) {
             Ok(whole) => whole,
-            Err(outcome) => return Solved::TooLong(Some(outcome)),
+            Err(outcome) => return Solved::failed(outcome, None),
         };
         let slides = step.system.is_path_dependent() && !is_elastic(from, &whole);
         let flows = step.system.coupling().is_some_and(Coupling::is_transient);
         if !slides && (!flows || self.settings.time >= 1.0) {
             return Solved::Accepted {
-                end: Box::new(whole),
+                end: whole,
                 may_grow: true,
             };
         }
@@ -102,20 +137,26 @@ impl Newton {
             .and_then(|half| self.solve_counted(step, &half, &substep.end));
         let halves = match halves {
             Ok(halves) => halves,
-            Err(outcome) => return Solved::TooLong(Some(outcome)),
+            Err(outcome) => return Solved::failed(outcome, Some(whole)),
         };
-        let allowed = [
-            slides.then(|| difference(step.system, &whole, &halves) / self.settings.path),
-            flows.then(|| flows_apart(step.system, &whole, &halves) / self.settings.time),
-        ];
-        let error = allowed.into_iter().flatten().fold(0.0, f64::max);
-        if error <= 1.0 || !substep.is_divisible {
-            Solved::Accepted {
-                end: Box::new(halves),
-                may_grow: error <= GROWTH_SHARE,
-            }
-        } else {
-            Solved::TooLong(None)
+        let apart = slides.then(|| difference(step.system, &whole, &halves));
+        let flow = flows.then(|| flows_apart(step.system, &whole, &halves) / self.settings.time);
+        let path = apart
+            .as_ref()
+            .map(|apart| apart.difference / self.settings.path);
+        let error = path.into_iter().chain(flow).fold(0.0, f64::max);
+        if error > 1.0 && !substep.is_smallest {
+            return Solved::TooLong {
+                why: None,
+                whole: Some(whole),
+            };
+        }
+        if let Some(apart) = apart.filter(|_| path.is_some_and(|path| path > 1.0)) {
+            step.leave_unresolved(apart);
+        }
+        Solved::Accepted {
+            end: halves,
+            may_grow: error <= GROWTH_SHARE,
         }
     }
 
@@ -160,13 +201,40 @@ fn is_elastic(from: &State, to: &State) -> bool {
     pairs.into_iter().all(unbroken)
 }
 
-/// Largest difference of the jumps of two states, against the largest jump.
-fn difference(system: &System<'_>, a: &State, b: &State) -> f64 {
+/// Largest difference of the jumps of two states, against the largest jump, and where it is.
+fn difference(system: &System<'_>, a: &State, b: &State) -> UnresolvedPath {
     let pairs = a.unknowns.iter().zip(&b.unknowns);
     let between: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
-    let apart = largest(&interface(system).jumps(&between, &Load::NONE));
+    let apart = interface(system).jumps(&between, &Load::NONE);
     let size = largest(&interface(system).jumps(&b.unknowns, &b.load));
-    ratio(apart, size)
+    let length = |point: usize| apart[point].length();
+    let facet_point = (0..apart.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
+    UnresolvedPath {
+        difference: ratio(largest(&apart), size),
+        facet_point,
+    }
+}
+
+/// What stands for a substep that no division resolves: the end of a longer one that converged in
+/// one increment.
+///
+/// # Errors
+/// The outcome of the shortest, if there is none.
+fn let_be(
+    step: &mut Step<'_>,
+    outcome: StepOutcome,
+    coarse: Option<Reached>,
+) -> Result<Reached, StepOutcome> {
+    let Some(end) = coarse.filter(|_| outcome != StepOutcome::Stopped) else {
+        return Err(outcome);
+    };
+    let facet_point = step.record.worst_facet_point;
+    step.record.rigid_motions.clear();
+    step.leave_unresolved(UnresolvedPath {
+        difference: f64::INFINITY,
+        facet_point,
+    });
+    Ok(end)
 }
 
 /// How far two states are apart in what their fluids fill and in their pressures.

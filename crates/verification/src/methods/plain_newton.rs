@@ -121,6 +121,7 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
         iterations,
         outcome,
         substeps: Vec::new(),
+        unresolved: None,
         rigid_motions: Vec::new(),
         worst_facet_point: None,
         factorise_seconds: 0.0,

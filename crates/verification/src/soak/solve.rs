@@ -94,8 +94,16 @@ fn fields(outcome: &Outcome) -> Fields {
     Fields {
         jumps: values(|step| &step.fracture_grid, "jump"),
         displacement: longest(&displacements),
-        is_declared: warnings.any(|warning| warning.contains("not unique")),
+        is_declared: warnings.any(|warning| is_declaration(warning)),
     }
+}
+
+/// Whether a warning says that the scene has other answers.
+fn is_declaration(warning: &str) -> bool {
+    let says = |words: &&str| warning.contains(*words);
+    ["not unique", "path of the loads is not resolved"]
+        .iter()
+        .any(says)
 }
 
 /// Length of the longest of vectors, three numbers each.

@@ -4,8 +4,8 @@ use glam::DVec3;
 use kluft_algebra::largest;
 use rayon::prelude::*;
 
-use super::dense;
 use super::space::{PRINCIPAL_DIRECTIONS, RecycledSpace};
+use crate::newton::dense;
 use crate::newton::facet_points;
 use crate::problem::Load;
 use crate::system::{State, System};

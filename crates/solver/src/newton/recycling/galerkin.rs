@@ -3,8 +3,8 @@
 use kluft_algebra::dot;
 use rayon::prelude::*;
 
-use super::dense;
 use super::space::{MOST_DIRECTIONS, RecycledSpace};
+use crate::newton::dense;
 use crate::newton::facet_points::{self, LastTrial, interface};
 use crate::newton::iterate::LastCorrection;
 use crate::problem::Load;

@@ -12,7 +12,6 @@
 //! (proper orthogonal decomposition).
 
 mod condensation;
-mod dense;
 mod galerkin;
 mod projection;
 mod space;

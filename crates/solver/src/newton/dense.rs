@@ -1,4 +1,4 @@
-//! Small dense algebra of a recycled space.
+//! Small dense algebra of directions: of a recycled space, of an acceleration.
 
 use faer::{Mat, Side};
 

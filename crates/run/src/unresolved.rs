@@ -1,0 +1,48 @@
+//! Parts of a load path that no division resolves, in words.
+
+use kluft_scene::{Doubt, Scene};
+use kluft_solver::{StepRecord, System};
+
+use crate::failures::facet_place;
+use crate::summary::StepMeasures;
+
+/// What of the path of a load step is not resolved, and where.
+pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
+    let path = record.unresolved?;
+    let place = path.facet_point;
+    let place = place.map(|point| facet_place(system.problem(), system, point));
+    let what = if path.difference.is_finite() {
+        format!(
+            "one increment and two lead to jumps that differ by {:.1} % of the largest",
+            100.0 * path.difference
+        )
+    } else {
+        "one increment leads to an equilibrium, and two shorter ones to none".to_owned()
+    };
+    Some(match place {
+        Some(place) => format!("{what}, most at {place}"),
+        None => what,
+    })
+}
+
+/// What the user should know of it: the first load step, and how many there are.
+pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
+    let told = || {
+        (1..)
+            .zip(steps)
+            .filter(|(_, step)| step.unresolved.is_some())
+    };
+    let (number, first) = told().next()?;
+    let others = match told().count() - 1 {
+        0 => String::new(),
+        1 => "; so in one step more".to_owned(),
+        more => format!("; so in {more} steps more"),
+    };
+    let text = format!(
+        "the path of the loads is not resolved: in step {number}, however short it is divided, \
+         {}{others}: walls jump to another place there, and other load steps may lead to another \
+         equilibrium; compare a run with more of them",
+        first.unresolved.as_deref().unwrap_or_default()
+    );
+    scene.warning(Doubt::UnresolvedPath, &text)
+}
