@@ -2,6 +2,7 @@
 
 mod closure;
 mod conditions;
+mod field;
 mod fluid;
 mod fracture;
 mod load;
@@ -15,6 +16,7 @@ mod warnings;
 
 pub use closure::{ClosureLaw, LAWS};
 pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
+pub use field::{COORDINATES, FIELD};
 pub use fluid::{FLUID, FLUID_PROFILE, SOURCE};
 pub use fracture::{CLOSURES, FRACTURE};
 pub use load::{LOAD, PHASE};

@@ -20,7 +20,7 @@ use crate::summary::{FractureSummary, Seconds, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 6\n";
+const HEAD: &[u8] = b"kluft checkpoint 7\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -39,6 +39,8 @@ pub struct Identity {
     pub scene: Fingerprint,
     /// The text of the geometry, if the scene names one.
     pub geometry: Option<Fingerprint>,
+    /// The bytes of the files of values that the scene names, in its order.
+    pub values: Vec<Fingerprint>,
     /// The bytes of the mesh file.
     pub mesh: Fingerprint,
 }
@@ -218,7 +220,14 @@ impl Identity {
         let scene = (self.scene != former.scene).then(|| changed(scene, "scene"));
         let geometry = geometry.filter(|_| self.geometry != former.geometry);
         let geometry = geometry.map(|path| changed(path, "geometry"));
-        [version, scene, geometry].into_iter().flatten().collect()
+        let values = self.scene == former.scene && self.values != former.values;
+        let values = values.then(|| {
+            let problem = "a file of values that the scene names has changed since the run was \
+                           interrupted";
+            Defect::new(NAME, problem, format!("undo the change, or {AFRESH}"))
+        });
+        let scene = scene.into_iter().chain(geometry);
+        version.into_iter().chain(scene).chain(values).collect()
     }
 }
 
@@ -250,6 +259,7 @@ mod tests {
             version: "1.2.3".into(),
             scene: fingerprint("scene"),
             geometry: Some(1 << 127),
+            values: vec![3],
             mesh: 7,
         }
     }
@@ -342,6 +352,9 @@ mod tests {
             identity().differences(other, scene, Some(geometry))
         };
         assert_eq!(compare(&other), Vec::new());
+        other.values = vec![4];
+        let defects = compare(&other);
+        assert!(defects[0].problem.contains("file of values"), "{defects:?}");
         other.version = "1.2.2".into();
         other.scene ^= 1;
         other.geometry = None;

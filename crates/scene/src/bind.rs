@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
-use kluft_solver::{Condition, FixedPoint, Flow, Problem};
+use kluft_solver::{Condition, FixedPoint, Flow, Problem, Varying};
 use lie_core::Rock;
 
+use crate::bind_fields::bind_fields;
 use crate::bind_flow::bind_flow;
 use crate::cases::{Bound, schedule};
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
@@ -95,7 +96,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
     let rocks = scene.rocks.iter().map(|entry| entry.value);
-    let problem = Problem {
+    let mut problem = Problem {
         conditions,
         rocks: match scene.rocks.is_empty() {
             true => vec![Rock::rigid(0.0)],
@@ -110,12 +111,14 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
             .collect(),
         fixed_points,
         gravity: scene.body.gravity,
-        initial_stress: scene.initial_stress,
+        initial_stress: scene.initial_stress.as_ref().map(|entry| entry.stress.clone()),
+        varying: Varying::default(),
         facet_quadrature: scene.solver.facets,
         mesh,
     };
+    let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
     Ok(Binding {
-        warnings: [warnings(scene, &problem), idle].concat(),
+        warnings: [warnings(scene, &problem), odd, idle].concat(),
         problem,
         flow,
         decisions,
@@ -132,7 +135,7 @@ fn bind_boundaries<'a>(
         let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
         let condition = Condition {
             boundary,
-            load: entry.value.load,
+            load: entry.value.uniform_load(),
             support: entry.value.support,
         };
         Some((entry, condition))
@@ -172,7 +175,15 @@ fn bind_oracles(
     let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
     for (name, fracture) in mesh.fractures.iter().zip(fractures) {
         let refused = of(name).and_then(|entry| {
-            let [problem, remedy] = entry.value.refusal(&fracture.value.fracture)?;
+            let varies = !fracture.value.fields.is_empty() || fracture.value.varying_pressure.is_some();
+            let refusal = match varies {
+                true => Some([
+                    "a closed form has one law and one pressure all over its fracture",
+                    "give the fracture plain numbers, or remove the closed form",
+                ]),
+                false => entry.value.refusal(&fracture.value.fracture),
+            };
+            let [problem, remedy] = refusal?;
             Some(Defect::new(&entry.place, problem, remedy))
         });
         defects.extend(refused);

@@ -5,13 +5,16 @@
 //! problem that a solver takes. Values are in SI units.
 
 mod bind;
+mod bind_fields;
 mod bind_flow;
 mod cases;
 mod conditions;
 mod doubts;
+mod field;
 mod fluid;
 mod fracture;
 mod history;
+mod initial_stress;
 mod join;
 mod load;
 mod oracle;
@@ -26,10 +29,14 @@ mod setting;
 mod warning;
 
 pub use bind::{Binding, bind};
-pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+pub use conditions::{
+    BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, VaryingLoadEntry,
+};
+pub use field::FieldEntry;
 pub use fluid::SourceEntry;
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
+pub use initial_stress::InitialStressEntry;
 pub use join::{JoinedDraft, join};
 pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};

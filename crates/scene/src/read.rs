@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
-use kluft_solver::{Fluid, InitialStress};
+use kluft_solver::Fluid;
 use lie_core::{FacetQuadrature, Rock};
 
 use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, read_fixed_point};
 use crate::fluid::{SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
+use crate::initial_stress::read_initial_stress;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
-use crate::profile::read_profile;
 use crate::reader::{Section, Source};
 use crate::scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::{FluidUse, Setting};
@@ -58,7 +58,7 @@ impl Scene {
     /// # Errors
     /// Every defect of the text, each with its line and a remedy.
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Vec<Defect>> {
-        let source = Source::new(name, text, Document::Scene);
+        let source = Source::new(name, text, Document::Scene).in_folder(folder);
         let table = source.parse();
         let scene = table.as_ref().and_then(|table| {
             let root = Section::root(&source, table.get_ref());
@@ -359,12 +359,6 @@ fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<Rock> {
         poisson_ratio: poisson_ratio?,
         density: density.unwrap_or(0.0),
     })
-}
-
-fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {
-    let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| read_profile(&section, name));
-    section.finish();
-    InitialStress { components }
 }
 
 fn read_solver(root: &Section<'_, '_>) -> SolverEntry {

@@ -1,13 +1,14 @@
 //! A scene: what is meshed, of what rock, cut by which fractures, under which loads.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use kluft_solver::{Fluid, InitialStress, LinearMethod};
+use kluft_solver::{Fluid, LinearMethod};
 use lie_core::{FacetQuadrature, Rock};
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::fluid::SourceEntry;
 use crate::history::Timetable;
+use crate::initial_stress::InitialStressEntry;
 use crate::oracle::Oracle;
 
 /// Something the scene says about a named group, and where it says so.
@@ -92,7 +93,7 @@ pub struct Scene {
     /// Boreholes.
     pub sources: Vec<Named<SourceEntry>>,
     /// Stress before any load.
-    pub initial_stress: Option<InitialStress>,
+    pub initial_stress: Option<InitialStressEntry>,
     /// Load steps.
     pub timetable: Timetable,
     /// What is asked of the linear solver.
@@ -106,6 +107,24 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The files that values come from, each once, in the order of the scene.
+    pub fn value_files(&self) -> Vec<&Path> {
+        let fractures = self.fractures.iter().flat_map(|entry| {
+            let value = &entry.value;
+            let laws = value.fields.iter().map(|(_, field)| field);
+            laws.chain(value.varying_pressure.as_deref())
+        });
+        let loads = self.boundaries.iter().flat_map(|entry| entry.value.fields());
+        let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);
+        let mut files: Vec<&Path> = Vec::new();
+        for file in fractures.chain(loads).chain(stress).filter_map(|field| field.file.as_deref()) {
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        files
+    }
+
     /// Whether the rock is rigid, and flow is all that happens.
     pub fn is_rigid(&self) -> bool {
         self.fluid.is_some() && self.rocks.iter().all(|entry| entry.value.is_rigid())

@@ -57,7 +57,8 @@ pub use newton::{
 };
 pub use problem::{
     Cases, Condition, Conduit, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
-    Fracture, InitialStress, Load, Problem, Profile, Schedule, Step, Support, SurfaceLoad,
+    Field, Fracture, InitialStress, LawParameter, Load, LoadField, Problem, Profile, Schedule, Step,
+    Support, SurfaceLoad, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
 };
 pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
 pub use solution::{FacetResult, FacetState, Solution, solution};

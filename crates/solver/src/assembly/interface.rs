@@ -47,7 +47,7 @@ pub struct Interface {
     /// facets, in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points
     /// follow.
     pub(crate) points: Vec<FacetPoint>,
-    /// Law of each fracture.
+    /// Law of each fracture, then those of points that have their own.
     laws: Vec<FractureLaw>,
     /// Rule that each fracture is integrated by.
     rules: Vec<FacetQuadrature>,
@@ -102,6 +102,10 @@ impl Interface {
             });
             interface.prescribed.extend(prescribed);
             interface.points.push(drawn.point);
+            if let Some(law) = drawn.law {
+                interface.points[number as usize].law = interface.laws.len() as u32;
+                interface.laws.push(law);
+            }
             interface.terms.extend(drawn.terms);
             interface.term_offset.push(interface.terms.len());
         }
@@ -134,11 +138,12 @@ impl Interface {
         self.unknowns = unknowns;
     }
 
-    /// Gives the fractures other laws, one each, which carry the initial stress from now on. The
-    /// facet points stay.
+    /// Gives the fractures other laws, one each, the same all over a fracture, which carry the
+    /// initial stress from now on. The facet points stay.
     pub(crate) fn set_laws(&mut self, problem: &Problem, laws: Vec<FractureLaw>) {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
+            point.law = point.fracture;
             point.initial = initial_walls(problem, law, point.position, point.normal);
         }
         self.laws = laws;
@@ -161,7 +166,7 @@ impl Interface {
         &self.columns
     }
 
-    /// Law of each fracture.
+    /// Law of each fracture, then those of points that have their own.
     pub fn laws(&self) -> &[FractureLaw] {
         &self.laws
     }
@@ -283,6 +288,8 @@ impl Interface {
 /// A facet point with its terms, before they are numbered.
 struct Drawn {
     point: FacetPoint,
+    /// The law of the point, if it is not that of its fracture.
+    law: Option<FractureLaw>,
     terms: Vec<Term>,
     /// Load case and jump (m) of prescribed displacements.
     prescribed: Vec<(u32, DVec3)>,
@@ -313,11 +320,15 @@ fn draw(
         spring: spring(problem, facet, mean.length()),
         mean,
     };
-    let mut drawn: Vec<Drawn> = rule.iter().map(|point| drawing.point(point)).collect();
     let nodal = match quadrature {
         FacetQuadrature::Nodal | FacetQuadrature::Control => nodes.len(),
         FacetQuadrature::Gauss => 0,
     };
+    let node = |index: usize| positions.get(index).filter(|_| index < nodal).copied();
+    let numbered = rule.iter().enumerate();
+    let mut drawn: Vec<Drawn> = numbered
+        .map(|(index, point)| drawing.point(point, node(index)))
+        .collect();
     let others = drawn.split_off(nodal);
     (drawn, others)
 }
@@ -335,7 +346,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    fn point(&self, rule: &FacetRulePoint) -> Drawn {
+    fn point(&self, rule: &FacetRulePoint, node: Option<DVec3>) -> Drawn {
         let Self {
             problem,
             points,
@@ -369,10 +380,13 @@ impl Drawing<'_> {
             true => (own, rule.area / own),
             false => (rule.area.dot(mean.normalize()), mean.normalize()),
         };
-        let law = &problem.fractures[fracture as usize].law;
+        let own_law = problem.varying_law(fracture, rule, node);
+        let law = own_law.as_ref();
+        let law = law.unwrap_or(&problem.fractures[fracture as usize].law);
         let point = FacetPoint {
             facet: facet as u32,
             fracture,
+            law: fracture,
             position: rule.position,
             area,
             normal,
@@ -382,6 +396,7 @@ impl Drawing<'_> {
         let prescribed = (0..).zip(prescribed);
         Drawn {
             point,
+            law: own_law,
             terms,
             prescribed: prescribed
                 .filter(|(_, jump)| *jump != DVec3::ZERO)
@@ -429,7 +444,7 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
 /// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
 /// what the initial stress would need of it.
 fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> JointState {
-    let stress = problem.initial_stress;
+    let stress = problem.initial_stress.as_ref();
     let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
     law.under_initial_stress(traction, normal)
 }

@@ -4,20 +4,26 @@ mod conditions;
 mod flow;
 mod initial_stress;
 mod schedule;
+mod varying;
 
 use glam::DVec3;
 use kluft_mesh::Mesh;
-use lie_core::{FacetQuadrature, FractureLaw, Rock};
+use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Rock, facet_points};
 
 pub use conditions::{Condition, FixedPoint, Support, SurfaceLoad};
 pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid};
-pub use initial_stress::{InitialStress, Profile};
+pub use initial_stress::InitialStress;
+pub use kluft_field::{Field, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};
+pub use varying::{
+    LawParameter, LoadField, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
+};
 
 /// A fracture's law and what fills it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fracture {
-    /// The law that a discretisation takes over; later ones are given to the system.
+    /// The law that a discretisation takes over; later ones are given to the system. Where
+    /// parameters vary, it has their means.
     pub law: FractureLaw,
     /// Fluid pressure on both walls (Pa), opening.
     pub fluid_pressure: f64,
@@ -42,6 +48,8 @@ pub struct Problem {
     pub gravity: DVec3,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,
+    /// What varies within fractures and parts of the surface.
+    pub varying: Varying,
     /// Load cases and load steps.
     pub schedule: Schedule,
     /// How fractures are integrated over their facets. Fractures whose laws have kinks are
@@ -60,6 +68,7 @@ impl Problem {
             fixed_points: Vec::new(),
             gravity: DVec3::ZERO,
             initial_stress: None,
+            varying: Varying::default(),
             schedule: Schedule::proportional(vec![1.0]),
             facet_quadrature: FacetQuadrature::Nodal,
             mesh,
@@ -69,6 +78,45 @@ impl Problem {
     /// Rock of a cell.
     pub fn rock(&self, cell: usize) -> &Rock {
         &self.rocks[self.rock_of_cell[cell] as usize]
+    }
+
+    /// The law of a fracture at a facet point, where it varies; `node` is the node that the point
+    /// belongs to, if it belongs to one.
+    ///
+    /// Laws with kinks are taken at the nodes: points that have one jump touch and slide together.
+    pub(crate) fn varying_law(
+        &self,
+        fracture: u32,
+        point: &FacetRulePoint,
+        node: Option<DVec3>,
+    ) -> Option<FractureLaw> {
+        let mut all = self.varying.laws.iter();
+        let varying = all.find(|law| law.fracture == fracture as usize)?;
+        let position = match self.rule_of(fracture) {
+            FacetQuadrature::Control => node.unwrap_or(point.position),
+            FacetQuadrature::Nodal | FacetQuadrature::Gauss => point.position,
+        };
+        Some(varying.at(&self.fractures[fracture as usize].law, position))
+    }
+
+    /// Positions (m) at which a law and a fluid pressure of a fracture are asked for: its facet
+    /// points and their nodes.
+    pub fn places_of_fracture(&self, fracture: usize) -> Vec<DVec3> {
+        let facets = &self.mesh.facets;
+        let own = (0..facets.elements.len())
+            .filter(|&facet| facets.fracture[facet] as usize == fracture);
+        let places = own.flat_map(|facet| {
+            let nodes = facets.elements.nodes_of(facet).iter();
+            let nodes: Vec<DVec3> = nodes.map(|&node| self.mesh.nodes[node as usize]).collect();
+            let rule = self.rule_of(fracture as u32);
+            let points = facet_points(facets.elements.shapes[facet], &nodes, rule);
+            let at_nodes = match rule {
+                FacetQuadrature::Control => nodes,
+                FacetQuadrature::Nodal | FacetQuadrature::Gauss => Vec::new(),
+            };
+            points.into_iter().map(|point| point.position).chain(at_nodes)
+        });
+        places.collect()
     }
 
     /// How a fracture is integrated: at control points instead of nodes if its law has kinks,
