@@ -1,9 +1,9 @@
 //! Whether the loads are enough to push the walls of fractures through each other.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use kluft_mesh::{Survey, facet_area_vector};
 use kluft_solver::{
-    Condition, Field, LoadField, Problem, Support, SurfaceLoad, VaryingLoad,
+    Condition, Field, LoadField, Problem, Support, SurfaceLoad, VaryingLoad, principal,
 };
 use lie_core::{Closure, ClosureKind};
 
@@ -105,7 +105,11 @@ fn compression(problem: &Problem) -> Option<f64> {
     let gravity = schedule.largest_factor(schedule.cases.gravity) * problem.gravity.abs();
     let weight = density.fold(0.0, f64::max) * gravity.dot(high - low);
     let initial = problem.initial_stress.as_ref().map_or(0.0, |stress| {
-        let ends = [low, high].map(|at| -smallest_principal(&stress.at(at)));
+        let ends = [low, high].map(|at| {
+            let s = stress.at(at);
+            let [x, y, z] = [s.x_axis, s.y_axis, s.z_axis];
+            -principal(&[x.x, y.y, z.z, x.y, y.z, x.z])[0]
+        });
         ends[0].max(ends[1]).max(0.0)
     });
     let varying = problem.varying.loads.iter();
@@ -180,36 +184,9 @@ fn beside(traction: DVec3, normal: DVec3) -> f64 {
     (0.25 * across * across + along * along).sqrt() - 0.5 * across
 }
 
-/// Smallest eigenvalue of a symmetric matrix (Smith 1961).
-fn smallest_principal(stress: &DMat3) -> f64 {
-    let mean = (stress.x_axis.x + stress.y_axis.y + stress.z_axis.z) / 3.0;
-    let deviator = *stress - DMat3::from_diagonal(DVec3::splat(mean));
-    let squares = [deviator.x_axis, deviator.y_axis, deviator.z_axis].map(DVec3::length_squared);
-    let size = (squares.iter().sum::<f64>() / 6.0).sqrt();
-    if size == 0.0 {
-        return mean;
-    }
-    let half = (deviator * (1.0 / size)).determinant() / 2.0;
-    let angle = half.clamp(-1.0, 1.0).acos() / 3.0;
-    mean + 2.0 * size * (angle + 2.0 * std::f64::consts::PI / 3.0).cos()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_smallest_principal_stress_is_an_eigenvalue() {
-        let turned = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
-        for values in [[-5.0, 2.0, 1.0], [3.0, 3.0, 3.0], [0.0, -1.0, -1.0]] {
-            let stress = turned * DMat3::from_diagonal(values.into()) * turned.transpose();
-            let smallest = values.into_iter().fold(f64::INFINITY, f64::min);
-            assert!(
-                (smallest_principal(&stress) - smallest).abs() < 1e-7,
-                "{values:?}"
-            );
-        }
-    }
 
     #[test]
     fn walls_meet_at_the_cutoff_where_the_law_says() {

@@ -176,7 +176,10 @@ fn make_paths_absolute(scene: &mut Table, folder: &Path) {
         }
     }
     for key in ["fracture", "boundary", "initial_stress"] {
-        scene.get_mut(key).into_iter().for_each(|value| of_values(value, folder));
+        scene
+            .get_mut(key)
+            .into_iter()
+            .for_each(|value| of_values(value, folder));
     }
 }
 

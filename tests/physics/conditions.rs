@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
-    Condition, Discretisation, Field, InitialStress, Load, Newton, NewtonSettings, Problem, Profile,
-    Support, SurfaceLoad, System, solution, unobserved,
+    Condition, Discretisation, Field, InitialStress, Load, Newton, NewtonSettings, Problem,
+    Profile, Support, SurfaceLoad, System, solution, unobserved,
 };
 use lie_core::ClosureKind;
 

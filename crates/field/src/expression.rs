@@ -12,10 +12,7 @@ use crate::precedence;
 /// Longest text of an expression, in bytes.
 const LONGEST: usize = 2000;
 
-literal_matcher_from_pattern!(
-    Numbers,
-    r"^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?"
-);
+literal_matcher_from_pattern!(Numbers, r"^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?");
 
 /// The operators of expressions.
 #[derive(Debug, Clone)]
@@ -45,8 +42,8 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Reads an expression; its values are multiplied by `factor`, and `ground` is the elevation (m)
-    /// where the depth is 0.
+    /// Reads an expression; its values are multiplied by `factor`, and `ground` is the elevation
+    /// (m) where the depth is 0.
     ///
     /// # Errors
     /// What is wrong with the text, and what helps.
@@ -152,7 +149,10 @@ mod tests {
         ] {
             let expression = Expression::read(text, 10.0, 10.0).expect(text);
             let found = expression.at(at, 2.0);
-            assert!((found - 10.0 * value).abs() <= 1e-14 * found.abs(), "{text}: {found}");
+            assert!(
+                (found - 10.0 * value).abs() <= 1e-14 * found.abs(),
+                "{text}: {found}"
+            );
         }
         let moves = |text: &str| Expression::read(text, 1.0, 0.0).map(|e| e.depends_on_time());
         assert_eq!((moves("x + time"), moves("x")), (Ok(true), Ok(false)));

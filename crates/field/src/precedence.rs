@@ -43,10 +43,7 @@ pub(crate) fn check(text: &str, functions: &[String]) -> Result<(), [String; 2]>
 
 /// Whether what follows `before` begins an operand.
 fn is_start(before: &[Token<'_>]) -> bool {
-    matches!(
-        before.last(),
-        None | Some(Token::Open | Token::Operator(_))
-    )
+    matches!(before.last(), None | Some(Token::Open | Token::Operator(_)))
 }
 
 fn is_power(tokens: &[Token<'_>], at: usize) -> bool {
@@ -124,10 +121,34 @@ mod tests {
     #[test]
     fn signs_before_powers_are_refused_and_others_are_not() {
         let functions = ["sin".to_owned()];
-        for text in ["-x^2", "3*-x^2", "-sin(x)^2", "-(x+1)^2", "2^-x^2", "x^2^3", "min(1, -x^2)", "sin x^2", "--x^2"] {
+        for text in [
+            "-x^2",
+            "3*-x^2",
+            "-sin(x)^2",
+            "-(x+1)^2",
+            "2^-x^2",
+            "x^2^3",
+            "min(1, -x^2)",
+            "sin x^2",
+            "--x^2",
+        ] {
             assert!(check(text, &functions).is_err(), "{text}");
         }
-        for text in ["2-x^2", "-(x^2)", "(-x)^2", "1e-3^2", "2^-1", "x^2-y^2", "-x*y^2", "(x^2)^3", "min(-1, x^2)", "x^sin(2)", "sin(x)^2", ")x", "((-"] {
+        for text in [
+            "2-x^2",
+            "-(x^2)",
+            "(-x)^2",
+            "1e-3^2",
+            "2^-1",
+            "x^2-y^2",
+            "-x*y^2",
+            "(x^2)^3",
+            "min(-1, x^2)",
+            "x^sin(2)",
+            "sin(x)^2",
+            ")x",
+            "((-",
+        ] {
             assert_eq!(check(text, &functions), Ok(()), "{text}");
         }
     }

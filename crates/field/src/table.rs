@@ -106,13 +106,19 @@ mod tests {
         assert_eq!(depth.at(DVec3::Z * 95.0, 0.0), 3.0);
         assert_eq!(depth.at(DVec3::Z * 105.0, 0.0), 1.0);
         let time = table(Coordinate::Time, Beyond::Nearest);
-        assert_eq!([time.at(DVec3::ZERO, 5.0), time.at(DVec3::ZERO, 99.0)], [3.0, -5.0]);
+        assert_eq!(
+            [time.at(DVec3::ZERO, 5.0), time.at(DVec3::ZERO, 99.0)],
+            [3.0, -5.0]
+        );
     }
 
     #[test]
     fn two_values_at_one_place_are_no_table() {
         let rows = vec![[0.0, 1.0], [0.0, 2.0]];
         assert_eq!(Table::new(rows, Coordinate::X, 0.0, Beyond::Refuse), None);
-        assert_eq!(Table::new(Vec::new(), Coordinate::X, 0.0, Beyond::Refuse), None);
+        assert_eq!(
+            Table::new(Vec::new(), Coordinate::X, 0.0, Beyond::Refuse),
+            None
+        );
     }
 }

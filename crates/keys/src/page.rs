@@ -160,7 +160,11 @@ pub(crate) fn holds(kind: &Kind) -> String {
 /// A section in braces: its keys, or what it is called where others have it too.
 fn reference(section: &KeySection) -> String {
     match std::ptr::eq(section, &FIELD) {
-        true => format!("[{0}](#{1})", section.pattern, section.pattern.replace(' ', "-")),
+        true => format!(
+            "[{0}](#{1})",
+            section.pattern,
+            section.pattern.replace(' ', "-")
+        ),
         false => names(section),
     }
 }

@@ -8,6 +8,7 @@ mod fracture;
 mod load;
 mod mesh;
 mod oracle;
+mod probe;
 mod rock;
 mod shared;
 mod solver;
@@ -22,6 +23,7 @@ pub use fracture::{CLOSURES, FRACTURE};
 pub use load::{LOAD, PHASE};
 pub use mesh::{ADAPT, MESH};
 pub use oracle::{FORMS, ORACLE};
+pub use probe::PROBE;
 pub use rock::ROCK;
 pub use solver::{FACETS, SOLVER, SOLVERS};
 pub use study::{CLOSURE, SERIES, STUDY};
@@ -93,6 +95,13 @@ pub static ROOT: KeySection = KeySection {
             need: Need::Without("nothing is compared"),
             example: "[oracle.NAME]",
             says: "Closed forms by fracture, to compare it with",
+        },
+        Key {
+            name: "probe",
+            kind: Kind::Named(&PROBE),
+            need: Need::Without("none"),
+            example: "[probe.NAME]",
+            says: "Points whose values are written down after each load step",
         },
     ],
     also: None,

@@ -98,9 +98,10 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Points(quantity) => {
             json!({ "type": "array", "items": tuple(of_quantity(quantity), 3), "minItems": 3 })
         }
-        Kind::VectorOr(quantity, section) => {
-            tuple(json!({ "anyOf": [of_quantity(quantity), of_section(section)] }), 3)
-        }
+        Kind::VectorOr(quantity, section) => tuple(
+            json!({ "anyOf": [of_quantity(quantity), of_section(section)] }),
+            3,
+        ),
         Kind::History | Kind::Rows => {
             json!({ "type": "array", "items": tuple(json!({ "type": "number" }), 2), "minItems": 1 })
         }

@@ -60,6 +60,8 @@ pub struct Progress<'a> {
     pub stress_error: f64,
     /// The text of the history of all of them.
     pub history: String,
+    /// The text of their probes.
+    pub probes: String,
     /// The measures after the last of them.
     pub measures: Vec<Measure>,
     /// Where the time went so far.
@@ -271,6 +273,7 @@ mod tests {
             files: Vec::new(),
             fractures: Vec::new(),
             history: String::new(),
+            probes: String::new(),
             stress_error: 0.0,
             measures: Vec::new(),
             seconds: Seconds::default(),

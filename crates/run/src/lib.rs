@@ -52,6 +52,7 @@ mod observer;
 mod outcome;
 mod output;
 mod prepare;
+mod probes;
 mod request;
 mod resume;
 mod rigid;

@@ -61,6 +61,8 @@ pub struct Run<'a> {
     pub finished: Vec<StepMeasures>,
     /// How they went.
     pub history: History,
+    /// Values of probes after all of them, a table.
+    pub probes: String,
     /// The results that are kept.
     pub kept: Vec<StepResult>,
     /// Name of the linear solver, and why it was chosen.
@@ -121,6 +123,7 @@ impl<'a> Run<'a> {
             identity,
             finished: Vec::new(),
             history: History::default(),
+            probes: String::new(),
             kept: Vec::new(),
             choice: Default::default(),
             doubts: Vec::new(),

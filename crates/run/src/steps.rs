@@ -5,10 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use kluft_io::{Grid, write_atomically};
-use kluft_scene::Binding;
+use kluft_scene::{Binding, Probe};
 use kluft_solver::{
-    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord, System,
-    block_motions, determinacy, solution, surface_resultants,
+    Estimator, FacetResult, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord,
+    System, block_motions, determinacy, solution, surface_resultants,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -24,6 +24,7 @@ use crate::history::{self, Entry, History};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
+use crate::probes::{self, Solved};
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
 use crate::summary::StepSummary;
@@ -94,7 +95,7 @@ impl Run<'_> {
         for index in self.finished.len()..problem.schedule.steps.len() {
             let record = self.solve_step(&mut prepared, index)?;
             self.finished.push((&record).into());
-            self.take_results(&mut prepared)?;
+            self.take_results(&mut prepared, &binding.probes)?;
             self.write_summary()?;
             self.write_checkpoint(problem, &prepared)?;
         }
@@ -148,6 +149,7 @@ impl Run<'_> {
         self.summary.steps = summaries.collect();
         self.summary.fractures = former.fractures;
         self.history = History::from_text(former.history);
+        self.probes = former.probes;
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
@@ -204,7 +206,11 @@ impl Run<'_> {
     }
 
     /// Estimates the error of a load step, sums it up and writes its results.
-    fn take_results(&mut self, prepared: &mut Prepared<'_, '_>) -> Result<(), Interruption> {
+    fn take_results(
+        &mut self,
+        prepared: &mut Prepared<'_, '_>,
+        probes: &[Probe],
+    ) -> Result<(), Interruption> {
         let system = prepared.system;
         let is_last = self.finished.len() == system.problem().schedule.steps.len();
         let solution = solution(system, &prepared.state);
@@ -258,7 +264,32 @@ impl Run<'_> {
             written
         })?;
         self.write_sources(system.problem())?;
+        self.write_probes(prepared, (&solution, &nodes), probes)?;
         self.write_history(prepared, &solution)
+    }
+
+    /// Adds the load step that was solved last to the values of probes.
+    fn write_probes(
+        &mut self,
+        prepared: &Prepared<'_, '_>,
+        (solution, nodes): (&Solution, &[FacetResult]),
+        probes: &[Probe],
+    ) -> Result<(), Interruption> {
+        if probes.is_empty() || !self.output.is_kept() {
+            return Ok(());
+        }
+        let number = self.finished.len();
+        let solved = Solved {
+            number,
+            step: &prepared.system.problem().schedule.steps[number - 1],
+            system: prepared.system,
+            solution,
+            nodes,
+        };
+        solved.add_to(&mut self.probes, probes);
+        let text = &self.probes;
+        let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
+        Ok(self.output.write(probes::NAME, write)?)
     }
 
     /// Adds the load step that was solved last to the history.
@@ -326,6 +357,7 @@ impl Run<'_> {
             files: self.output.sums().to_vec(),
             fractures: self.summary.fractures.clone(),
             history: self.history.text().to_owned(),
+            probes: self.probes.clone(),
             measures: self.summary.measures.clone(),
             stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),

@@ -12,8 +12,10 @@ use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
+use crate::probe::{Probe, bind_probes};
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
+use crate::rock::RockEntry;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
 
@@ -29,6 +31,8 @@ pub struct Binding {
     pub warnings: Vec<String>,
     /// Closed form of each fracture that has one.
     pub oracles: Vec<Option<Oracle>>,
+    /// Probes.
+    pub probes: Vec<Probe>,
 }
 
 impl Scene {
@@ -95,13 +99,9 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let mut idle = Vec::new();
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
-    let rocks = scene.rocks.iter().map(|entry| entry.value);
     let mut problem = Problem {
         conditions,
-        rocks: match scene.rocks.is_empty() {
-            true => vec![Rock::rigid(0.0)],
-            false => rocks.collect(),
-        },
+        rocks: rocks(scene),
         rock_of_cell,
         schedule,
         fractures: bound
@@ -111,11 +111,15 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
             .collect(),
         fixed_points,
         gravity: scene.body.gravity,
-        initial_stress: scene.initial_stress.as_ref().map(|entry| entry.stress.clone()),
+        initial_stress: scene
+            .initial_stress
+            .as_ref()
+            .map(|entry| entry.stress.clone()),
         varying: Varying::default(),
         facet_quadrature: scene.solver.facets,
         mesh,
     };
+    let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
     let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
     Ok(Binding {
         warnings: [warnings(scene, &problem), odd, idle].concat(),
@@ -123,7 +127,17 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         flow,
         decisions,
         oracles,
+        probes,
     })
+}
+
+/// The rocks; rigid rock needs no section.
+fn rocks(scene: &Scene) -> Vec<Rock> {
+    let rocks = scene.rocks.iter().map(|entry| entry.value.rock);
+    match scene.rocks.is_empty() {
+        true => vec![Rock::rigid(0.0)],
+        false => rocks.collect(),
+    }
 }
 
 /// What acts on and holds the outer surface.
@@ -175,7 +189,8 @@ fn bind_oracles(
     let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
     for (name, fracture) in mesh.fractures.iter().zip(fractures) {
         let refused = of(name).and_then(|entry| {
-            let varies = !fracture.value.fields.is_empty() || fracture.value.varying_pressure.is_some();
+            let varies =
+                !fracture.value.fields.is_empty() || fracture.value.varying_pressure.is_some();
             let refusal = match varies {
                 true => Some([
                     "a closed form has one law and one pressure all over its fracture",
@@ -207,7 +222,7 @@ fn bind_rocks(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<u32>
         .zip(used)
         .map(|(set, used)| {
             let names: Vec<&str> = set.iter().map(|&g| mesh.groups[g].name.as_str()).collect();
-            let matches = |entry: &Named<Rock>| names.contains(&entry.name.as_str());
+            let matches = |entry: &Named<RockEntry>| names.contains(&entry.name.as_str());
             let found: Vec<usize> = (0..scene.rocks.len())
                 .filter(|&rock| matches(&scene.rocks[rock]))
                 .collect();
@@ -279,7 +294,7 @@ fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
     let without = scene
         .rocks
         .iter()
-        .filter(|entry| entry.value.density == 0.0);
+        .filter(|entry| entry.value.rock.density == 0.0);
     without.map(|entry| {
         Defect::new(
             &entry.place,

@@ -37,6 +37,7 @@ pub(crate) fn bind_fields(
     }
     let mut conditions = bound.boundaries.iter().enumerate();
     conditions.try_for_each(|(index, _)| bind_load(problem, bound, index, &mut look));
+    bind_rocks(problem, &mut look);
     bind_initial_stress(problem, &mut look);
     match look.defects.is_empty() {
         true => Ok(look.warnings),
@@ -100,7 +101,8 @@ impl Look<'_> {
             "`{}` from {}: {refusal} at ({x:.6}, {y:.6}, {z:.6}){others}",
             entry.key, entry.origin
         );
-        self.defects.push(Defect::new(&entry.place, problem, remedy(entry)));
+        self.defects
+            .push(Defect::new(&entry.place, problem, remedy(entry)));
         None
     }
 
@@ -161,6 +163,50 @@ fn remedy(entry: &FieldEntry) -> &'static str {
     }
 }
 
+/// Gives each cell of a rock that varies a rock of its own, by the values in the middle of the
+/// cell.
+fn bind_rocks(problem: &mut Problem, look: &mut Look<'_>) {
+    let scene = look.scene;
+    if scene
+        .rocks
+        .iter()
+        .all(|entry| entry.value.fields.is_empty())
+    {
+        return;
+    }
+    let materials = problem.rock_of_cell.clone();
+    let middle = |mesh: &Mesh, cell: usize| {
+        let corners = mesh.corners(&mesh.cells, cell);
+        corners.iter().sum::<DVec3>() / corners.len() as f64
+    };
+    for (number, entry) in scene.rocks.iter().enumerate() {
+        let own = materials.iter().enumerate();
+        let own = own.filter(|(_, material)| **material as usize == number);
+        let cells: Vec<usize> = own.map(|(cell, _)| cell).collect();
+        let places = cells.iter().map(|&cell| middle(&problem.mesh, cell));
+        let places: Vec<DVec3> = places.collect();
+        for (parameter, field) in &entry.value.fields {
+            if let Some(seen) = look.at(field, &places, &[0.0])
+                && !places.is_empty()
+            {
+                parameter.set(&mut problem.rocks[number], seen.mean);
+            }
+        }
+        if entry.value.fields.is_empty() {
+            continue;
+        }
+        for (&cell, &place) in cells.iter().zip(&places) {
+            let mut rock = problem.rocks[number];
+            for (parameter, field) in &entry.value.fields {
+                parameter.set(&mut rock, field.field.at(place, 0.0));
+            }
+            problem.rock_of_cell[cell] = problem.rocks.len() as u32;
+            problem.rocks.push(rock);
+        }
+    }
+    problem.varying.material_of_cell = Some(materials);
+}
+
 fn bind_law(
     problem: &mut Problem,
     fracture: usize,
@@ -188,14 +234,15 @@ fn bind_law(
     };
     let base = problem.fractures[fracture].law;
     let refused = places.iter().find_map(|place| {
-        let refusal = together(&law.at(&base, *place), &law)?;
+        let refusal = together(&law.at_position(&base, *place), &law)?;
         Some((place, refusal))
     });
     if let Some((place, refusal)) = refused {
         let [x, y, z] = place.to_array();
         let problem = format!("at ({x:.6}, {y:.6}, {z:.6}) {refusal}");
         let remedy = "change one of the two values there";
-        look.defects.push(Defect::new(&entry.place, problem, remedy));
+        look.defects
+            .push(Defect::new(&entry.place, problem, remedy));
     }
     problem.varying.laws.push(law);
 }
@@ -209,10 +256,14 @@ fn together(law: &FractureLaw, varying: &VaryingLaw) -> Option<String> {
         ClosureKind::Logarithmic {
             cutoff: Some(cutoff),
         } if cutoff > aperture => {
-            return Some(format!("cutoff_aperture {cutoff:e} is above the aperture {aperture:e}"));
+            return Some(format!(
+                "cutoff_aperture {cutoff:e} is above the aperture {aperture:e}"
+            ));
         }
         ClosureKind::Hyperbolic { max_closure } if max_closure > aperture => {
-            return Some(format!("max_closure {max_closure:e} is above the aperture {aperture:e}"));
+            return Some(format!(
+                "max_closure {max_closure:e} is above the aperture {aperture:e}"
+            ));
         }
         _ => {}
     }
@@ -243,8 +294,13 @@ fn bind_pressure(
     };
     let own = problem.schedule.cases.of_fracture(fracture);
     let in_time = field.field.depends_on_time();
-    let Some(cases) = cases(problem, (in_time, own), &entry.value.history, look, &field.place)
-    else {
+    let Some(cases) = cases(
+        problem,
+        (in_time, own),
+        &entry.value.history,
+        look,
+        &field.place,
+    ) else {
         return;
     };
     let places = problem.places_of_fracture(fracture);
@@ -272,7 +328,13 @@ fn bind_load(
     };
     let own = problem.schedule.cases.of_condition(condition);
     let in_time = load.load.depends_on_time();
-    let cases = cases(problem, (in_time, own), &entry.value.history, look, &entry.place)?;
+    let cases = cases(
+        problem,
+        (in_time, own),
+        &entry.value.history,
+        look,
+        &entry.place,
+    )?;
     let boundary = problem.conditions[condition].boundary;
     let places = places_of_boundary(&problem.mesh, boundary);
     let times: Vec<f64> = cases.iter().map(|(time, _)| *time).collect();
@@ -347,7 +409,9 @@ fn add_cases(schedule: &mut Schedule, history: Option<&LoadHistory>) -> Vec<(f64
     let first = known.unwrap_or(schedule.case_count());
     if known.is_none() {
         for (step, own) in schedule.steps.iter_mut().enumerate() {
-            own.load.factors.extend((0..times.len()).map(|end| row(end, step)));
+            own.load
+                .factors
+                .extend((0..times.len()).map(|end| row(end, step)));
         }
     }
     times.iter().copied().zip(first..).collect()

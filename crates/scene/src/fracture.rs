@@ -153,8 +153,7 @@ fn read_law(section: &Section<'_, '_>, fields: &mut Fields) -> Option<FractureLa
         Range::Positive
     };
     let aperture = fields.read_in(section, ("aperture", positive), LawParameter::Aperture);
-    let normal_stiffness =
-        fields.read(section, "normal_stiffness", LawParameter::NormalStiffness);
+    let normal_stiffness = fields.read(section, "normal_stiffness", LawParameter::NormalStiffness);
     let kind = closure_kind(section, (closure, aperture), fields);
     let tension = read_tension(section, normal_stiffness, fields);
     let friction = read_friction(section, fields);
@@ -236,11 +235,7 @@ fn closure_kind(
     }
 }
 
-fn read_tension(
-    section: &Section<'_, '_>,
-    stiffness: Option<f64>,
-    fields: &mut Fields,
-) -> Tension {
+fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>, fields: &mut Fields) -> Tension {
     let cut = section.flag("tension_cutoff").unwrap_or(false);
     let strength = fields.read(section, "tensile_strength", LawParameter::TensileStrength);
     let energy = fields.read(section, "fracture_energy", LawParameter::FractureEnergy);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
 use kluft_solver::Fluid;
-use lie_core::{FacetQuadrature, Rock};
+use lie_core::FacetQuadrature;
 
 use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, read_fixed_point};
 use crate::fluid::{SourceEntry, fluid_use, read_fluid, read_source};
@@ -13,7 +13,9 @@ use crate::fracture::read_placed_fracture;
 use crate::initial_stress::read_initial_stress;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
+use crate::probe::read_probe;
 use crate::reader::{Section, Source};
+use crate::rock::read_rock;
 use crate::scene::{Adapt, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::{FluidUse, Setting};
 
@@ -132,10 +134,13 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let body = read_body(root, clock);
     // Of `kluft study`, which reads it.
     root.section("study");
+    let probes = named("probe").filter_map(|(name, s)| entry(source, name, s, read_probe));
+    let probes = probes.collect();
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
     Some(Scene {
         oracles,
+        probes,
         fluid: read_named_fluid(root, &body),
         body,
         sources: read_sources(source, root, setting),
@@ -328,7 +333,7 @@ fn read_sources(
 
 /// Sections that speak of what cannot happen in rigid rock.
 fn refuse_in_rigid_rock(root: &Section<'_, '_>) {
-    for key in ["fixed_point", "initial_stress", "oracle", "solver"] {
+    for key in ["fixed_point", "initial_stress", "oracle", "probe", "solver"] {
         if root.has(key) {
             root.refuse(
                 key,
@@ -342,23 +347,6 @@ fn refuse_in_rigid_rock(root: &Section<'_, '_>) {
         let remedy = "remove adapt, or add young_modulus to [rock]";
         mesh.refuse("adapt", problem.into(), remedy);
     }
-}
-
-fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<Rock> {
-    if setting.is_rigid() {
-        let density = section.number("density");
-        return Some(Rock::rigid(density.unwrap_or(0.0)));
-    }
-    section.require("young_modulus");
-    section.require("poisson_ratio");
-    let young_modulus = section.number("young_modulus");
-    let poisson_ratio = section.number("poisson_ratio");
-    let density = section.number("density");
-    Some(Rock {
-        young_modulus: young_modulus?,
-        poisson_ratio: poisson_ratio?,
-        density: density.unwrap_or(0.0),
-    })
 }
 
 fn read_solver(root: &Section<'_, '_>) -> SolverEntry {

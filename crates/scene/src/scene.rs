@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use kluft_solver::{Fluid, LinearMethod};
-use lie_core::{FacetQuadrature, Rock};
+use lie_core::FacetQuadrature;
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::fluid::SourceEntry;
 use crate::history::Timetable;
 use crate::initial_stress::InitialStressEntry;
 use crate::oracle::Oracle;
+use crate::probe::ProbeEntry;
+use crate::rock::RockEntry;
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -79,7 +81,7 @@ pub struct Scene {
     /// How many times each cell is divided into eight.
     pub refine: u32,
     /// Rocks by physical volume.
-    pub rocks: Vec<Named<Rock>>,
+    pub rocks: Vec<Named<RockEntry>>,
     /// Fractures by physical surface.
     pub fractures: Vec<Named<FractureEntry>>,
     /// Conditions by physical surface.
@@ -98,6 +100,8 @@ pub struct Scene {
     pub timetable: Timetable,
     /// What is asked of the linear solver.
     pub solver: SolverEntry,
+    /// Probes.
+    pub probes: Vec<Named<ProbeEntry>>,
     /// Closed forms by fracture.
     pub oracles: Vec<Named<Oracle>>,
     /// Values that are possible but hardly meant, each with its place.
@@ -114,10 +118,19 @@ impl Scene {
             let laws = value.fields.iter().map(|(_, field)| field);
             laws.chain(value.varying_pressure.as_deref())
         });
-        let loads = self.boundaries.iter().flat_map(|entry| entry.value.fields());
+        let loads = self
+            .boundaries
+            .iter()
+            .flat_map(|entry| entry.value.fields());
+        let rocks = self.rocks.iter().flat_map(|entry| &entry.value.fields);
+        let fractures = rocks.map(|(_, field)| field).chain(fractures);
         let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);
         let mut files: Vec<&Path> = Vec::new();
-        for file in fractures.chain(loads).chain(stress).filter_map(|field| field.file.as_deref()) {
+        for file in fractures
+            .chain(loads)
+            .chain(stress)
+            .filter_map(|field| field.file.as_deref())
+        {
             if !files.contains(&file) {
                 files.push(file);
             }
@@ -127,6 +140,6 @@ impl Scene {
 
     /// Whether the rock is rigid, and flow is all that happens.
     pub fn is_rigid(&self) -> bool {
-        self.fluid.is_some() && self.rocks.iter().all(|entry| entry.value.is_rigid())
+        self.fluid.is_some() && self.rocks.iter().all(|entry| entry.value.rock.is_rigid())
     }
 }

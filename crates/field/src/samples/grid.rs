@@ -37,7 +37,10 @@ impl Grid {
             let index = grid.index([place(0), place(1), place(2)]);
             *grid.values.get_mut(index)? = sample.value;
         }
-        grid.values.iter().all(|value| !value.is_nan()).then_some(grid)
+        grid.values
+            .iter()
+            .all(|value| !value.is_nan())
+            .then_some(grid)
     }
 
     fn index(&self, [i, j, k]: [usize; 3]) -> usize {

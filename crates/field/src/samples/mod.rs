@@ -23,8 +23,8 @@ pub enum Method {
     /// That of the nearest sample.
     #[default]
     Nearest,
-    /// Linear between samples: along their line, in the Delaunay triangles of their plane, or in the
-    /// cells of their grid.
+    /// Linear between samples: along their line, in the Delaunay triangles of their plane, or in
+    /// the cells of their grid.
     Linear,
 }
 
@@ -87,10 +87,14 @@ impl Samples {
         self.all.len()
     }
 
-    /// The value at a position (m); not a number beyond the samples, unless the nearest is to serve.
+    /// The value at a position (m); not a number beyond the samples, unless the nearest is to
+    /// serve.
     pub fn at(&self, position: DVec3) -> f64 {
         let position = self.given * position;
-        let nearest = || self.nearest(position).map_or(f64::NAN, |sample| sample.value);
+        let nearest = || {
+            self.nearest(position)
+                .map_or(f64::NAN, |sample| sample.value)
+        };
         let inside = match &self.between {
             Between::Nothing => return nearest(),
             Between::Line(frame, table) => table.at(DVec3::X * frame.in_frame(position).x, 0.0),
@@ -174,7 +178,11 @@ mod tests {
     /// A linear function is its own interpolation, and the walls of triangles have no gaps.
     #[test]
     fn a_linear_function_is_reproduced_on_a_line_in_a_plane_and_on_a_grid() {
-        let line = samples(&[[0.0, 0.0, 0.0], [2.0, 4.0, 6.0], [1.0, 2.0, 3.0]], linear, Beyond::Refuse);
+        let line = samples(
+            &[[0.0, 0.0, 0.0], [2.0, 4.0, 6.0], [1.0, 2.0, 3.0]],
+            linear,
+            Beyond::Refuse,
+        );
         let at = DVec3::new(0.3, 0.6, 0.9);
         assert!((line.at(at) - linear(at)).abs() < 1e-14);
         assert!(line.at(DVec3::new(3.0, 6.0, 9.0)).is_nan());
@@ -184,7 +192,11 @@ mod tests {
         for i in 0..12 {
             for j in 0..9 {
                 let (x, y) = (f64::from(i), f64::from(j));
-                let shift = if i % 11 * (j % 8) > 0 { 0.3 * (x * y).sin() } else { 0.0 };
+                let shift = if i % 11 * (j % 8) > 0 {
+                    0.3 * (x * y).sin()
+                } else {
+                    0.0
+                };
                 scattered.push([x + shift, y + 0.5 * shift, 0.5 * (x + shift)]);
             }
         }

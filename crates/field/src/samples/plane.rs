@@ -4,8 +4,8 @@
 //! depend on what was asked before.
 
 use glam::DVec3;
-use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::Sample;
@@ -14,8 +14,8 @@ use super::frame::Frame;
 /// How far outside a triangle a position still belongs to it, as a share of its height: rounding,
 /// and what flat triangles leave open.
 const SLACK: f64 = 1e-6;
-/// Height of a triangle, as a share of its longest edge, below which it is none: what rounding makes
-/// of samples on a straight edge.
+/// Height of a triangle, as a share of its longest edge, below which it is none: what rounding
+/// makes of samples on a straight edge.
 const FLAT: f64 = 1e-8;
 
 /// Triangles between samples in a plane.
@@ -113,5 +113,8 @@ fn shares(place: DVec3, [a, b, c]: [DVec3; 3]) -> Option<[f64; 3]> {
     let whole = area([a, b, c]);
     let parts = [[place, b, c], [a, place, c], [a, b, place]];
     let shares = parts.map(|part| area(part) / whole);
-    shares.iter().all(|share| *share >= -SLACK).then_some(shares)
+    shares
+        .iter()
+        .all(|share| *share >= -SLACK)
+        .then_some(shares)
 }

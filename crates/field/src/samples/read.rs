@@ -47,7 +47,10 @@ impl SampleFile<'_> {
             .comment(Some(b'#'))
             .trim(Trim::All)
             .from_reader(text.as_bytes());
-        let header = reader.headers().cloned().map_err(|error| self.unreadable(&error))?;
+        let header = reader
+            .headers()
+            .cloned()
+            .map_err(|error| self.unreadable(&error))?;
         let columns = self.columns(&header)?;
         let given = DVec3::from(columns.axes.map(|axis| f64::from(axis.is_some())));
         let mut rows = Rows::default();
@@ -159,7 +162,8 @@ impl Rows {
             if number.is_none() {
                 let problem = format!("line {line}: `{text}` is no finite number");
                 let remedy = "write a number with a decimal point, or take the line out";
-                self.defects.push([file.of_file(&problem), remedy.to_owned()]);
+                self.defects
+                    .push([file.of_file(&problem), remedy.to_owned()]);
             }
             number
         };
@@ -172,7 +176,8 @@ impl Rows {
         let key = [x, y, z].map(|x| (x + 0.0).to_bits());
         if let Some(first) = self.lines.insert(key, line) {
             let problem = format!("line {line}: the position of line {first} again");
-            self.defects.push([file.of_file(&problem), "keep one of them".to_owned()]);
+            self.defects
+                .push([file.of_file(&problem), "keep one of them".to_owned()]);
         }
         self.all.push(Sample {
             position: DVec3::new(x, y, z),
@@ -183,7 +188,8 @@ impl Rows {
     fn finish(mut self, file: &SampleFile<'_>) -> Result<Vec<Sample>, Vec<Found>> {
         if self.all.is_empty() && self.defects.is_empty() {
             let remedy = "write a line of numbers for each sample below the line of names";
-            self.defects.push([file.of_file("there are no samples"), remedy.to_owned()]);
+            self.defects
+                .push([file.of_file("there are no samples"), remedy.to_owned()]);
         }
         let more = self.defects.len().saturating_sub(NAMED);
         self.defects.truncate(NAMED);
@@ -232,7 +238,14 @@ mod tests {
     #[test]
     fn every_defect_of_a_file_is_named_with_its_line() {
         for (text, says) in [
-            ("x,kn\n0,1\n1,nan\n2,\n0,3\n", vec!["line 3: `nan`", "line 4: ``", "line 5: the position of line 2"]),
+            (
+                "x,kn\n0,1\n1,nan\n2,\n0,3\n",
+                vec![
+                    "line 3: `nan`",
+                    "line 4: ``",
+                    "line 5: the position of line 2",
+                ],
+            ),
             ("x,y\n0,1\n", vec!["no column is called `kn`"]),
             ("a,kn\n0,1\n", vec!["no column is called `x`"]),
             ("x,kn\n", vec!["no samples"]),

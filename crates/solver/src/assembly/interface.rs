@@ -144,7 +144,12 @@ impl Interface {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
             point.law = point.fracture;
-            point.initial = initial_walls(problem, law, point.position, point.normal);
+            point.initial = initial_walls(
+                problem,
+                law,
+                (point.facet as usize, point.position),
+                point.normal,
+            );
         }
         self.laws = laws;
     }
@@ -380,7 +385,7 @@ impl Drawing<'_> {
             true => (own, rule.area / own),
             false => (rule.area.dot(mean.normalize()), mean.normalize()),
         };
-        let own_law = problem.varying_law(fracture, rule, node);
+        let own_law = problem.varying_law(facet, rule, node);
         let law = own_law.as_ref();
         let law = law.unwrap_or(&problem.fractures[fracture as usize].law);
         let point = FacetPoint {
@@ -391,7 +396,7 @@ impl Drawing<'_> {
             area,
             normal,
             spring,
-            initial: initial_walls(problem, law, rule.position, normal),
+            initial: initial_walls(problem, law, (facet, rule.position), normal),
         };
         let prescribed = (0..).zip(prescribed);
         Drawn {
@@ -443,8 +448,15 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
 
 /// The walls carrying the initial stress. A fracture without stiffness carries none, so it relaxes
 /// what the initial stress would need of it.
-fn initial_walls(problem: &Problem, law: &FractureLaw, at: DVec3, normal: DVec3) -> JointState {
+fn initial_walls(
+    problem: &Problem,
+    law: &FractureLaw,
+    (facet, at): (usize, DVec3),
+    normal: DVec3,
+) -> JointState {
     let stress = problem.initial_stress.as_ref();
-    let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
+    let traction = stress.map_or(DVec3::ZERO, |stress| {
+        stress.at_place(at, &problem.field_place(facet, at)) * normal
+    });
     law.under_initial_stress(traction, normal)
 }

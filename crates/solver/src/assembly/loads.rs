@@ -122,7 +122,12 @@ fn add_varying_pressures(
     for entry in varying.filter(|entry| entry.case == case) {
         let points = interface.points.iter().zip(&mut *pressures);
         let own = points.filter(|(point, _)| point.fracture as usize == entry.fracture);
-        own.for_each(|(point, sum)| *sum += entry.field.at(point.position, entry.time));
+        own.for_each(|(point, sum)| {
+            let place = space
+                .problem
+                .field_place(point.facet as usize, point.position);
+            *sum += place.value(|at| entry.field.at(at, entry.time));
+        });
     }
 }
 

@@ -1,6 +1,7 @@
 //! Everything a solve needs: mesh, materials, conditions, load steps.
 
 mod conditions;
+mod field_place;
 mod flow;
 mod initial_stress;
 mod schedule;
@@ -10,13 +11,15 @@ use glam::DVec3;
 use kluft_mesh::Mesh;
 use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Rock, facet_points};
 
+pub(crate) use field_place::FieldPlace;
+
 pub use conditions::{Condition, FixedPoint, Support, SurfaceLoad};
 pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid};
 pub use initial_stress::InitialStress;
 pub use kluft_field::{Field, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};
 pub use varying::{
-    LawParameter, LoadField, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
+    LawParameter, LoadField, RockParameter, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
 };
 
 /// A fracture's law and what fills it.
@@ -80,41 +83,56 @@ impl Problem {
         &self.rocks[self.rock_of_cell[cell] as usize]
     }
 
-    /// The law of a fracture at a facet point, where it varies; `node` is the node that the point
-    /// belongs to, if it belongs to one.
+    /// What each cell is of: its rock, or the material whose rock varies.
+    pub fn material_of_cell(&self) -> &[u32] {
+        let own = self.varying.material_of_cell.as_ref();
+        own.unwrap_or(&self.rock_of_cell)
+    }
+
+    /// The law of a fracture at a facet point, where it varies; `node` is the position (m) of the
+    /// node that the point belongs to, if it belongs to one.
     ///
     /// Laws with kinks are taken at the nodes: points that have one jump touch and slide together.
     pub(crate) fn varying_law(
         &self,
-        fracture: u32,
+        facet: usize,
         point: &FacetRulePoint,
         node: Option<DVec3>,
     ) -> Option<FractureLaw> {
+        let fracture = self.mesh.facets.fracture[facet];
         let mut all = self.varying.laws.iter();
         let varying = all.find(|law| law.fracture == fracture as usize)?;
-        let position = match self.rule_of(fracture) {
-            FacetQuadrature::Control => node.unwrap_or(point.position),
-            FacetQuadrature::Nodal | FacetQuadrature::Gauss => point.position,
+        let place = match (self.rule_of(fracture), node) {
+            (FacetQuadrature::Control, Some(node)) => FieldPlace::inside(node),
+            _ => self.field_place(facet, point.position),
         };
-        Some(varying.at(&self.fractures[fracture as usize].law, position))
+        Some(varying.at(&self.fractures[fracture as usize].law, &place))
     }
 
-    /// Positions (m) at which a law and a fluid pressure of a fracture are asked for: its facet
-    /// points and their nodes.
+    /// Where a value that varies is taken for a facet point at a position (m).
+    pub(crate) fn field_place(&self, facet: usize, position: DVec3) -> FieldPlace {
+        let corners = self.mesh.corners(&self.mesh.facets.elements, facet);
+        FieldPlace::of(&corners, position)
+    }
+
+    /// Positions (m) at which a law and a fluid pressure of a fracture are asked for.
     pub fn places_of_fracture(&self, fracture: usize) -> Vec<DVec3> {
         let facets = &self.mesh.facets;
-        let own = (0..facets.elements.len())
-            .filter(|&facet| facets.fracture[facet] as usize == fracture);
+        let own =
+            (0..facets.elements.len()).filter(|&facet| facets.fracture[facet] as usize == fracture);
         let places = own.flat_map(|facet| {
             let nodes = facets.elements.nodes_of(facet).iter();
             let nodes: Vec<DVec3> = nodes.map(|&node| self.mesh.nodes[node as usize]).collect();
             let rule = self.rule_of(fracture as u32);
-            let points = facet_points(facets.elements.shapes[facet], &nodes, rule);
+            let points = facet_points(facets.elements.shapes[facet], &nodes, rule).into_iter();
+            let places: Vec<DVec3> = points
+                .flat_map(|point| self.field_place(facet, point.position).positions())
+                .collect();
             let at_nodes = match rule {
                 FacetQuadrature::Control => nodes,
                 FacetQuadrature::Nodal | FacetQuadrature::Gauss => Vec::new(),
             };
-            points.into_iter().map(|point| point.position).chain(at_nodes)
+            places.into_iter().chain(at_nodes)
         });
         places.collect()
     }

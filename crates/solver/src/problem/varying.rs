@@ -3,7 +3,9 @@
 use glam::DVec3;
 use kluft_field::Field;
 use kluft_mesh::Shape;
-use lie_core::{ClosureKind, FacetQuadrature, FractureLaw, Tension, facet_points};
+use lie_core::{ClosureKind, FacetQuadrature, FractureLaw, Rock, Tension, facet_points};
+
+use super::field_place::FieldPlace;
 
 /// What of a problem varies in space. All of it is empty where plain numbers serve.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -14,6 +16,9 @@ pub struct Varying {
     pub pressures: Vec<VaryingPressure>,
     /// Surface loads, beside those of [`crate::Condition`].
     pub loads: Vec<VaryingLoad>,
+    /// Where rocks vary, each cell may have one of its own; then these are the numbers of what they
+    /// are cells of, one for each cell.
+    pub material_of_cell: Option<Vec<u32>>,
 }
 
 /// A law some of whose parameters vary within its fracture.
@@ -79,12 +84,39 @@ impl LawParameter {
 
 impl VaryingLaw {
     /// The law at a position (m); `law` has the parameters that do not vary.
-    pub fn at(&self, law: &FractureLaw, position: DVec3) -> FractureLaw {
+    pub fn at_position(&self, law: &FractureLaw, position: DVec3) -> FractureLaw {
+        self.at(law, &FieldPlace::inside(position))
+    }
+
+    /// The law of a facet point; `law` has the parameters that do not vary.
+    pub(crate) fn at(&self, law: &FractureLaw, place: &FieldPlace) -> FractureLaw {
         let mut own = *law;
         for (parameter, field) in &self.parameters {
-            parameter.set(&mut own, field.at(position, 0.0));
+            parameter.set(&mut own, place.kept_value(|at| field.at(at, 0.0)));
         }
         own
+    }
+}
+
+/// A constant of a rock, and the unit of its values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RockParameter {
+    /// Young's modulus (Pa).
+    YoungModulus,
+    /// Poisson's ratio.
+    PoissonRatio,
+    /// Density (kg/m^3).
+    Density,
+}
+
+impl RockParameter {
+    /// Gives a rock this constant.
+    pub fn set(self, rock: &mut Rock, value: f64) {
+        match self {
+            Self::YoungModulus => rock.young_modulus = value,
+            Self::PoissonRatio => rock.poisson_ratio = value,
+            Self::Density => rock.density = value,
+        }
     }
 }
 

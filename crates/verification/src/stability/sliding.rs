@@ -3,7 +3,8 @@
 use glam::DVec3;
 use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{
-    Discretisation, Field, InitialStress, NewtonSettings, Problem, Profile, Solution, StepRecord, Support,
+    Discretisation, Field, InitialStress, NewtonSettings, Problem, Profile, Solution, StepRecord,
+    Support,
 };
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
 
