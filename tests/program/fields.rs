@@ -144,7 +144,7 @@ fn a_pressure_front_is_at_each_step_what_its_time_says() {
 fn a_stress_that_grows_with_depth_and_balances_the_weight_moves_nothing() {
     let stress = "[initial_stress]\n\
         zz = { table = [[0, 0], [10, -264.87]], over = \"depth\", ground = 10, unit = \"kPa\" }\n\
-        xx = { expression = \"-(0.4 + 0.02*depth) * 26487 * depth\", ground = 10 }\n\
+        xx = { expression = \"-0.5 * 26487 * depth\", ground = 10 }\n\
         yy = { value = 0, per_metre = 13e3, at = 10 }\n\
         [body]\ngravity = [0, 0, -9.81]\n[boundary.bottom]\nsymmetry = true\n";
     let left = "[boundary.left]\npressure = { expression = \"2e6 + 9810*depth\", ground = 10 }";

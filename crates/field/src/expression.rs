@@ -158,6 +158,32 @@ mod tests {
         assert_eq!((moves("x + time"), moves("x")), (Ok(true), Ok(false)));
     }
 
+    /// Whatever a slip makes of an expression, it is refused or has a value, and nothing panics.
+    #[test]
+    fn no_text_is_too_odd_to_be_judged() {
+        let parts = [
+            "x", "z", "depth", "time", "1", "2.5e-3", ".", "e", "+", "-", "*", "/", "^", "(", ")",
+            ",", "min", "max(", "sqrt", "step(", "PI", "π", "atan2", "{", "}", " ", "é", "_", "==",
+            "signum", "log10(", "τ",
+        ];
+        let mut state = 7_u64;
+        let mut draw = |below: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as usize % below
+        };
+        let mut read = 0;
+        for _ in 0..30_000 {
+            let text: String = (0..1 + draw(9)).map(|_| parts[draw(parts.len())]).collect();
+            if let Ok(expression) = Expression::read(&text, 1.0, 0.0) {
+                let _ = expression.at(DVec3::new(0.5, 1.0, -2.0), 1.0);
+                read += 1;
+            }
+        }
+        assert!(read > 300, "{read}");
+    }
+
     #[test]
     fn what_is_no_expression_is_refused_with_what_may_stand_there() {
         for (text, says) in [

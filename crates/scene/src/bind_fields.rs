@@ -113,7 +113,7 @@ impl Look<'_> {
         });
         let line = format!(
             "{}: {:.4e} to {:.4e} {} at {count} points, by {}{reach}",
-            entry.place,
+            entry.title,
             seen.low,
             seen.high,
             dimension.unit(),

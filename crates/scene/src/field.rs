@@ -16,6 +16,8 @@ pub struct FieldEntry {
     pub field: Field,
     /// File, line and section.
     pub place: String,
+    /// How messages call its section.
+    pub title: String,
     /// The key that it stands under.
     pub key: &'static str,
     /// Which values are accepted.
@@ -272,6 +274,7 @@ fn entry(
     FieldEntry {
         field,
         place: format!("{} {}", section.place(), section.title),
+        title: section.title.clone(),
         key: wanted.key,
         quantity: wanted.quantity,
         origin,

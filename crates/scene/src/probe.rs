@@ -1,6 +1,7 @@
 //! Reads probes, and finds what they hit.
 
 use glam::DVec3;
+use kluft_keys::section_head;
 use kluft_mesh::{Defect, Mesh, nearest};
 use kluft_solver::{InCell, locate};
 
@@ -143,7 +144,7 @@ fn in_rock(
     }
     decisions.push(format!(
         "{}: {} points in the rock",
-        entry.place,
+        section_head("probe", &entry.name),
         places.len()
     ));
     let points = places.iter().zip(found);
@@ -210,7 +211,7 @@ fn on_fracture(
     }
     decisions.push(format!(
         "{}: {} nodes of `{fracture}`, at most {farthest:.3e} m from where they were asked for",
-        entry.place,
+        section_head("probe", &entry.name),
         points.len()
     ));
     Ok(points)

@@ -18,7 +18,7 @@ pub(super) const CASES: &[Case] = &[
         defects: 3,
         says: &[
             "[probe.a]: (0.48",
-            "is outside the rock, and 7 more points",
+            "is outside the rock, and 8 more points",
             "`join` is no fracture of the mesh",
             "did you mean `joint`?",
             "(0.000000, 0.000000, 9.000000) is farther from `joint` than its facets are long",
