@@ -70,6 +70,22 @@ pub struct Solved<'a> {
     pub nodes: &'a [FacetResult],
 }
 
+/// Probes, and what they had after the load steps so far.
+#[derive(Default)]
+pub struct ProbeTable {
+    /// The probes on the mesh of the run.
+    pub all: Vec<Probe>,
+    /// The table, for the file and for checkpoints.
+    pub text: String,
+}
+
+impl ProbeTable {
+    /// Adds the rows of a load step.
+    pub fn add(&mut self, solved: &Solved<'_>) {
+        solved.add_to(&mut self.text, &self.all);
+    }
+}
+
 /// What a point has, and where.
 struct Row {
     position: DVec3,
@@ -79,7 +95,7 @@ struct Row {
 
 impl Solved<'_> {
     /// Adds the rows of the load step to a table.
-    pub fn add_to(&self, text: &mut String, probes: &[Probe]) {
+    fn add_to(&self, text: &mut String, probes: &[Probe]) {
         if probes.is_empty() {
             return;
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use kluft_io::{Grid, write_atomically};
-use kluft_scene::{Binding, Probe};
+use kluft_scene::Binding;
 use kluft_solver::{
     Estimator, FacetResult, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord,
     System, block_motions, determinacy, solution, surface_resultants,
@@ -84,6 +84,7 @@ impl Run<'_> {
         let flow = self.let_flow(binding, &mut system)?;
         let plan = self.plan(&system, former.as_ref())?;
         self.decide(binding);
+        self.probes.all.clone_from(&binding.probes);
         let unbalanced = doubts::of_initial_stress(self.request.scene, &system);
         self.doubts.extend(unbalanced);
         self.summary.warnings.clone_from(&self.doubts);
@@ -95,7 +96,7 @@ impl Run<'_> {
         for index in self.finished.len()..problem.schedule.steps.len() {
             let record = self.solve_step(&mut prepared, index)?;
             self.finished.push((&record).into());
-            self.take_results(&mut prepared, &binding.probes)?;
+            self.take_results(&mut prepared)?;
             self.write_summary()?;
             self.write_checkpoint(problem, &prepared)?;
         }
@@ -149,7 +150,7 @@ impl Run<'_> {
         self.summary.steps = summaries.collect();
         self.summary.fractures = former.fractures;
         self.history = History::from_text(former.history);
-        self.probes = former.probes;
+        self.probes.text = former.probes;
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
@@ -206,11 +207,7 @@ impl Run<'_> {
     }
 
     /// Estimates the error of a load step, sums it up and writes its results.
-    fn take_results(
-        &mut self,
-        prepared: &mut Prepared<'_, '_>,
-        probes: &[Probe],
-    ) -> Result<(), Interruption> {
+    fn take_results(&mut self, prepared: &mut Prepared<'_, '_>) -> Result<(), Interruption> {
         let system = prepared.system;
         let is_last = self.finished.len() == system.problem().schedule.steps.len();
         let solution = solution(system, &prepared.state);
@@ -264,7 +261,7 @@ impl Run<'_> {
             written
         })?;
         self.write_sources(system.problem())?;
-        self.write_probes(prepared, (&solution, &nodes), probes)?;
+        self.write_probes(prepared, &solution, &nodes)?;
         self.write_history(prepared, &solution)
     }
 
@@ -272,10 +269,10 @@ impl Run<'_> {
     fn write_probes(
         &mut self,
         prepared: &Prepared<'_, '_>,
-        (solution, nodes): (&Solution, &[FacetResult]),
-        probes: &[Probe],
+        solution: &Solution,
+        nodes: &[FacetResult],
     ) -> Result<(), Interruption> {
-        if probes.is_empty() || !self.output.is_kept() {
+        if self.probes.all.is_empty() || !self.output.is_kept() {
             return Ok(());
         }
         let number = self.finished.len();
@@ -286,8 +283,8 @@ impl Run<'_> {
             solution,
             nodes,
         };
-        solved.add_to(&mut self.probes, probes);
-        let text = &self.probes;
+        self.probes.add(&solved);
+        let text = &self.probes.text;
         let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
         Ok(self.output.write(probes::NAME, write)?)
     }
@@ -357,7 +354,7 @@ impl Run<'_> {
             files: self.output.sums().to_vec(),
             fractures: self.summary.fractures.clone(),
             history: self.history.text().to_owned(),
-            probes: self.probes.clone(),
+            probes: self.probes.text.clone(),
             measures: self.summary.measures.clone(),
             stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),

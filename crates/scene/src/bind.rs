@@ -7,12 +7,12 @@ use lie_core::Rock;
 
 use crate::bind_fields::bind_fields;
 use crate::bind_flow::bind_flow;
+use crate::bind_probes::{Probe, bind_probes};
 use crate::cases::{Bound, schedule};
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
-use crate::probe::{Probe, bind_probes};
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::rock::RockEntry;

@@ -7,6 +7,7 @@
 mod bind;
 mod bind_fields;
 mod bind_flow;
+mod bind_probes;
 mod cases;
 mod conditions;
 mod doubts;
@@ -31,6 +32,7 @@ mod setting;
 mod warning;
 
 pub use bind::{Binding, bind};
+pub use bind_probes::{Hit, Probe, ProbePoint};
 pub use conditions::{
     BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, VaryingLoadEntry,
 };
@@ -42,7 +44,7 @@ pub use initial_stress::InitialStressEntry;
 pub use join::{JoinedDraft, join};
 pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};
-pub use probe::{Hit, Probe, ProbeEntry, ProbePoint};
+pub use probe::ProbeEntry;
 pub use read::check_conditions;
 pub use refine::refine;
 pub use remedies::in_terms_of_scene;

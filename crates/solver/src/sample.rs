@@ -178,8 +178,7 @@ mod tests {
                 let [a, b, c] = *x;
                 *x = [a + 0.05 * b * c, b - 0.04 * a * a, c + 0.03 * a * b];
             }
-            let roles: Vec<_> = draft.groups.iter().map(|_| kluft_mesh::SurfaceRole::Unused);
-            let roles = roles.collect::<Vec<_>>();
+            let roles = vec![kluft_mesh::SurfaceRole::Unused; draft.groups.len()];
             let mesh = Mesh::build(draft, &roles).expect("a mesh");
             let all = [
                 DVec3::new(0.3, 0.4, 0.45),

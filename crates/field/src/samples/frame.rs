@@ -15,7 +15,8 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// The axes from the first position to the farthest one, and to the one farthest from that line.
+    /// The axes from the first position to the farthest one, and to the one farthest from that
+    /// line.
     pub(crate) fn of(positions: &[DVec3]) -> Self {
         let origin = positions.first().copied().unwrap_or_default();
         let farthest = |rest: &dyn Fn(DVec3) -> DVec3| {
@@ -32,11 +33,15 @@ impl Frame {
         let second = across(second, first).normalize_or_zero();
         let third = first.cross(second);
         let height = farthest(&|x| across(across(x, first), second)).length();
-        let dimension = match () {
-            () if extent == 0.0 => 0,
-            () if is_line => 1,
-            () if height <= FLAT * extent => 2,
-            () => 3,
+        let is_plane = height <= FLAT * extent;
+        let dimension = if extent == 0.0 {
+            0
+        } else if is_line {
+            1
+        } else if is_plane {
+            2
+        } else {
+            3
         };
         Self {
             origin,

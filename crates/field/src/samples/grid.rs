@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Sample;
+use super::sample::Sample;
 
 /// Coordinates of the planes, and a value where three of them meet.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,8 +8,8 @@ use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::Sample;
 use super::frame::Frame;
+use super::sample::Sample;
 
 /// How far outside a triangle a position still belongs to it, as a share of its height: rounding,
 /// and what flat triangles leave open.

@@ -8,7 +8,8 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use glam::DVec3;
 
-use super::{Method, Sample, Samples};
+use super::between::Samples;
+use super::sample::{Method, Sample};
 use crate::coordinate::Beyond;
 
 /// Most rows that are named one by one.
@@ -131,11 +132,12 @@ impl SampleFile<'_> {
 fn delimiter(text: &str) -> u8 {
     let header = text.lines().find(|line| !line.starts_with('#'));
     let has = |c: char| header.is_some_and(|line| line.contains(c));
-    match () {
-        () if has(',') => b',',
-        () if has(';') => b';',
-        () if has('\t') => b'\t',
-        () => b',',
+    if has(';') && !has(',') {
+        b';'
+    } else if has('\t') && !has(',') {
+        b'\t'
+    } else {
+        b','
     }
 }
 

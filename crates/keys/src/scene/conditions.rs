@@ -167,7 +167,7 @@ const fn stress(name: &'static str) -> Key {
 /// A component that is linear in the elevation.
 pub static PROFILE: KeySection = KeySection {
     pattern: "[initial_stress.XX]",
-    says: "A component `value + per_metre (z - at)`, or a value that varies otherwise",
+    says: "A component `value + per_metre (z - at)`, or one that varies otherwise",
     keys: &[
         Key {
             name: "value",

@@ -64,8 +64,8 @@ impl Patches {
         let cells = &mesh.cells;
         let materials = problem.material_of_cell();
         let mut corners: Vec<(u64, u32)> = Vec::with_capacity(4 * cells.len());
-        for cell in 0..cells.len() {
-            let rock = u64::from(materials[cell]);
+        for (cell, &material) in materials.iter().enumerate() {
+            let rock = u64::from(material);
             let count = cells.shapes[cell].corner_count();
             let keys = cells.range(cell).take(count).map(|slot| {
                 let point = u64::from(points.of_cell_node[slot]);

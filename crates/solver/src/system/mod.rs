@@ -50,9 +50,9 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Gives the fractures other laws, one each, the same all over a fracture. Rock and loads stay, and with them whatever a
-    /// solver prepared. A state reached with the former laws serves as a first guess for a step
-    /// with the new ones.
+    /// Gives the fractures other laws, one each, the same all over a fracture. Rock and loads
+    /// stay, and with them whatever a solver prepared. A state reached with the former laws
+    /// serves as a first guess for a step with the new ones.
     pub fn set_laws(&mut self, laws: Vec<FractureLaw>) {
         self.generation += 1;
         self.discretisation.interface.set_laws(self.problem, laws);
