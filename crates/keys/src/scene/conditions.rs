@@ -172,7 +172,7 @@ pub static PROFILE: KeySection = KeySection {
         Key {
             name: "value",
             kind: number(Dimension::Stress, INITIAL),
-            need: Need::Without("`table`, `expression` or `file`"),
+            need: Need::Required,
             example: "-10e6",
             says: "Stress at the elevation `at`",
         },
