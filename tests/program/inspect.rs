@@ -91,7 +91,6 @@ fn the_json_has_its_keys() {
         "groups",
         "fractures",
         "contacts",
-        "decisions",
         "blocks",
         "solvers",
         "walls",
