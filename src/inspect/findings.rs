@@ -47,6 +47,8 @@ pub struct Inspection {
     pub solvers: Vec<SolverFinding>,
     /// Whether walls would pass through each other.
     pub walls: Vec<WallFinding>,
+    /// What was decided on the way from the scene to its problem.
+    pub decisions: Vec<String>,
     /// What the user should look at.
     pub warnings: Vec<String>,
     /// What is wrong with the input.

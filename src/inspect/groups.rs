@@ -5,7 +5,7 @@ use kluft_mesh::{Draft, SurfaceRole, TaggedElements};
 use kluft_solver::{Support, SurfaceLoad};
 
 use super::findings::GroupFinding;
-use kluft_scene::{BoundaryEntry, Scene};
+use kluft_scene::{BoundaryEntry, LoadEntry, Scene};
 
 /// Roles for a mesh without a scene: surfaces with rock on both sides are fractures.
 pub fn guess(draft: &Draft, inner: &[bool]) -> Vec<SurfaceRole> {
@@ -143,9 +143,16 @@ fn surface(
 }
 
 fn what_acts(entry: &BoundaryEntry) -> String {
-    let load = entry.load.map(|load| match load {
-        SurfaceLoad::Pressure(p) => format!("pressure {p} Pa"),
-        SurfaceLoad::Traction(t) => format!("traction ({}, {}, {}) Pa", t.x, t.y, t.z),
+    let load = entry.load.as_ref().map(|load| match load {
+        LoadEntry::Uniform(SurfaceLoad::Pressure(p)) => format!("pressure {p} Pa"),
+        LoadEntry::Uniform(SurfaceLoad::Traction(t)) => {
+            format!("traction ({}, {}, {}) Pa", t.x, t.y, t.z)
+        }
+        LoadEntry::Varying(load) => {
+            let fields = load.fields.iter();
+            let fields = fields.map(|field| format!("{} by {}", field.key, field.origin));
+            fields.collect::<Vec<_>>().join(", ")
+        }
     });
     let support = entry.support.map(|support| match support {
         Support::Symmetry => "symmetry".to_owned(),

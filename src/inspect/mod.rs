@@ -138,6 +138,7 @@ fn look(
             if !scene.is_rigid() {
                 defects.extend(weigh(&binding.problem, &survey, inspection));
             }
+            inspection.decisions.extend(binding.decisions);
             inspection.warnings.extend(binding.warnings);
         }
         Err(found) => defects.extend(found),

@@ -41,6 +41,12 @@ pub fn of(inspection: &Inspection) -> String {
         cost(out, solver);
     }
     walls(out, inspection);
+    if !inspection.decisions.is_empty() {
+        head_line(out, "decided");
+        list(out, &inspection.decisions, |decision| {
+            format!("  {decision}")
+        });
+    }
     let defects = inspection.defects.len();
     if defects > SHOWN_DEFECTS {
         head_line(

@@ -1,8 +1,10 @@
 //! Whether the loads are enough to push the walls of fractures through each other.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use kluft_mesh::{Survey, facet_area_vector};
-use kluft_solver::{Condition, Problem, Support, SurfaceLoad};
+use kluft_solver::{
+    Condition, Field, LoadField, Problem, Support, SurfaceLoad, VaryingLoad, principal,
+};
 use lie_core::{Closure, ClosureKind};
 
 use super::findings::{Inspection, WallFinding};
@@ -17,6 +19,7 @@ pub fn judge(problem: &Problem, survey: &Survey, inspection: &mut Inspection) {
             .schedule
             .largest_factor(problem.schedule.cases.of_fracture(index));
         let suction = (-factor * fracture.fluid_pressure).max(0.0);
+        let suction = suction + varying_suction(problem, index);
         let expected = outside.map(|outside| outside + suction);
         let (law, limit) = meeting(closure);
         let overlap = match (limit, expected) {
@@ -37,6 +40,19 @@ pub fn judge(problem: &Problem, survey: &Survey, inspection: &mut Inspection) {
         }
         inspection.walls.push(finding);
     }
+}
+
+/// Largest suction (Pa) of fluid pressures that vary within a fracture.
+fn varying_suction(problem: &Problem, fracture: usize) -> f64 {
+    let own = problem.varying.pressures.iter();
+    let own = own.filter(|pressure| pressure.fracture == fracture);
+    let largest = own.map(|pressure| {
+        let factor = problem.schedule.largest_factor(pressure.case);
+        let places = problem.places_of_fracture(fracture).into_iter();
+        let values = places.map(|place| -factor * pressure.field.at(place, pressure.time));
+        values.fold(0.0, f64::max)
+    });
+    largest.fold(0.0, f64::max)
 }
 
 fn warning(finding: &WallFinding) -> Option<String> {
@@ -88,11 +104,18 @@ fn compression(problem: &Problem) -> Option<f64> {
     let density = problem.rocks.iter().map(|rock| rock.density);
     let gravity = schedule.largest_factor(schedule.cases.gravity) * problem.gravity.abs();
     let weight = density.fold(0.0, f64::max) * gravity.dot(high - low);
-    let initial = problem.initial_stress.map_or(0.0, |stress| {
-        let ends = [low, high].map(|at| -smallest_principal(&stress.at(at)));
+    let initial = problem.initial_stress.as_ref().map_or(0.0, |stress| {
+        let ends = [low, high].map(|at| {
+            let s = stress.at(at);
+            let [x, y, z] = [s.x_axis, s.y_axis, s.z_axis];
+            -principal(&[x.x, y.y, z.z, x.y, y.z, x.z])[0]
+        });
         ends[0].max(ends[1]).max(0.0)
     });
-    Some(surface.fold(0.0, f64::max) + weight + initial)
+    let varying = problem.varying.loads.iter();
+    let varying = varying.map(|load| varying_compression(problem, load));
+    let surface = surface.chain(varying).fold(0.0, f64::max);
+    Some(surface + weight + initial)
 }
 
 fn prescribes_displacement(problem: &Problem) -> bool {
@@ -128,46 +151,42 @@ fn pressed(problem: &Problem, condition: &Condition, factor: f64) -> f64 {
                 let corners = problem.mesh.corners(&boundary.elements, facet);
                 facet_area_vector(&corners).normalize_or_zero()
             });
-            let beside = |normal: DVec3| {
-                let across = factor * traction.dot(normal);
-                let along = (factor * traction - across * normal).length();
-                (0.25 * across * across + along * along).sqrt() - 0.5 * across
-            };
+            let beside = |normal: DVec3| beside(factor * traction, normal);
             normals.map(beside).fold(0.0, f64::max)
         }
     }
 }
 
-/// Smallest eigenvalue of a symmetric matrix (Smith 1961).
-fn smallest_principal(stress: &DMat3) -> f64 {
-    let mean = (stress.x_axis.x + stress.y_axis.y + stress.z_axis.z) / 3.0;
-    let deviator = *stress - DMat3::from_diagonal(DVec3::splat(mean));
-    let squares = [deviator.x_axis, deviator.y_axis, deviator.z_axis].map(DVec3::length_squared);
-    let size = (squares.iter().sum::<f64>() / 6.0).sqrt();
-    if size == 0.0 {
-        return mean;
-    }
-    let half = (deviator * (1.0 / size)).determinant() / 2.0;
-    let angle = half.clamp(-1.0, 1.0).acos() / 3.0;
-    mean + 2.0 * size * (angle + 2.0 * std::f64::consts::PI / 3.0).cos()
+/// The same of a load that varies within its face: the largest over the nodes of its facets.
+fn varying_compression(problem: &Problem, load: &VaryingLoad) -> f64 {
+    let factor = problem.schedule.largest_factor(load.case);
+    let elements = &problem.mesh.boundaries[load.boundary].elements;
+    let of_facet = |facet: usize| {
+        let corners = problem.mesh.corners(elements, facet);
+        let normal = facet_area_vector(&corners).normalize_or_zero();
+        let at = |field: &Field, corner: &DVec3| factor * field.at(*corner, load.time);
+        let of_corner = |corner: &DVec3| match &load.load {
+            LoadField::Pressure(field) => at(field, corner).max(0.0),
+            LoadField::Traction(fields) => {
+                let traction = DVec3::from([0, 1, 2].map(|axis| at(&fields[axis], corner)));
+                beside(traction, normal)
+            }
+        };
+        corners.iter().map(of_corner).fold(0.0, f64::max)
+    };
+    (0..elements.len()).map(of_facet).fold(0.0, f64::max)
+}
+
+/// Largest compression (Pa) beside a face with this normal, under a traction.
+fn beside(traction: DVec3, normal: DVec3) -> f64 {
+    let across = traction.dot(normal);
+    let along = (traction - across * normal).length();
+    (0.25 * across * across + along * along).sqrt() - 0.5 * across
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_smallest_principal_stress_is_an_eigenvalue() {
-        let turned = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
-        for values in [[-5.0, 2.0, 1.0], [3.0, 3.0, 3.0], [0.0, -1.0, -1.0]] {
-            let stress = turned * DMat3::from_diagonal(values.into()) * turned.transpose();
-            let smallest = values.into_iter().fold(f64::INFINITY, f64::min);
-            assert!(
-                (smallest_principal(&stress) - smallest).abs() < 1e-7,
-                "{values:?}"
-            );
-        }
-    }
 
     #[test]
     fn walls_meet_at_the_cutoff_where_the_law_says() {

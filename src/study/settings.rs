@@ -172,12 +172,38 @@ fn make_paths_absolute(scene: &mut Table, folder: &Path) {
     };
     for key in ["geometry", "file"] {
         if let Some(Value::String(path)) = mesh.get_mut(key) {
-            let beside = folder.join(&*path);
-            // One that is not there is refused by the runs.
-            let absolute = std::path::absolute(&beside).unwrap_or(beside);
-            *path = absolute.display().to_string();
+            make_absolute(path, folder);
         }
     }
+    for key in ["fracture", "boundary", "initial_stress"] {
+        scene
+            .get_mut(key)
+            .into_iter()
+            .for_each(|value| of_values(value, folder));
+    }
+}
+
+/// The files of values that vary, wherever they stand in a section.
+fn of_values(value: &mut Value, folder: &Path) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table.iter_mut() {
+                match value {
+                    Value::String(path) if key == "file" => make_absolute(path, folder),
+                    other => of_values(other, folder),
+                }
+            }
+        }
+        Value::Array(array) => array.iter_mut().for_each(|entry| of_values(entry, folder)),
+        _ => {}
+    }
+}
+
+fn make_absolute(path: &mut String, folder: &Path) {
+    let beside = folder.join(&*path);
+    // One that is not there is refused by the runs.
+    let absolute = std::path::absolute(&beside).unwrap_or(beside);
+    *path = absolute.display().to_string();
 }
 
 /// Defects of the choices under which no setting is a scene, so that a slip costs no run.

@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 use kluft_mesh::structured::Patch;
 use kluft_solver::{
-    Condition, Discretisation, InitialStress, Load, Newton, NewtonSettings, Problem, Profile,
-    Support, SurfaceLoad, System, solution, unobserved,
+    Condition, Discretisation, Field, InitialStress, Load, Newton, NewtonSettings, Problem,
+    Profile, Support, SurfaceLoad, System, solution, unobserved,
 };
 use lie_core::ClosureKind;
 
@@ -176,15 +176,16 @@ fn uniform_profile(stress: DMat3) -> InitialStress {
         value,
         ..Profile::default()
     };
+    let components = [
+        value(stress.x_axis.x),
+        value(stress.y_axis.y),
+        value(stress.z_axis.z),
+        value(stress.x_axis.y),
+        value(stress.y_axis.z),
+        value(stress.x_axis.z),
+    ];
     InitialStress {
-        components: [
-            value(stress.x_axis.x),
-            value(stress.y_axis.y),
-            value(stress.z_axis.z),
-            value(stress.x_axis.y),
-            value(stress.y_axis.z),
-            value(stress.x_axis.z),
-        ],
+        components: components.map(Field::from),
     }
 }
 
@@ -241,7 +242,8 @@ fn lithostatic_stress_and_gravity_move_nothing() {
         per_metre: factor * weight,
     };
     let mut initial = InitialStress::default();
-    initial.components[..3].copy_from_slice(&[profile(0.5), profile(0.7), profile(1.0)]);
+    let normal = [profile(0.5), profile(0.7), profile(1.0)].map(Field::from);
+    initial.components[..3].clone_from_slice(&normal);
     problem.initial_stress = Some(initial);
     for face in ["left", "right", "front", "back", "bottom"] {
         scenes::support(&mut problem, face, Support::Symmetry);

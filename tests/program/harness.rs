@@ -90,6 +90,13 @@ impl Workshop {
         workshop
     }
 
+    /// A scene by itself.
+    pub fn of(scene: &str) -> Self {
+        let workshop = Self { folder: scratch() };
+        fs::write(workshop.scene(), scene).expect("the scene is written");
+        workshop
+    }
+
     /// The scene file.
     pub fn scene(&self) -> PathBuf {
         self.path("scene.toml")

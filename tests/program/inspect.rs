@@ -72,6 +72,7 @@ fn the_json_has_its_keys() {
         "doubled_surfaces",
         "fractures",
         "contacts",
+        "decisions",
         "unresolved_patches",
         "blocks",
         "cells",

@@ -8,10 +8,11 @@ use crate::Violation;
 const PROGRAM: &str = "kluft";
 
 /// Every package of ours with those that it may depend on.
-const ALLOWED: [(&str, &[&str]); 13] = [
+const ALLOWED: [(&str, &[&str]); 14] = [
     ("kluft-defect", &[]),
     ("kluft-algebra", &[]),
     ("kluft-chart", &[]),
+    ("kluft-field", &[]),
     ("kluft-keys", &["kluft-defect"]),
     ("kluft-mesh", &["kluft-defect"]),
     ("lie-core", &["kluft-mesh"]),
@@ -19,12 +20,19 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("kluft-io", &["kluft-defect", "kluft-mesh"]),
     (
         "kluft-solver",
-        &["kluft-algebra", "kluft-defect", "kluft-mesh", "lie-core"],
+        &[
+            "kluft-algebra",
+            "kluft-defect",
+            "kluft-field",
+            "kluft-mesh",
+            "lie-core",
+        ],
     ),
     (
         "kluft-scene",
         &[
             "kluft-defect",
+            "kluft-field",
             "kluft-keys",
             "kluft-mesh",
             "kluft-solver",

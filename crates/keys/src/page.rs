@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::document::Document;
+use crate::scene::FIELD;
 use crate::table::{Key, KeySection, Kind, Need};
 
 /// The reference page of a document, in Markdown.
@@ -140,8 +141,12 @@ pub(crate) fn holds(kind: &Kind) -> String {
         Kind::Numbers(_) => "list of numbers".into(),
         Kind::Vector(_) => "`[x, y, z]`".into(),
         Kind::Points(_) => "list of `[x, y, z]`".into(),
+        Kind::Rows => "list of `[coordinate, value]`".into(),
+        Kind::VectorOr(_, section) => {
+            format!("`[x, y, z]` of numbers or {}", reference(section))
+        }
         Kind::History => "list of `[time, factor]`".into(),
-        Kind::NumberOr(_, section) => format!("number or {}", names(section)),
+        Kind::NumberOr(_, section) => format!("number or {}", reference(section)),
         Kind::FreeNumbers => "table of numbers".into(),
         Kind::Tables(_) => "list of tables of numbers".into(),
         Kind::TablesOrWords(_, known) => format!("list of tables, {}", words(known)),
@@ -149,6 +154,18 @@ pub(crate) fn holds(kind: &Kind) -> String {
         Kind::Table(_) => "section".into(),
         Kind::Named(_) => "sections with a name".into(),
         Kind::Listed(_) => "sections".into(),
+    }
+}
+
+/// A section in braces: its keys, or what it is called where others have it too.
+fn reference(section: &KeySection) -> String {
+    match std::ptr::eq(section, &FIELD) {
+        true => format!(
+            "[{0}](#{1})",
+            section.pattern,
+            section.pattern.replace(' ', "-")
+        ),
+        false => names(section),
     }
 }
 

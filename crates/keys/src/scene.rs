@@ -2,11 +2,13 @@
 
 mod closure;
 mod conditions;
+mod field;
 mod fluid;
 mod fracture;
 mod load;
 mod mesh;
 mod oracle;
+mod probe;
 mod rock;
 mod shared;
 mod solver;
@@ -15,11 +17,13 @@ mod warnings;
 
 pub use closure::{ClosureLaw, LAWS};
 pub use conditions::{BODY, BOUNDARY, DISPLACEMENT, FIXED_POINT, INITIAL_STRESS, PROFILE};
+pub use field::{COORDINATES, FIELD};
 pub use fluid::{FLUID, FLUID_PROFILE, SOURCE};
 pub use fracture::{CLOSURES, FRACTURE};
 pub use load::{LOAD, PHASE};
 pub use mesh::{ADAPT, MESH};
 pub use oracle::{FORMS, ORACLE};
+pub use probe::PROBE;
 pub use rock::ROCK;
 pub use solver::{FACETS, SOLVER, SOLVERS};
 pub use study::{CLOSURE, SERIES, STUDY};
@@ -79,6 +83,13 @@ pub static ROOT: KeySection = KeySection {
             need: Need::Without("nothing is compared"),
             example: "[oracle.NAME]",
             says: "Closed forms by fracture, to compare it with",
+        },
+        Key {
+            name: "probe",
+            kind: Kind::Named(&PROBE),
+            need: Need::Without("none"),
+            example: "[probe.NAME]",
+            says: "Points whose values are written down after each load step",
         },
     ],
     also: None,

@@ -29,20 +29,34 @@ pub fn schema(document: Document) -> Value {
 
 /// An object with the keys of a section and no others.
 fn of_section(section: &'static KeySection) -> Map<String, Value> {
-    let keys = section.all_keys();
-    let properties: Map<String, Value> =
-        keys.map(|key| (key.name.to_owned(), of_key(key))).collect();
-    let required = section.all_keys().filter(|key| key.need == Need::Required);
+    of_keys(section.says, &section.all_keys().collect::<Vec<_>>())
+}
+
+/// An object with these keys and no others.
+fn of_keys(says: &str, keys: &[&'static Key]) -> Map<String, Value> {
+    let properties = keys.iter();
+    let properties: Map<String, Value> = properties
+        .map(|key| (key.name.to_owned(), of_key(key)))
+        .collect();
+    let required = keys.iter().filter(|key| key.need == Need::Required);
     let required: Vec<&str> = required.map(|key| key.name).collect();
     let mut object = Map::new();
     object.insert("type".into(), "object".into());
-    object.insert("description".into(), section.says.into());
+    object.insert("description".into(), says.into());
     object.insert("properties".into(), properties.into());
     object.insert("additionalProperties".into(), false.into());
     if !required.is_empty() {
         object.insert("required".into(), required.into());
     }
     object
+}
+
+/// A number, or the keys of a section in its place: its own, or those that it shares.
+fn number_or(quantity: Quantity, section: &'static KeySection) -> Value {
+    let own = of_keys(section.says, &section.keys.iter().collect::<Vec<_>>());
+    let mut choices = vec![of_quantity(quantity), own.into()];
+    choices.extend(section.also.map(|also| Value::Object(of_section(also))));
+    json!({ "anyOf": choices })
 }
 
 fn of_key(key: &Key) -> Value {
@@ -98,12 +112,14 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Points(quantity) => {
             json!({ "type": "array", "items": tuple(of_quantity(quantity), 3), "minItems": 3 })
         }
-        Kind::History => {
+        Kind::VectorOr(quantity, section) => tuple(
+            json!({ "anyOf": [of_quantity(quantity), of_section(section)] }),
+            3,
+        ),
+        Kind::History | Kind::Rows => {
             json!({ "type": "array", "items": tuple(json!({ "type": "number" }), 2), "minItems": 1 })
         }
-        Kind::NumberOr(quantity, section) => {
-            json!({ "anyOf": [of_quantity(quantity), of_section(section)] })
-        }
+        Kind::NumberOr(quantity, section) => number_or(quantity, section),
         Kind::FreeNumbers => free_numbers(),
         Kind::Tables(_) => json!({ "type": "array", "items": free_numbers(), "minItems": 1 }),
         Kind::TablesOrWords(section, words) => {

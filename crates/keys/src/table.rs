@@ -72,8 +72,12 @@ pub enum Kind {
     Points(Quantity),
     /// Times with factors, `[time, factor]` in brackets.
     History,
+    /// Rows in brackets, each of a coordinate and a value.
+    Rows,
     /// A number, or the keys of a section.
     NumberOr(Quantity, &'static KeySection),
+    /// Three numbers in brackets, each of which may be the keys of a section instead.
+    VectorOr(Quantity, &'static KeySection),
     /// Numbers under names that are free.
     FreeNumbers,
     /// A list of tables.
@@ -183,7 +187,8 @@ impl Kind {
             | Self::Numbers(quantity)
             | Self::Vector(quantity)
             | Self::Points(quantity)
-            | Self::NumberOr(quantity, _) => Some(quantity),
+            | Self::NumberOr(quantity, _)
+            | Self::VectorOr(quantity, _) => Some(quantity),
             Self::Whole(range) => Some(quantity(Dimension::One, range)),
             _ => None,
         }
@@ -193,6 +198,7 @@ impl Kind {
     pub fn section(&self) -> Option<&'static KeySection> {
         match *self {
             Self::NumberOr(_, section)
+            | Self::VectorOr(_, section)
             | Self::Tables(section)
             | Self::TablesOrWords(section, _)
             | Self::Sweeps(section)

@@ -40,6 +40,8 @@ pub struct Identity {
     pub scene: Fingerprint,
     /// The text of the geometry, if the scene names one.
     pub geometry: Option<Fingerprint>,
+    /// The bytes of the files of values that the scene names, in its order.
+    pub values: Vec<Fingerprint>,
     /// The bytes of the mesh file.
     pub mesh: Fingerprint,
 }
@@ -61,6 +63,8 @@ pub struct Progress<'a> {
     pub stress_error: f64,
     /// The text of the history of all of them.
     pub history: String,
+    /// The text of their probes.
+    pub probes: String,
     /// The measures after the last of them.
     pub measures: Vec<Measure>,
     /// Where the time went so far.
@@ -221,7 +225,14 @@ impl Identity {
         let scene = (self.scene != former.scene).then(|| changed(scene, "scene"));
         let geometry = geometry.filter(|_| self.geometry != former.geometry);
         let geometry = geometry.map(|path| changed(path, "geometry"));
-        [version, scene, geometry].into_iter().flatten().collect()
+        let values = self.scene == former.scene && self.values != former.values;
+        let values = values.then(|| {
+            let problem = "a file of values that the scene names has changed since the run was \
+                           interrupted";
+            Defect::new(NAME, problem, format!("undo the change, or {AFRESH}"))
+        });
+        let scene = scene.into_iter().chain(geometry);
+        version.into_iter().chain(scene).chain(values).collect()
     }
 }
 
@@ -253,6 +264,7 @@ mod tests {
             version: "1.2.3".into(),
             scene: fingerprint("scene"),
             geometry: Some(1 << 127),
+            values: vec![3],
             mesh: 7,
         }
     }
@@ -265,6 +277,7 @@ mod tests {
             files: Vec::new(),
             fractures: Vec::new(),
             history: String::new(),
+            probes: String::new(),
             stress_error: 0.0,
             measures: Vec::new(),
             seconds: Seconds::default(),
@@ -346,6 +359,9 @@ mod tests {
             identity().differences(other, scene, Some(geometry))
         };
         assert_eq!(compare(&other), Vec::new());
+        other.values = vec![4];
+        let defects = compare(&other);
+        assert!(defects[0].problem.contains("file of values"), "{defects:?}");
         other.version = "1.2.2".into();
         other.scene ^= 1;
         other.geometry = None;

@@ -123,12 +123,14 @@ fn nothing_acts(problem: &Problem) -> bool {
         .fractures
         .iter()
         .any(|fracture| fracture.fluid_pressure != 0.0);
+    let varying = &problem.varying;
+    let varies = !varying.loads.is_empty() || !varying.pressures.is_empty();
     let fixed = problem
         .fixed_points
         .iter()
         .any(|fixed| moves(&fixed.displacement));
     let body = problem.gravity != glam::DVec3::ZERO || problem.initial_stress.is_some();
-    !(loaded || pressed || fixed || body)
+    !(loaded || pressed || varies || fixed || body)
 }
 
 /// A load step in words: its phase, its time and its factors, as far as the user gave them.

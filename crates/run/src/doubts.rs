@@ -117,7 +117,7 @@ pub fn of_initial_stress(scene: &Scene, system: &System<'_>) -> Option<String> {
 /// Force that the initial stress exerts across the body (N): the largest that its components reach
 /// at the bottom or the top, on the mean section of the box around it.
 fn across(problem: &Problem) -> Option<f64> {
-    let stress = problem.initial_stress?;
+    let stress = problem.initial_stress.as_ref()?;
     let (low, high) = problem.mesh.bounds();
     let largest = |x| {
         let stress = stress.at(x);

@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::checkpoint;
 use crate::flow::SOURCES;
 use crate::history;
+use crate::probes;
 
 /// The files that the collections, the summary and the report of an inspection name, and these
 /// themselves. What nothing names is not ours.
@@ -46,6 +47,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
     }
     if read(history::NAME).is_some_and(|text| history::is_history(&text)) {
         names.push(history::NAME.into());
+    }
+    if read(probes::NAME).is_some_and(|text| probes::is_probes(&text)) {
+        names.push(probes::NAME.into());
     }
     if checkpoint::is_checkpoint(&folder.join(checkpoint::NAME)) {
         names.push(checkpoint::NAME.into());

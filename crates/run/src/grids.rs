@@ -13,7 +13,7 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
     let points = &system.discretisation().points();
     let rocks = system
         .problem()
-        .rock_of_cell
+        .material_of_cell()
         .iter()
         .map(|&rock| rock as i32);
     let displacements = solution.displacements.iter().map(|u| u.to_array());

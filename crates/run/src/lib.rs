@@ -56,6 +56,7 @@ mod output;
 mod permeability;
 mod permeability_summary;
 mod prepare;
+mod probes;
 mod request;
 mod resume;
 mod rigid;

@@ -11,6 +11,7 @@ use crate::checkpoint::{self, StepFiles};
 use crate::flow::SOURCES;
 use crate::former;
 use crate::history;
+use crate::probes;
 
 /// The collections of the grids of all load steps.
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
@@ -274,7 +275,8 @@ impl Output {
 
 /// Whether a file belongs to one run and must not outlive it.
 fn is_of_run(name: &str) -> bool {
-    [checkpoint::NAME, history::NAME, SOURCES].contains(&name) || former::is_step(name)
+    [checkpoint::NAME, history::NAME, probes::NAME, SOURCES].contains(&name)
+        || former::is_step(name)
 }
 
 fn list<'a>(

@@ -35,7 +35,8 @@ pub fn inputs<'a>(file: &'a Path, scene: Option<&'a Scene>) -> Vec<&'a Path> {
         MeshSource::Geometry { geometry, .. } => geometry.as_path(),
         MeshSource::File(mesh) => mesh.as_path(),
     });
-    [file].into_iter().chain(mesh).collect()
+    let values = scene.map(Scene::value_files).unwrap_or_default();
+    [file].into_iter().chain(mesh).chain(values).collect()
 }
 
 /// Least memory that topology, unknowns and stiffness take for each cell (bytes): linear tetrahedra

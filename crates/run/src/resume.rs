@@ -34,6 +34,11 @@ pub fn identity(scene: &Scene, origin: Option<Origin<'_>>) -> Identity {
         scene: origin.map_or(0, |origin| fingerprint(origin.text)),
         // One that cannot be read is refused when it is meshed.
         geometry: geometry(scene).and_then(|path| fingerprint_of(path).ok()),
+        values: scene
+            .value_files()
+            .into_iter()
+            .map(|file| fingerprint_of(file).unwrap_or_default())
+            .collect(),
         mesh: 0,
     }
 }

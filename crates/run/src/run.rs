@@ -12,6 +12,7 @@ use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
 use crate::output::{COLLECTIONS, Output};
 use crate::prepare::{MESH, inputs};
+use crate::probes;
 use crate::request::{MeshInput, Request};
 use crate::resume::{self, FormerRun};
 use crate::stages::{Interruption, Run};
@@ -67,6 +68,9 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     let mut names = vec!["summary.json", history::NAME, checkpoint::NAME];
     names.extend(COLLECTIONS);
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
+    if !request.scene.probes.is_empty() {
+        names.push(probes::NAME);
+    }
     if let (MeshSource::Geometry { adapt, .. }, MeshInput::OfScene) =
         (&request.scene.mesh, &request.mesh)
     {

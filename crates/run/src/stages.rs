@@ -19,6 +19,7 @@ use crate::observer::{Observer, Stage};
 use crate::outcome::{Ending, Outcome, StepResult};
 use crate::output::Output;
 use crate::prepare::{self, MeshFile};
+use crate::probes::ProbeTable;
 use crate::request::{MeshInput, Request};
 use crate::resume::FormerRun;
 use crate::summary::{MeshSummary, Seconds, StepMeasures, Summary, UnknownSummary};
@@ -61,6 +62,8 @@ pub struct Run<'a> {
     pub finished: Vec<StepMeasures>,
     /// How they went.
     pub history: History,
+    /// Values of probes after all of them, a table.
+    pub probes: ProbeTable,
     /// The results that are kept.
     pub kept: Vec<StepResult>,
     /// Name of the linear solver, and why it was chosen.
@@ -121,6 +124,7 @@ impl<'a> Run<'a> {
             identity,
             finished: Vec::new(),
             history: History::default(),
+            probes: ProbeTable::default(),
             kept: Vec::new(),
             choice: Default::default(),
             doubts: Vec::new(),

@@ -7,8 +7,8 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, System, block_motions,
-    determinacy, solution, surface_resultants,
+    Estimator, FacetResult, Newton, Plan, Problem, Solution, State, StepOutcome, System,
+    block_motions, determinacy, solution, surface_resultants,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -24,6 +24,7 @@ use crate::history::{self, Entry, History};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
+use crate::probes::{self, Solved};
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
 use crate::summary::{StepMeasures, StepSummary};
@@ -84,6 +85,7 @@ impl Run<'_> {
         let flow = self.let_flow(binding, &mut system)?;
         let plan = self.plan(&system, former.as_ref())?;
         self.decide(binding);
+        self.probes.all.clone_from(&binding.probes);
         let unbalanced = doubts::of_initial_stress(self.request.scene, &system);
         self.doubts.extend(unbalanced);
         self.summary.warnings.clone_from(&self.doubts);
@@ -152,6 +154,7 @@ impl Run<'_> {
         }
         self.summary.fractures = former.fractures;
         self.history = History::from_text(former.history);
+        self.probes.text = former.probes;
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
@@ -266,7 +269,32 @@ impl Run<'_> {
             written
         })?;
         self.write_sources(system.problem())?;
+        self.write_probes(prepared, &solution, &nodes)?;
         self.write_history(prepared, &solution)
+    }
+
+    /// Adds the load step that was solved last to the values of probes.
+    fn write_probes(
+        &mut self,
+        prepared: &Prepared<'_, '_>,
+        solution: &Solution,
+        nodes: &[FacetResult],
+    ) -> Result<(), Interruption> {
+        if self.probes.all.is_empty() || !self.output.is_kept() {
+            return Ok(());
+        }
+        let number = self.finished.len();
+        let solved = Solved {
+            number,
+            step: &prepared.system.problem().schedule.steps[number - 1],
+            system: prepared.system,
+            solution,
+            nodes,
+        };
+        self.probes.add(&solved);
+        let text = &self.probes.text;
+        let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
+        Ok(self.output.write(probes::NAME, write)?)
     }
 
     /// Adds the load step that was solved last to the history.
@@ -340,6 +368,7 @@ impl Run<'_> {
             files: self.output.sums().to_vec(),
             fractures: self.summary.fractures.clone(),
             history: self.history.text().to_owned(),
+            probes: self.probes.text.clone(),
             measures: self.summary.measures.clone(),
             stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),

@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
-use kluft_solver::{Condition, FixedPoint, Flow, Problem};
+use kluft_solver::{Condition, FixedPoint, Flow, Problem, Varying};
 use lie_core::Rock;
 
+use crate::bind_fields::bind_fields;
 use crate::bind_flow::bind_flow;
+use crate::bind_probes::{Probe, bind_probes};
 use crate::cases::{Bound, schedule};
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
@@ -14,6 +16,7 @@ use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
+use crate::rock::RockEntry;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
 use crate::surfaces::{SurfaceMesh, surface_mesh};
@@ -30,6 +33,8 @@ pub struct Binding {
     pub warnings: Vec<String>,
     /// Closed form of each fracture that has one.
     pub oracles: Vec<Option<Oracle>>,
+    /// Probes.
+    pub probes: Vec<Probe>,
 }
 
 impl Scene {
@@ -111,36 +116,46 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let mut idle = Vec::new();
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let mut flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
-    let rocks = scene.rocks.iter().map(|entry| entry.value);
-    let problem = Problem {
+    let mut problem = Problem {
         conditions,
-        rocks: match scene.rocks.is_empty() {
-            true => vec![Rock::rigid(0.0)],
-            false => rocks.collect(),
-        },
+        rocks: rocks(scene),
         rock_of_cell,
         schedule,
-        fractures: bound
-            .fractures
-            .iter()
+        fractures: (bound.fractures.iter())
             .map(|entry| entry.value.fracture)
             .collect(),
         fixed_points,
         gravity: scene.body.gravity,
-        initial_stress: scene.initial_stress,
+        initial_stress: scene
+            .initial_stress
+            .as_ref()
+            .map(|entry| entry.stress.clone()),
+        varying: Varying::default(),
         facet_quadrature: scene.solver.facets,
         mesh,
     };
     if let Some(flow) = &mut flow {
         leave_out(scene, &problem, flow, &mut decisions)?;
     }
+    let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
+    let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
     Ok(Binding {
-        warnings: [warnings(scene, &problem), idle].concat(),
+        warnings: [warnings(scene, &problem), odd, idle].concat(),
         problem,
         flow,
         decisions,
         oracles,
+        probes,
     })
+}
+
+/// The rocks; rigid rock needs no section.
+fn rocks(scene: &Scene) -> Vec<Rock> {
+    let rocks = scene.rocks.iter().map(|entry| entry.value.rock);
+    match scene.rocks.is_empty() {
+        true => vec![Rock::rigid(0.0)],
+        false => rocks.collect(),
+    }
 }
 
 /// What acts on and holds the outer surface.
@@ -152,7 +167,7 @@ fn bind_boundaries<'a>(
         let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
         let condition = Condition {
             boundary,
-            load: entry.value.load,
+            load: entry.value.uniform_load(),
             support: entry.value.support,
         };
         Some((entry, condition))
@@ -192,7 +207,16 @@ fn bind_oracles(
     let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
     for (name, fracture) in mesh.fractures.iter().zip(fractures) {
         let refused = of(name).and_then(|entry| {
-            let [problem, remedy] = entry.value.refusal(&fracture.value.fracture)?;
+            let varies =
+                !fracture.value.fields.is_empty() || fracture.value.varying_pressure.is_some();
+            let refusal = match varies {
+                true => Some([
+                    "a closed form has one law and one pressure all over its fracture",
+                    "give the fracture plain numbers, or remove the closed form",
+                ]),
+                false => entry.value.refusal(&fracture.value.fracture),
+            };
+            let [problem, remedy] = refusal?;
             Some(Defect::new(&entry.place, problem, remedy))
         });
         defects.extend(refused);
@@ -216,7 +240,7 @@ fn bind_rocks(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<u32>
         .zip(used)
         .map(|(set, used)| {
             let names: Vec<&str> = set.iter().map(|&g| mesh.groups[g].name.as_str()).collect();
-            let matches = |entry: &Named<Rock>| names.contains(&entry.name.as_str());
+            let matches = |entry: &Named<RockEntry>| names.contains(&entry.name.as_str());
             let found: Vec<usize> = (0..scene.rocks.len())
                 .filter(|&rock| matches(&scene.rocks[rock]))
                 .collect();
@@ -288,7 +312,7 @@ fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
     let without = scene
         .rocks
         .iter()
-        .filter(|entry| entry.value.density == 0.0);
+        .filter(|entry| entry.value.rock.density == 0.0);
     without.map(|entry| {
         Defect::new(
             &entry.place,

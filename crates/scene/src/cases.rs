@@ -3,7 +3,7 @@
 use kluft_keys::section_head;
 use kluft_solver::{Cases, Load, Schedule, Step, Support};
 
-use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, is_moved};
+use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, is_moved};
 use crate::fluid::SourceEntry;
 use crate::history::{LoadHistory, StepEnd, Timetable};
 use crate::scene::{Named, Scene};
@@ -69,13 +69,20 @@ impl Found {
             let value = &entry.value;
             let moves = matches!(value.support, Some(Support::Displacement(d)) if is_moved(&d));
             let name = section_head("boundary", &entry.name);
-            let acts = value.load.is_some() || moves || value.fluid.is_some();
+            let is_loaded = match &value.load {
+                Some(LoadEntry::Varying(load)) => !load.load.depends_on_time(),
+                load => load.is_some(),
+            };
+            let acts = is_loaded || moves || value.fluid.is_some();
             self.case(acts, &value.history, name)
         });
         let conditions = conditions.collect();
         let fractures = bound.fractures.iter().map(|entry| {
             let value = &entry.value;
-            let acts = value.fracture.fluid_pressure != 0.0 || value.given_pressure.is_some();
+            let varying = value.varying_pressure.as_ref();
+            let acts = value.fracture.fluid_pressure != 0.0
+                || value.given_pressure.is_some()
+                || varying.is_some_and(|entry| !entry.field.depends_on_time());
             let name = section_head("fracture", &entry.name);
             self.case(acts, &entry.value.history, name)
         });

@@ -1,8 +1,11 @@
 //! Conditions of a scene: what acts on faces, nodes and the whole rock.
 
 use glam::DVec3;
-use kluft_solver::{Conduit, FlowDrive, Fracture, Support, SurfaceLoad};
+use kluft_solver::{
+    Conduit, Field, FlowDrive, Fracture, LawParameter, LoadField, Support, SurfaceLoad,
+};
 
+use crate::field::{self, FieldEntry, InTime, Value, read_value};
 use crate::fluid::read_boundary_fluid;
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
@@ -13,7 +16,7 @@ use crate::setting::Setting;
 #[derive(Debug, Clone)]
 pub struct BoundaryEntry {
     /// Its load.
-    pub load: Option<SurfaceLoad>,
+    pub load: Option<LoadEntry>,
     /// Its support.
     pub support: Option<Support>,
     /// What drives the fluid there.
@@ -22,13 +25,58 @@ pub struct BoundaryEntry {
     pub history: Option<LoadHistory>,
 }
 
+/// A load on a part of the outer surface.
+#[derive(Debug, Clone)]
+pub enum LoadEntry {
+    /// The same all over it.
+    Uniform(SurfaceLoad),
+    /// One that varies.
+    Varying(Box<VaryingLoadEntry>),
+}
+
+/// A load that varies within its surface.
+#[derive(Debug, Clone)]
+pub struct VaryingLoadEntry {
+    /// Its values.
+    pub load: LoadField,
+    /// What is asked of them.
+    pub fields: Vec<FieldEntry>,
+}
+
+impl BoundaryEntry {
+    /// The load, if it is the same all over the surface.
+    pub(crate) fn uniform_load(&self) -> Option<SurfaceLoad> {
+        match self.load {
+            Some(LoadEntry::Uniform(load)) => Some(load),
+            Some(LoadEntry::Varying(_)) | None => None,
+        }
+    }
+
+    /// The load, if it varies.
+    pub(crate) fn varying_load(&self) -> Option<&VaryingLoadEntry> {
+        match &self.load {
+            Some(LoadEntry::Varying(load)) => Some(load),
+            Some(LoadEntry::Uniform(_)) | None => None,
+        }
+    }
+
+    /// Values of its load that vary.
+    pub(crate) fn fields(&self) -> &[FieldEntry] {
+        self.varying_load().map_or(&[], |load| &load.fields)
+    }
+}
+
 /// A fracture, where it is if not on a physical surface, and the history of its fluid pressure.
 #[derive(Debug, Clone)]
 pub struct FractureEntry {
     /// The physical volumes that it lies between; none if it is a physical surface of the mesh.
     pub between: Option<[String; 2]>,
-    /// Its law and what fills it.
+    /// Its law and what fills it. Parameters that vary are not numbers until the mesh is known.
     pub fracture: Fracture,
+    /// Parameters of the law that vary.
+    pub fields: Vec<(LawParameter, FieldEntry)>,
+    /// The fluid pressure, if it varies.
+    pub varying_pressure: Option<Box<FieldEntry>>,
     /// How it conducts; none if nothing flows in the scene.
     pub conduit: Option<Conduit>,
     /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
@@ -62,7 +110,7 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
     let fluid = read_boundary_fluid(section, setting);
     let (load, support) = match setting.is_rigid() {
         true => (None, None),
-        false => (read_load(section), read_support(section)),
+        false => (read_load(section, setting), read_support(section)),
     };
     let names = ["traction", "pressure", "symmetry", "displacement"];
     let says_nothing = match setting.is_rigid() {
@@ -89,12 +137,21 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
     })
 }
 
-fn read_load(section: &Section<'_, '_>) -> Option<SurfaceLoad> {
-    let traction = section.vector("traction");
-    let pressure = section.number("pressure");
+fn read_load(section: &Section<'_, '_>, setting: Setting) -> Option<LoadEntry> {
+    let in_time = InTime::By(setting.clock);
+    let traction = field::read_components(section, "traction", in_time);
+    let pressure = read_value(section, "pressure", in_time);
     match (traction, pressure) {
-        (Some(traction), None) => Some(SurfaceLoad::Traction(traction.into())),
-        (None, Some(pressure)) => Some(SurfaceLoad::Pressure(pressure)),
+        (Some(traction), None) => Some(traction_of(traction)),
+        (None, Some(Value::Number(pressure))) => {
+            Some(LoadEntry::Uniform(SurfaceLoad::Pressure(pressure)))
+        }
+        (None, Some(Value::Varying(entry))) => {
+            Some(LoadEntry::Varying(Box::new(VaryingLoadEntry {
+                load: LoadField::Pressure(entry.field.clone()),
+                fields: vec![*entry],
+            })))
+        }
         (Some(_), Some(_)) => {
             let remedy = "keep one; a pressure p is the traction -p along the outward normal";
             section.refuse(
@@ -106,6 +163,26 @@ fn read_load(section: &Section<'_, '_>) -> Option<SurfaceLoad> {
         }
         (None, None) => None,
     }
+}
+
+/// A traction, uniform if none of its components varies.
+fn traction_of(components: [Value; 3]) -> LoadEntry {
+    if let [Value::Number(x), Value::Number(y), Value::Number(z)] = components {
+        return LoadEntry::Uniform(SurfaceLoad::Traction(DVec3::new(x, y, z)));
+    }
+    let mut entries = Vec::new();
+    let fields = components.map(|component| match component {
+        Value::Number(number) => Field::constant(number),
+        Value::Varying(entry) => {
+            let field = entry.field.clone();
+            entries.push(*entry);
+            field
+        }
+    });
+    LoadEntry::Varying(Box::new(VaryingLoadEntry {
+        load: LoadField::Traction(Box::new(fields)),
+        fields: entries,
+    }))
 }
 
 fn read_support(section: &Section<'_, '_>) -> Option<Support> {

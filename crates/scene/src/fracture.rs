@@ -1,10 +1,11 @@
 //! What a scene may say of a fracture.
 
 use kluft_keys::Range;
-use kluft_solver::{Conduit, Fracture};
+use kluft_solver::{Conduit, Fracture, LawParameter};
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, HydraulicAperture, Tension};
 
 use crate::conditions::FractureEntry;
+use crate::field::{FieldEntry, InTime, Value, read_value};
 use crate::fluid::read_conduit;
 use crate::load::{Scaled, read_history};
 use crate::reader::Section;
@@ -32,16 +33,24 @@ pub(crate) fn read_placed_fracture(
 /// Reads what a section says of a fracture, wherever it is.
 pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<FractureEntry> {
     let conduit = read_conduit(section, setting);
+    let mut fields = Fields::default();
     let law = match setting.is_rigid() {
         true => read_rigid_law(section, conduit),
-        false => read_law(section),
+        false => read_law(section, &mut fields),
     };
     let is_open = matches!(conduit, Some(Conduit::Open(_)));
     // Nothing moves the walls of a sealed fracture in rigid rock.
     let has_use = is_open || !setting.is_rigid();
-    let fluid_pressure = match has_use {
-        true => section.number("fluid_pressure"),
-        false => None,
+    let given = match (has_use, is_open) {
+        (false, _) => None,
+        // The flow has it, which takes one pressure for all of a fracture.
+        (true, true) => section.number("fluid_pressure").map(Value::Number),
+        (true, false) => read_value(section, "fluid_pressure", InTime::By(setting.clock)),
+    };
+    let (fluid_pressure, varying_pressure) = match given {
+        Some(Value::Number(pressure)) => (Some(pressure), None),
+        Some(Value::Varying(entry)) => (None, Some(entry)),
+        None => (None, None),
     };
     let scaled = Scaled {
         is_there: has_use && section.has("fluid_pressure"),
@@ -57,6 +66,8 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
                 false => fluid_pressure.unwrap_or(0.0),
             },
         },
+        fields: fields.0,
+        varying_pressure,
         conduit,
         given_pressure: fluid_pressure.filter(|_| is_open),
         history,
@@ -78,8 +89,51 @@ fn read_rigid_law(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option
     aperture.map(FractureLaw::rigid)
 }
 
+/// Parameters that vary.
+#[derive(Default)]
+struct Fields(Vec<(LawParameter, FieldEntry)>);
+
+impl Fields {
+    /// Reads a parameter; one that varies is kept, and is not a number here, so that nothing is
+    /// found wrong with it before its values are known.
+    fn read(
+        &mut self,
+        section: &Section<'_, '_>,
+        key: &'static str,
+        parameter: LawParameter,
+    ) -> Option<f64> {
+        self.read_in(section, (key, section.quantity(key).range), parameter)
+    }
+
+    /// Reads a parameter of another range.
+    fn read_in(
+        &mut self,
+        section: &Section<'_, '_>,
+        (key, range): (&'static str, Range),
+        parameter: LawParameter,
+    ) -> Option<f64> {
+        if !section.is_table(key) {
+            return section.number_in(key, range);
+        }
+        let Value::Varying(mut entry) = read_value(section, key, InTime::Never)? else {
+            return None;
+        };
+        entry.quantity.range = range;
+        self.0.push((parameter, *entry));
+        Some(f64::NAN)
+    }
+
+    /// Lets the largest closure of a hyperbola be the aperture, which varies.
+    fn follow_aperture(&mut self) {
+        let mut own = self.0.iter();
+        let aperture = own.find(|(parameter, _)| *parameter == LawParameter::Aperture);
+        let followed = aperture.map(|(_, entry)| (LawParameter::MaxClosure, entry.clone()));
+        self.0.extend(followed);
+    }
+}
+
 /// The law of walls that move.
-fn read_law(section: &Section<'_, '_>) -> Option<FractureLaw> {
+fn read_law(section: &Section<'_, '_>, fields: &mut Fields) -> Option<FractureLaw> {
     let closure = section.choice("closure");
     let is_known = closure.is_some() || !section.has("closure");
     let closure = closure.unwrap_or("linear");
@@ -98,12 +152,12 @@ fn read_law(section: &Section<'_, '_>) -> Option<FractureLaw> {
     } else {
         Range::Positive
     };
-    let aperture = section.number_in("aperture", positive);
-    let normal_stiffness = section.number("normal_stiffness");
-    let kind = closure_kind(section, closure, aperture);
-    let tension = read_tension(section, normal_stiffness);
-    let friction = read_friction(section);
-    let shear_stiffness = read_shear_stiffness(section, contact);
+    let aperture = fields.read_in(section, ("aperture", positive), LawParameter::Aperture);
+    let normal_stiffness = fields.read(section, "normal_stiffness", LawParameter::NormalStiffness);
+    let kind = closure_kind(section, (closure, aperture), fields);
+    let tension = read_tension(section, normal_stiffness, fields);
+    let friction = read_friction(section, fields);
+    let shear_stiffness = read_shear_stiffness(section, contact, fields);
     if contact {
         refuse_in_contact(section);
     }
@@ -139,9 +193,13 @@ pub fn refused_keys(closure: &str, has_friction: bool) -> Vec<&'static str> {
     keys.map(|(_, key)| key).collect()
 }
 
-fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>) -> ClosureKind {
-    let below = |key: &'static str| {
-        let value = section.number(key)?;
+fn closure_kind(
+    section: &Section<'_, '_>,
+    (closure, aperture): (&str, Option<f64>),
+    fields: &mut Fields,
+) -> ClosureKind {
+    let mut below = |key: &'static str, parameter: LawParameter| {
+        let value = fields.read(section, key, parameter)?;
         if let Some(aperture) = aperture.filter(|&aperture| value > aperture) {
             section.refuse(
                 key,
@@ -162,7 +220,11 @@ fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>)
     };
     belongs("cutoff_aperture", "logarithmic");
     belongs("max_closure", "hyperbolic");
-    let (cutoff, max_closure) = (below("cutoff_aperture"), below("max_closure"));
+    let cutoff = below("cutoff_aperture", LawParameter::CutoffAperture);
+    let max_closure = below("max_closure", LawParameter::MaxClosure);
+    if closure == "hyperbolic" && max_closure.is_none() {
+        fields.follow_aperture();
+    }
     match closure {
         "logarithmic" => ClosureKind::Logarithmic { cutoff },
         "hyperbolic" => ClosureKind::Hyperbolic {
@@ -173,10 +235,10 @@ fn closure_kind(section: &Section<'_, '_>, closure: &str, aperture: Option<f64>)
     }
 }
 
-fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>) -> Tension {
+fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>, fields: &mut Fields) -> Tension {
     let cut = section.flag("tension_cutoff").unwrap_or(false);
-    let strength = section.number("tensile_strength");
-    let energy = section.number("fracture_energy");
+    let strength = fields.read(section, "tensile_strength", LawParameter::TensileStrength);
+    let energy = fields.read(section, "fracture_energy", LawParameter::FractureEnergy);
     if strength.is_some() != energy.is_some() {
         let (given, missing) = match strength {
             Some(_) => ("tensile_strength", "fracture_energy"),
@@ -213,10 +275,10 @@ fn read_tension(section: &Section<'_, '_>, stiffness: Option<f64>) -> Tension {
     Tension::Cohesive { strength, energy }
 }
 
-fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
-    let angle = section.number("friction_angle");
-    let cohesion = section.number("cohesion");
-    let dilation = section.number("dilation_angle");
+fn read_friction(section: &Section<'_, '_>, fields: &mut Fields) -> Option<Friction> {
+    let angle = fields.read(section, "friction_angle", LawParameter::FrictionAngle);
+    let cohesion = fields.read(section, "cohesion", LawParameter::Cohesion);
+    let dilation = fields.read(section, "dilation_angle", LawParameter::DilationAngle);
     for key in ["cohesion", "dilation_angle"] {
         if section.has(key) && !section.has("friction_angle") {
             section.refuse(
@@ -245,9 +307,13 @@ fn read_friction(section: &Section<'_, '_>) -> Option<Friction> {
 
 /// Without one, friction holds the walls rigidly, and walls in contact without friction slide
 /// freely.
-fn read_shear_stiffness(section: &Section<'_, '_>, contact: bool) -> Option<f64> {
+fn read_shear_stiffness(
+    section: &Section<'_, '_>,
+    contact: bool,
+    fields: &mut Fields,
+) -> Option<f64> {
     let has_friction = section.has("friction_angle");
-    let given = section.number("shear_stiffness");
+    let given = fields.read(section, "shear_stiffness", LawParameter::ShearStiffness);
     if section.has("shear_stiffness") && has_friction && given == Some(0.0) {
         section.refuse(
             "shear_stiffness",

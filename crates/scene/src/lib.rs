@@ -5,22 +5,28 @@
 //! problem that a solver takes. Values are in SI units.
 
 mod bind;
+mod bind_fields;
 mod bind_flow;
+mod bind_probes;
 mod cases;
 mod conditions;
 mod doubts;
+mod field;
 mod fluid;
 mod fracture;
 mod history;
+mod initial_stress;
 mod isolated;
 mod join;
 mod load;
 mod oracle;
+mod probe;
 mod profile;
 mod read;
 pub mod reader;
 mod refine;
 mod remedies;
+mod rock;
 mod roles;
 mod scene;
 mod setting;
@@ -29,16 +35,23 @@ mod surfaces;
 mod warning;
 
 pub use bind::{Binding, bind};
-pub use conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
+pub use bind_probes::{Hit, Probe, ProbePoint};
+pub use conditions::{
+    BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, VaryingLoadEntry,
+};
+pub use field::FieldEntry;
 pub use fluid::{FluidEntry, SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, StepEnd, Timetable};
+pub use initial_stress::InitialStressEntry;
 pub use join::{JoinedDraft, join};
 pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};
+pub use probe::ProbeEntry;
 pub use read::check_conditions;
 pub use refine::refine;
 pub use remedies::in_terms_of_scene;
+pub use rock::RockEntry;
 pub use roles::{Roles, roles};
 pub use scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 pub use setting::{FluidUse, Setting};

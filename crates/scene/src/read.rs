@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 
 use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
-use kluft_solver::InitialStress;
-use lie_core::{FacetQuadrature, Rock};
+use lie_core::FacetQuadrature;
 
 use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, read_fixed_point};
 use crate::fluid::{FluidEntry, SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
+use crate::initial_stress::read_initial_stress;
 use crate::load::{Clock, read_timetable};
 use crate::oracle;
-use crate::profile::read_profile;
+use crate::probe::read_probe;
 use crate::reader::{Section, Source};
+use crate::rock::read_rock;
 use crate::scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::Setting;
 
@@ -58,7 +59,7 @@ impl Scene {
     /// # Errors
     /// Every defect of the text, each with its line and a remedy.
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Vec<Defect>> {
-        let source = Source::new(name, text, Document::Scene);
+        let source = Source::new(name, text, Document::Scene).in_folder(folder);
         let table = source.parse();
         let scene = table.as_ref().and_then(|table| {
             let root = Section::root(&source, table.get_ref());
@@ -131,17 +132,19 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         })
     });
     let fractures = fractures.collect();
-    let boundaries = named("boundary")
-        .filter_map(|(name, s)| entry(source, name, s, |s| read_boundary(s, setting)));
-    let boundaries = boundaries.collect();
+    let boundary = |(name, s)| entry(source, name, s, |s| read_boundary(s, setting));
+    let boundaries = named("boundary").filter_map(boundary).collect();
     let body = read_body(root, clock);
     // Of `kluft study`, which reads it.
     root.section("study");
+    let probes = named("probe").filter_map(|(name, s)| entry(source, name, s, read_probe));
+    let probes = probes.collect();
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
     let flowing = read_flow(root, &body, setting);
     Some(Scene {
         oracles,
+        probes,
         fluid: flowing.fluid,
         isolated: flowing.isolated,
         equivalent_permeability: flowing.equivalent_permeability,
@@ -401,35 +404,15 @@ fn refuse_in_rigid_rock(root: &Section<'_, '_>, keys: &[&'static str]) {
 
 /// The same in a scene, and a mesh that is to follow an error which nobody estimates.
 fn refuse_in_rigid_scene(root: &Section<'_, '_>) {
-    refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "oracle", "solver"]);
+    refuse_in_rigid_rock(
+        root,
+        &["fixed_point", "initial_stress", "oracle", "probe", "solver"],
+    );
     if let Some(mesh) = root.section("mesh").filter(|mesh| mesh.has("adapt")) {
         let problem = "no error of a mesh in rigid rock is estimated: no rock has a young_modulus";
         let remedy = "remove adapt, or add young_modulus to [rock]";
         mesh.refuse("adapt", problem.into(), remedy);
     }
-}
-
-fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<Rock> {
-    if setting.is_rigid() {
-        let density = section.number("density");
-        return Some(Rock::rigid(density.unwrap_or(0.0)));
-    }
-    section.require("young_modulus");
-    section.require("poisson_ratio");
-    let young_modulus = section.number("young_modulus");
-    let poisson_ratio = section.number("poisson_ratio");
-    let density = section.number("density");
-    Some(Rock {
-        young_modulus: young_modulus?,
-        poisson_ratio: poisson_ratio?,
-        density: density.unwrap_or(0.0),
-    })
-}
-
-fn read_initial_stress(section: Section<'_, '_>) -> InitialStress {
-    let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| read_profile(&section, name));
-    section.finish();
-    InitialStress { components }
 }
 
 fn read_solver(root: &Section<'_, '_>) -> SolverEntry {

@@ -8,6 +8,7 @@ mod values;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use kluft_keys::Document;
 use kluft_mesh::Defect;
@@ -25,6 +26,8 @@ pub struct Source<'a> {
     text: &'a str,
     /// What the file is.
     document: Document,
+    /// Where the paths of files begin that are read with it, if any may be named.
+    folder: Option<PathBuf>,
     /// Position of each line break.
     breaks: Vec<usize>,
     /// Defects with their position in the text.
@@ -44,10 +47,20 @@ impl<'a> Source<'a> {
             name,
             text,
             document,
+            folder: None,
             breaks: breaks.map(|(position, _)| position).collect(),
             defects: RefCell::default(),
             warnings: RefCell::default(),
             asked: RefCell::default(),
+        }
+    }
+
+    /// The same text in a folder, beside whose files it stands.
+    #[must_use]
+    pub fn in_folder(self, folder: &Path) -> Self {
+        Self {
+            folder: Some(folder.to_owned()),
+            ..self
         }
     }
 

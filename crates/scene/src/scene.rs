@@ -1,14 +1,17 @@
 //! A scene: what is meshed, of what rock, cut by which fractures, under which loads.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use kluft_solver::{InitialStress, LinearMethod};
-use lie_core::{FacetQuadrature, Rock};
+use kluft_solver::LinearMethod;
+use lie_core::FacetQuadrature;
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::fluid::{FluidEntry, SourceEntry};
 use crate::history::Timetable;
+use crate::initial_stress::InitialStressEntry;
 use crate::oracle::Oracle;
+use crate::probe::ProbeEntry;
+use crate::rock::RockEntry;
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -92,7 +95,7 @@ pub struct Scene {
     /// How many times each cell is divided into eight.
     pub refine: u32,
     /// Rocks by physical volume.
-    pub rocks: Vec<Named<Rock>>,
+    pub rocks: Vec<Named<RockEntry>>,
     /// Fractures by physical surface.
     pub fractures: Vec<Named<FractureEntry>>,
     /// Conditions by physical surface.
@@ -110,11 +113,13 @@ pub struct Scene {
     /// Boreholes.
     pub sources: Vec<Named<SourceEntry>>,
     /// Stress before any load.
-    pub initial_stress: Option<InitialStress>,
+    pub initial_stress: Option<InitialStressEntry>,
     /// Load steps.
     pub timetable: Timetable,
     /// What is asked of the linear solver.
     pub solver: SolverEntry,
+    /// Probes.
+    pub probes: Vec<Named<ProbeEntry>>,
     /// Closed forms by fracture.
     pub oracles: Vec<Named<Oracle>>,
     /// Values that are possible but hardly meant, each with its place.
@@ -124,8 +129,35 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The files that values come from, each once, in the order of the scene.
+    pub fn value_files(&self) -> Vec<&Path> {
+        let fractures = self.fractures.iter().flat_map(|entry| {
+            let value = &entry.value;
+            let laws = value.fields.iter().map(|(_, field)| field);
+            laws.chain(value.varying_pressure.as_deref())
+        });
+        let loads = self
+            .boundaries
+            .iter()
+            .flat_map(|entry| entry.value.fields());
+        let rocks = self.rocks.iter().flat_map(|entry| &entry.value.fields);
+        let fractures = rocks.map(|(_, field)| field).chain(fractures);
+        let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);
+        let mut files: Vec<&Path> = Vec::new();
+        for file in fractures
+            .chain(loads)
+            .chain(stress)
+            .filter_map(|field| field.file.as_deref())
+        {
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        files
+    }
+
     /// Whether the rock is rigid, and flow is all that happens.
     pub fn is_rigid(&self) -> bool {
-        self.fluid.is_some() && self.rocks.iter().all(|entry| entry.value.is_rigid())
+        self.fluid.is_some() && self.rocks.iter().all(|entry| entry.value.rock.is_rigid())
     }
 }

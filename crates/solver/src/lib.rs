@@ -35,6 +35,7 @@ mod memory;
 mod newton;
 mod problem;
 mod resultants;
+mod sample;
 mod solution;
 mod space;
 mod system;
@@ -57,10 +58,12 @@ pub use newton::{
     UnresolvedPath, determinacy, unobserved,
 };
 pub use problem::{
-    Cases, Condition, Conduit, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
-    Fracture, InitialStress, Load, Problem, Profile, Schedule, Step, Support, SurfaceLoad,
+    Cases, Condition, Conduit, Field, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
+    Fracture, InitialStress, LawParameter, Load, LoadField, Problem, Profile, RockParameter,
+    Schedule, Step, Support, SurfaceLoad, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
 };
 pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
+pub use sample::{InCell, RockSample, locate, principal, sample};
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use space::pattern::{CellOfSlot, Pattern};
 pub use space::rigid_modes::UNHELD_BLOCK;

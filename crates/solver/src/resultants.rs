@@ -7,7 +7,7 @@ use lie_core::kernel::{self, MAX_NODES};
 use lie_core::load_areas;
 use rayon::prelude::*;
 
-use crate::problem::{Condition, Problem, Support, SurfaceLoad};
+use crate::problem::{Condition, Problem, Support, SurfaceLoad, VaryingLoad};
 use crate::space::cell::Cell;
 use crate::system::{State, System};
 
@@ -103,13 +103,14 @@ struct Corner {
 }
 
 /// What acts on a part of the surface.
-struct Acting {
+struct Acting<'a> {
     loads: Vec<(f64, SurfaceLoad)>,
+    varying: Vec<(f64, &'a VaryingLoad)>,
     supports: Vec<Support>,
 }
 
-impl Acting {
-    fn on(problem: &Problem, state: &State, boundary: usize) -> Self {
+impl<'a> Acting<'a> {
+    fn on(problem: &'a Problem, state: &State, boundary: usize) -> Self {
         let cases = &problem.schedule.cases;
         let all = problem.conditions.iter().enumerate();
         let own = all.filter(|(_, condition)| condition.boundary == boundary);
@@ -117,8 +118,13 @@ impl Acting {
             let factor = state.load.factor(cases.of_condition(number));
             Some((factor, condition.load?))
         };
+        let varying = problem.varying.loads.iter();
+        let varying = varying.filter(|load| load.boundary == boundary);
         Self {
             loads: own.clone().filter_map(load).collect(),
+            varying: varying
+                .map(|load| (state.load.factor(load.case), load))
+                .collect(),
             supports: own.filter_map(|(_, condition)| condition.support).collect(),
         }
     }
@@ -141,7 +147,13 @@ impl Acting {
                 held,
             }
         };
-        nodes.iter().zip(areas).map(corner).collect()
+        let mut corners: Vec<Corner> = nodes.iter().zip(areas).map(corner).collect();
+        for (factor, load) in &self.varying {
+            let forces = load.forces(shape, places);
+            let pairs = corners.iter_mut().zip(forces);
+            pairs.for_each(|(corner, force)| corner.load += *factor * force);
+        }
+        corners
     }
 }
 

@@ -140,9 +140,12 @@ fn cell_stress(system: &System<'_>, displacements: &[DVec3], cell: usize) -> Sym
     let problem = system.problem;
     let points = &system.discretisation.points;
     let cell = Cell::of(problem, points, displacements, cell);
-    let initial = problem.initial_stress.map_or(DMat3::ZERO, |stress| {
-        stress.at(kernel::centre(cell.shape, cell.nodes()))
-    });
+    let initial = problem
+        .initial_stress
+        .as_ref()
+        .map_or(DMat3::ZERO, |stress| {
+            stress.at(kernel::centre(cell.shape, cell.nodes()))
+        });
     let gradient = kernel::mean_gradient(cell.shape, cell.nodes(), cell.moved());
     components(cell.rock.stress(gradient) + initial)
 }

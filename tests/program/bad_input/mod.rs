@@ -2,10 +2,12 @@
 //!
 //! The cases start from a sound scene, `base.toml` on `base.msh`: two cells with a joint between.
 
+mod fields;
 mod fluid;
 mod geometry;
 mod load;
 mod mesh;
+mod probes;
 mod problem;
 mod scene;
 mod values;

@@ -1,5 +1,6 @@
 //! What acts on faces, nodes and the whole rock.
 
+use super::field::{FIELD, varied};
 use super::fluid::{BOUNDARY_INFLOW, BOUNDARY_PRESSURE};
 use super::shared::{GROWS_ONCE, INITIAL, INITIAL_GRADIENT};
 use crate::dimension::Dimension;
@@ -21,14 +22,14 @@ pub static BOUNDARY: KeySection = KeySection {
     keys: &[
         Key {
             name: "traction",
-            kind: Kind::Vector(quantity(Dimension::Stress, Range::Finite)),
+            kind: Kind::VectorOr(quantity(Dimension::Stress, Range::Finite), &FIELD),
             need: Need::Without("none"),
             example: "[0, 0, -7e6]",
             says: "Force per area in global axes",
         },
         Key {
             name: "pressure",
-            kind: number(Dimension::Stress, Range::Finite),
+            kind: varied(Dimension::Stress, Range::Finite),
             need: Need::Without("none"),
             example: "7e6",
             says: "Force per area along the inward normal, instead of `traction`",
@@ -159,14 +160,14 @@ const fn stress(name: &'static str) -> Key {
         kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &PROFILE),
         need: Need::Default("0"),
         example: "-10e6",
-        says: "Component of the stress, tension positive: constant, or linear in the elevation",
+        says: "Component of the stress, tension positive: constant, linear in the elevation, or any value that varies but not with time",
     }
 }
 
 /// A component that is linear in the elevation.
 pub static PROFILE: KeySection = KeySection {
     pattern: "[initial_stress.XX]",
-    says: "A component `value + per_metre (z - at)` at the elevation z",
+    says: "A component `value + per_metre (z - at)`, or one that varies otherwise",
     keys: &[
         Key {
             name: "value",
@@ -190,5 +191,5 @@ pub static PROFILE: KeySection = KeySection {
             says: "Elevation of `value`, positive upwards",
         },
     ],
-    also: None,
+    also: Some(&FIELD),
 };

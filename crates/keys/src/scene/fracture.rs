@@ -1,12 +1,13 @@
 //! Fractures.
 
+use super::field::{varied, watched_varied};
 use super::fluid::{
     HYDRAULIC_APERTURE, JOINT_ROUGHNESS, RESIDUAL_HYDRAULIC_APERTURE, ROUGHNESS, SEALED,
 };
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, KeySection, Kind, Need, number, watched};
+use crate::table::{Key, KeySection, Kind, Need};
 
 /// Names of the closure laws.
 pub const CLOSURES: [&str; 4] = ["linear", "logarithmic", "hyperbolic", "contact"];
@@ -39,14 +40,14 @@ pub static FRACTURE: KeySection = KeySection {
     keys: &[
         Key {
             name: "aperture",
-            kind: watched(Dimension::Length, Range::NotNegative, &APERTURE),
+            kind: watched_varied(Dimension::Length, Range::NotNegative, &APERTURE),
             need: Need::Unless("the rock is rigid and there is a `hydraulic_aperture`"),
             example: "1e-4",
             says: "Aperture b0 without load, greater than 0; contact allows 0",
         },
         Key {
             name: "normal_stiffness",
-            kind: watched(
+            kind: watched_varied(
                 Dimension::StressPerLength,
                 Range::NotNegative,
                 &NORMAL_STIFFNESS,
@@ -59,7 +60,7 @@ pub static FRACTURE: KeySection = KeySection {
         },
         Key {
             name: "shear_stiffness",
-            kind: number(Dimension::StressPerLength, Range::NotNegative),
+            kind: varied(Dimension::StressPerLength, Range::NotNegative),
             need: Need::Unless(
                 "there is friction (nothing moves before it slides) or contact, or the rock is rigid",
             ),
@@ -75,14 +76,14 @@ pub static FRACTURE: KeySection = KeySection {
         },
         Key {
             name: "cutoff_aperture",
-            kind: number(Dimension::Length, Range::Positive),
+            kind: varied(Dimension::Length, Range::Positive),
             need: Need::Without("none: exact"),
             example: "1e-6",
             says: "Aperture b_cut below which the stiffness goes on linearly, at most b0; logarithmic only",
         },
         Key {
             name: "max_closure",
-            kind: number(Dimension::Length, Range::Positive),
+            kind: varied(Dimension::Length, Range::Positive),
             need: Need::Without("`aperture`"),
             example: "8e-5",
             says: "Closure v_m that no load reaches, at most b0; hyperbolic only",
@@ -96,35 +97,35 @@ pub static FRACTURE: KeySection = KeySection {
         },
         Key {
             name: "tensile_strength",
-            kind: number(Dimension::Stress, Range::Positive),
+            kind: varied(Dimension::Stress, Range::Positive),
             need: Need::Without("no bond"),
             example: "1e6",
             says: "Strength of a bond that breaks in tension, together with `fracture_energy`",
         },
         Key {
             name: "fracture_energy",
-            kind: number(Dimension::EnergyPerArea, Range::Positive),
+            kind: varied(Dimension::EnergyPerArea, Range::Positive),
             need: Need::Without("no bond"),
             example: "100",
             says: "Energy that breaks the bond, more than strength^2 / (2 K_n0)",
         },
         Key {
             name: "friction_angle",
-            kind: watched(Dimension::Angle, Range::Within(0.0, 89.0), &FRICTION),
+            kind: watched_varied(Dimension::Angle, Range::Within(0.0, 89.0), &FRICTION),
             need: Need::Without("none: elastic"),
             example: "30",
             says: "Angle phi of friction; the shear traction is at most c - tan(phi) sigma_n",
         },
         Key {
             name: "cohesion",
-            kind: number(Dimension::Stress, Range::NotNegative),
+            kind: varied(Dimension::Stress, Range::NotNegative),
             need: Need::Default("0"),
             example: "1e5",
             says: "Cohesion c; lost where tension is cut off and the fracture opens, and as a bond breaks",
         },
         Key {
             name: "dilation_angle",
-            kind: number(Dimension::Angle, Range::Within(0.0, 89.0)),
+            kind: varied(Dimension::Angle, Range::Within(0.0, 89.0)),
             need: Need::Default("0"),
             example: "5",
             says: "Opening per slip beyond the elastic slip; at most the friction angle",
@@ -138,7 +139,7 @@ pub static FRACTURE: KeySection = KeySection {
         },
         Key {
             name: "fluid_pressure",
-            kind: number(Dimension::Stress, Range::Finite),
+            kind: varied(Dimension::Stress, Range::Finite),
             need: Need::Default("0"),
             example: "2e6",
             says: "Pressure on both walls, opening; with `[fluid]` given all over the fracture",

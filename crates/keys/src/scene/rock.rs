@@ -1,9 +1,10 @@
 //! Rocks.
 
+use super::field::watched_varied;
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, KeySection, Need, watched};
+use crate::table::{Key, KeySection, Need};
 
 static YOUNG: Plausible = Plausible {
     low: 1e6,
@@ -33,21 +34,21 @@ pub static ROCK: KeySection = KeySection {
     keys: &[
         Key {
             name: "young_modulus",
-            kind: watched(Dimension::Stress, Range::Within(1.0, 1e15), &YOUNG),
+            kind: watched_varied(Dimension::Stress, Range::Within(1.0, 1e15), &YOUNG),
             need: Need::Unless("there is `[fluid]`: all rock without it is rigid"),
             example: "50e9",
             says: "Young's modulus E",
         },
         Key {
             name: "poisson_ratio",
-            kind: watched(Dimension::One, Range::Between(-1.0, 0.5), &POISSON),
+            kind: watched_varied(Dimension::One, Range::Between(-1.0, 0.5), &POISSON),
             need: Need::Unless("the rock is rigid"),
             example: "0.25",
             says: "Poisson's ratio nu",
         },
         Key {
             name: "density",
-            kind: watched(Dimension::Density, Range::NotNegative, &DENSITY),
+            kind: watched_varied(Dimension::Density, Range::NotNegative, &DENSITY),
             need: Need::Default("0"),
             example: "2700",
             says: "Mass per volume; required where gravity acts",

@@ -9,6 +9,20 @@ const REST: &str = "
 load = { times = [1.0] }
 mesh = { file = 'a.msh' }
 [rock.default]
+[fracture.a]
+aperture = { table = [[0, 1e-4]], over = 'depth', ground = 3, beyond = 'nearest', unit = 'mm' }
+normal_stiffness = { expression = '1e10 + x' }
+shear_stiffness = { file = 'a.csv', column = 'k', method = 'linear', reach = 1.0 }
+[probe.a]
+at = [0, 0, 0]
+fracture = 'joint'
+mean = true
+[probe.b]
+from = [0, 0, 0]
+to = [1, 0, 0]
+count = 3
+across = [0, 1, 0]
+rows = 2
 [oracle.a]
 form = 'uniform'
 opening = 1e-5

@@ -41,6 +41,25 @@ impl<'a, 'i> Section<'a, 'i> {
         array.iter().enumerate().filter_map(read).collect()
     }
 
+    /// The entries of a list: numbers, or keys in braces.
+    pub(crate) fn numbers_or_sections(
+        &self,
+        key: &'static str,
+        quantity: Quantity,
+    ) -> Option<Vec<Result<f64, Section<'a, 'i>>>> {
+        let array = self.get(key)?.get_ref().as_array()?;
+        let read = |(number, entry): (usize, &'a Spanned<DeValue<'i>>)| {
+            let title = format!("`{key}` number {} of {}", number + 1, self.name());
+            match entry.get_ref() {
+                DeValue::Table(table) => Some(Err(self.child(key, title, (table, entry.span())))),
+                _ => self.as_number(key, entry, quantity).map(Ok),
+            }
+        };
+        // Every entry is read, so that every defect is found.
+        let entries: Vec<Option<_>> = array.iter().enumerate().map(read).collect();
+        entries.into_iter().collect()
+    }
+
     /// Texts in brackets, each one of those that the table of keys has.
     pub fn choices(&self, key: &'static str) -> Option<Vec<&'static str>> {
         let Some(Kind::Choices(known)) = self.known(key).map(|key| key.kind) else {
@@ -149,6 +168,12 @@ impl<'a, 'i> Section<'a, 'i> {
     pub fn time_factors(&self, key: &'static str) -> Option<Vec<[f64; 2]>> {
         let example = "[time, factor] in brackets, e.g. [[0, 0], [1, 1]]";
         self.tuples(key, ("times with factors", example))
+    }
+
+    /// Pairs of a coordinate and a value in brackets.
+    pub fn rows(&self, key: &'static str) -> Option<Vec<[f64; 2]>> {
+        let example = "[coordinate, value] in brackets, e.g. [[0, 1e9], [500, 4e9]]";
+        self.tuples(key, ("rows", example))
     }
 
     /// Lists of as many numbers, in brackets; what they are called, and an example.

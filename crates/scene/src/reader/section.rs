@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::PathBuf;
 
 use kluft_keys::{Key, Need, nearest, section_head};
 use toml::Spanned;
@@ -91,6 +92,12 @@ impl<'a, 'i> Section<'a, 'i> {
         self.source.place(&self.at)
     }
 
+    /// The path of a file that stands beside this one; none where no files may be named.
+    pub fn beside(&self, name: &str) -> Option<PathBuf> {
+        let folder = self.source.folder.as_ref()?;
+        Some(folder.join(name))
+    }
+
     /// Whether the key is there.
     pub fn has(&self, key: &'static str) -> bool {
         self.get(key).is_some()
@@ -100,6 +107,12 @@ impl<'a, 'i> Section<'a, 'i> {
     pub fn is_table(&self, key: &'static str) -> bool {
         self.get(key)
             .is_some_and(|value| value.get_ref().is_table())
+    }
+
+    /// Whether the key is there and holds a list with a table in it.
+    pub fn has_table_in(&self, key: &'static str) -> bool {
+        let list = self.get(key).and_then(|value| value.get_ref().as_array());
+        list.is_some_and(|list| list.iter().any(|entry| entry.get_ref().is_table()))
     }
 
     /// Reports `key`'s value with a remedy.

@@ -32,7 +32,8 @@ impl<'a, 'i> Section<'a, 'i> {
         self.as_number(key, value, quantity)
     }
 
-    fn quantity(&self, key: &'static str) -> Quantity {
+    /// What the table of keys says of a number.
+    pub(crate) fn quantity(&self, key: &'static str) -> Quantity {
         let quantity = self.known(key).and_then(|key| key.kind.quantity());
         debug_assert!(quantity.is_some(), "{key} is no number");
         quantity.unwrap_or(Quantity::PLAIN)

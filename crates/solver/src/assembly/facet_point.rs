@@ -14,6 +14,8 @@ pub struct FacetPoint {
     pub facet: u32,
     /// Index of its fracture.
     pub fracture: u32,
+    /// Index of its law: that of its fracture, or one of its own.
+    pub law: u32,
     /// Place (m).
     pub position: DVec3,
     /// Area it stands for (m^2); negative at the tip of a quarter-point facet, where nothing moves.

@@ -47,7 +47,7 @@ pub struct Interface {
     /// facets, in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points
     /// follow.
     pub(crate) points: Vec<FacetPoint>,
-    /// Law of each fracture.
+    /// Law of each fracture, then those of points that have their own.
     laws: Vec<FractureLaw>,
     /// Rule that each fracture is integrated by.
     rules: Vec<FacetQuadrature>,
@@ -102,6 +102,10 @@ impl Interface {
             });
             interface.prescribed.extend(prescribed);
             interface.points.push(drawn.point);
+            if let Some(law) = drawn.law {
+                interface.points[number as usize].law = interface.laws.len() as u32;
+                interface.laws.push(law);
+            }
             interface.terms.extend(drawn.terms);
             interface.term_offset.push(interface.terms.len());
         }
@@ -134,12 +138,13 @@ impl Interface {
         self.unknowns = unknowns;
     }
 
-    /// Gives the fractures other laws, one each, which carry the initial stress from now on. The
-    /// facet points stay.
+    /// Gives the fractures other laws, one each, the same all over a fracture, which carry the
+    /// initial stress from now on. The facet points stay.
     pub(crate) fn set_laws(&mut self, problem: &Problem, laws: Vec<FractureLaw>) {
         for point in &mut self.points {
             let law = &laws[point.fracture as usize];
-            point.initial = initial_walls(problem, law, (point.position, point.normal), 0.0);
+            point.law = point.fracture;
+            point.initial = initial_walls(problem, law, point, 0.0);
         }
         self.laws = laws;
     }
@@ -161,7 +166,7 @@ impl Interface {
         &self.columns
     }
 
-    /// Law of each fracture.
+    /// Law of each fracture, then those of points that have their own.
     pub fn laws(&self) -> &[FractureLaw] {
         &self.laws
     }
@@ -176,9 +181,8 @@ impl Interface {
     pub(crate) fn set_initial_pressures(&mut self, problem: &Problem, pressures: &[f64]) {
         for (point, pressure) in self.points.iter_mut().zip(pressures) {
             if *pressure != 0.0 {
-                let law = &self.laws[point.fracture as usize];
-                let own = (point.position, point.normal);
-                point.initial = initial_walls(problem, law, own, *pressure);
+                let law = &self.laws[point.law as usize];
+                point.initial = initial_walls(problem, law, point, *pressure);
             }
         }
     }
@@ -295,6 +299,8 @@ impl Interface {
 /// A facet point with its terms, before they are numbered.
 struct Drawn {
     point: FacetPoint,
+    /// The law of the point, if it is not that of its fracture.
+    law: Option<FractureLaw>,
     terms: Vec<Term>,
     /// Load case and jump (m) of prescribed displacements.
     prescribed: Vec<(u32, DVec3)>,
@@ -325,11 +331,15 @@ fn draw(
         spring: spring(problem, facet, mean.length()),
         mean,
     };
-    let mut drawn: Vec<Drawn> = rule.iter().map(|point| drawing.point(point)).collect();
     let nodal = match quadrature {
         FacetQuadrature::Nodal | FacetQuadrature::Control => nodes.len(),
         FacetQuadrature::Gauss => 0,
     };
+    let node = |index: usize| positions.get(index).filter(|_| index < nodal).copied();
+    let numbered = rule.iter().enumerate();
+    let mut drawn: Vec<Drawn> = numbered
+        .map(|(index, point)| drawing.point(point, node(index)))
+        .collect();
     let others = drawn.split_off(nodal);
     (drawn, others)
 }
@@ -347,7 +357,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    fn point(&self, rule: &FacetRulePoint) -> Drawn {
+    fn point(&self, rule: &FacetRulePoint, node: Option<DVec3>) -> Drawn {
         let Self {
             problem,
             points,
@@ -381,19 +391,23 @@ impl Drawing<'_> {
             true => (own, rule.area / own),
             false => (rule.area.dot(mean.normalize()), mean.normalize()),
         };
-        let law = &problem.fractures[fracture as usize].law;
-        let point = FacetPoint {
+        let own_law = problem.varying_law(facet, rule, node);
+        let law = own_law.unwrap_or(problem.fractures[fracture as usize].law);
+        let mut point = FacetPoint {
             facet: facet as u32,
             fracture,
+            law: fracture,
             position: rule.position,
             area,
             normal,
             spring,
-            initial: initial_walls(problem, law, (rule.position, normal), 0.0),
+            initial: JointState::default(),
         };
+        point.initial = initial_walls(problem, &law, &point, 0.0);
         let prescribed = (0..).zip(prescribed);
         Drawn {
             point,
+            law: own_law,
             terms,
             prescribed: prescribed
                 .filter(|(_, jump)| *jump != DVec3::ZERO)
@@ -438,15 +452,19 @@ fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
     1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
 }
 
-/// The walls carrying the initial stress beside a fluid of some pressure (Pa). A fracture without
-/// stiffness carries none, so it relaxes what the initial stress would need of it.
+/// The walls of a facet point carrying the initial stress beside a fluid of some pressure (Pa). A
+/// fracture without stiffness carries none, so it relaxes what the initial stress would need of it.
 fn initial_walls(
     problem: &Problem,
     law: &FractureLaw,
-    (at, normal): (DVec3, DVec3),
+    point: &FacetPoint,
     pressure: f64,
 ) -> JointState {
-    let stress = problem.initial_stress;
-    let traction = stress.map_or(DVec3::ZERO, |stress| stress.at(at) * normal);
+    let (at, normal) = (point.position, point.normal);
+    let stress = problem.initial_stress.as_ref();
+    let traction = stress.map_or(DVec3::ZERO, |stress| {
+        let place = problem.field_place(point.facet as usize, at);
+        stress.at_place(at, &place) * normal
+    });
     law.under_initial_stress(traction + pressure * normal, normal)
 }

@@ -105,8 +105,30 @@ fn applied(space: Space<'_>, interface: &Interface, case: usize) -> Vec<DVec3> {
             0.0
         }
     });
-    interface.add_pressures(&pressures.collect::<Vec<_>>(), &mut applied);
+    let mut pressures: Vec<f64> = pressures.collect();
+    add_varying_pressures(space, interface, case, &mut pressures);
+    interface.add_pressures(&pressures, &mut applied);
     applied
+}
+
+/// Fluid pressures (Pa) that vary within fractures, on those of all facet points.
+fn add_varying_pressures(
+    space: Space<'_>,
+    interface: &Interface,
+    case: usize,
+    pressures: &mut [f64],
+) {
+    let varying = space.problem.varying.pressures.iter();
+    for entry in varying.filter(|entry| entry.case == case) {
+        let points = interface.points.iter().zip(&mut *pressures);
+        let own = points.filter(|(point, _)| point.fracture as usize == entry.fracture);
+        own.for_each(|(point, sum)| {
+            let place = space
+                .problem
+                .field_place(point.facet as usize, point.position);
+            *sum += place.value(|at| entry.field.at(at, entry.time));
+        });
+    }
 }
 
 /// Forces on the unknowns that balance `forces` on the points, if there are any.
@@ -147,6 +169,24 @@ fn add_surface_loads(space: Space<'_>, case: usize, forces: &mut [DVec3]) {
             let slots = &boundary.slots[boundary.elements.range(facet)];
             for (&slot, area) in slots.iter().zip(areas) {
                 forces[space.points.of_cell_node[slot as usize] as usize] += load.force(area);
+            }
+        }
+    }
+    add_varying_loads(space, case, forces);
+}
+
+fn add_varying_loads(space: Space<'_>, case: usize, forces: &mut [DVec3]) {
+    let mesh = &space.problem.mesh;
+    let loads = space.problem.varying.loads.iter();
+    for load in loads.filter(|load| load.case == case) {
+        let boundary = &mesh.boundaries[load.boundary];
+        for facet in 0..boundary.elements.len() {
+            let nodes = boundary.elements.nodes_of(facet).iter();
+            let positions: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+            let of_nodes = load.forces(boundary.elements.shapes[facet], &positions);
+            let slots = &boundary.slots[boundary.elements.range(facet)];
+            for (&slot, force) in slots.iter().zip(of_nodes) {
+                forces[space.points.of_cell_node[slot as usize] as usize] += force;
             }
         }
     }

@@ -62,9 +62,10 @@ impl Patches {
         } = discretisation;
         let mesh = &problem.mesh;
         let cells = &mesh.cells;
+        let materials = problem.material_of_cell();
         let mut corners: Vec<(u64, u32)> = Vec::with_capacity(4 * cells.len());
-        for cell in 0..cells.len() {
-            let rock = u64::from(problem.rock_of_cell[cell]);
+        for (cell, &material) in materials.iter().enumerate() {
+            let rock = u64::from(material);
             let count = cells.shapes[cell].corner_count();
             let keys = cells.range(cell).take(count).map(|slot| {
                 let point = u64::from(points.of_cell_node[slot]);

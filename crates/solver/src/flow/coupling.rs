@@ -154,6 +154,11 @@ impl<'a> Coupling<'a> {
         })
     }
 
+    /// What flows, and what drives it.
+    pub(crate) fn flow(&self) -> &'a Flow {
+        self.topology.flow
+    }
+
     /// Whether the flow takes time.
     pub fn is_transient(&self) -> bool {
         self.is_transient
@@ -390,12 +395,18 @@ fn shut_contacts(problem: &Problem, flow: &Flow, interface: &Interface) -> Resul
             Conduit::Open(HydraulicAperture::OfWalls { residual, .. }) if *residual == 0.0
         )
     };
-    let fractures = problem.mesh.fractures.iter().zip(interface.laws());
-    let shut = fractures.zip(&flow.conduits).filter(|((_, law), conduit)| {
-        law.closure.kind == ClosureKind::Contact && leaves_nothing(conduit)
-    });
+    let touches = |fracture: usize| {
+        let mut points = interface.points().iter();
+        points.any(|point| {
+            let law = &interface.laws()[point.law as usize];
+            point.fracture as usize == fracture && law.closure.kind == ClosureKind::Contact
+        })
+    };
+    let fractures = problem.mesh.fractures.iter().zip(&flow.conduits);
+    let fractures = fractures.enumerate();
+    let shut = fractures.filter(|(index, (_, conduit))| leaves_nothing(conduit) && touches(*index));
     let defects: Vec<Defect> = shut
-        .map(|((name, _), _)| {
+        .map(|(_, (name, _))| {
             Defect::new(
                 format!("fracture `{name}`"),
                 "its walls come into contact, and nothing could flow between them then",

@@ -5,8 +5,8 @@
 //! increment and in two; where the jumps differ by more than
 //! [`NewtonSettings::path`](super::NewtonSettings::path), or what the fluid fills and its pressures
 //! by more than [`NewtonSettings::time`](super::NewtonSettings::time), it is divided. Loads and
-//! what drives the flow walk with it. What no division resolves, walls that jump to another place in an instant, is let be
-//! and recorded.
+//! what drives the flow walk with it. What no division resolves, walls that jump to another place
+//! in an instant, is let be and recorded.
 
 use glam::DVec3;
 use kluft_algebra::largest;

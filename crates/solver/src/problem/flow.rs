@@ -1,9 +1,8 @@
 //! What flows in the fractures, and what drives it.
 
 use glam::DVec3;
+use kluft_field::Profile;
 use lie_core::HydraulicAperture;
-
-use super::initial_stress::Profile;
 
 /// A fluid that fills fractures.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,40 +1,35 @@
 //! Stress before any load.
 
 use glam::{DMat3, DVec3};
+use kluft_field::Field;
 
-/// A stress component or pressure that varies linearly with elevation:
-/// `value + per_metre (z - at)` (Pa).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Profile {
-    /// Elevation of reference, `at` (m).
-    pub at: f64,
-    /// Its value there (Pa).
-    pub value: f64,
-    /// Change per metre of elevation (Pa/m).
-    pub per_metre: f64,
-}
-
-impl Profile {
-    /// Its value at an elevation (m).
-    pub fn at_elevation(&self, z: f64) -> f64 {
-        self.value + self.per_metre * (z - self.at)
-    }
-}
+use super::field_place::FieldPlace;
 
 /// Stress before any load, components `xx, yy, zz, xy, yz, xz`. Rock and fractures start in
 /// equilibrium with it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct InitialStress {
-    /// The six components.
-    pub components: [Profile; 6],
+    /// The six components (Pa).
+    pub components: [Field; 6],
 }
 
 impl InitialStress {
     /// Stress at a position (Pa).
     pub fn at(&self, position: DVec3) -> DMat3 {
-        let [xx, yy, zz, xy, yz, xz] = self
-            .components
-            .map(|profile| profile.at_elevation(position.z));
+        self.tensor(|field| field.at(position, 0.0))
+    }
+
+    /// Stress at a facet point (Pa), whose place is that for its `position` (m).
+    pub(crate) fn at_place(&self, position: DVec3, place: &FieldPlace) -> DMat3 {
+        self.tensor(|field| match field {
+            Field::Profile(profile) => profile.at_elevation(position.z),
+            other => place.value(|at| other.at(at, 0.0)),
+        })
+    }
+
+    fn tensor(&self, value: impl Fn(&Field) -> f64) -> DMat3 {
+        let [xx, yy, zz, xy, yz, xz] =
+            [0, 1, 2, 3, 4, 5].map(|index: usize| value(&self.components[index]));
         DMat3::from_cols(
             DVec3::new(xx, xy, xz),
             DVec3::new(xy, yy, yz),

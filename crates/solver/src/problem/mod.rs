@@ -1,23 +1,32 @@
 //! Everything a solve needs: mesh, materials, conditions, load steps.
 
 mod conditions;
+mod field_place;
 mod flow;
 mod initial_stress;
 mod schedule;
+mod varying;
 
 use glam::DVec3;
 use kluft_mesh::Mesh;
-use lie_core::{FacetQuadrature, FractureLaw, Rock};
+use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Rock, facet_points};
+
+pub(crate) use field_place::FieldPlace;
 
 pub use conditions::{Condition, FixedPoint, Support, SurfaceLoad};
 pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid};
-pub use initial_stress::{InitialStress, Profile};
+pub use initial_stress::InitialStress;
+pub use kluft_field::{Field, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};
+pub use varying::{
+    LawParameter, LoadField, RockParameter, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
+};
 
 /// A fracture's law and what fills it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fracture {
-    /// The law that a discretisation takes over; later ones are given to the system.
+    /// The law that a discretisation takes over; later ones are given to the system. Where
+    /// parameters vary, it has their means.
     pub law: FractureLaw,
     /// Fluid pressure on both walls (Pa), opening.
     pub fluid_pressure: f64,
@@ -42,6 +51,8 @@ pub struct Problem {
     pub gravity: DVec3,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,
+    /// What varies within fractures and parts of the surface.
+    pub varying: Varying,
     /// Load cases and load steps.
     pub schedule: Schedule,
     /// How fractures are integrated over their facets. Fractures whose laws have kinks are
@@ -60,6 +71,7 @@ impl Problem {
             fixed_points: Vec::new(),
             gravity: DVec3::ZERO,
             initial_stress: None,
+            varying: Varying::default(),
             schedule: Schedule::proportional(vec![1.0]),
             facet_quadrature: FacetQuadrature::Nodal,
             mesh,
@@ -80,6 +92,60 @@ impl Problem {
     /// Rock of a cell.
     pub fn rock(&self, cell: usize) -> &Rock {
         &self.rocks[self.rock_of_cell[cell] as usize]
+    }
+
+    /// What each cell is of: its rock, or the material whose rock varies.
+    pub fn material_of_cell(&self) -> &[u32] {
+        let own = self.varying.material_of_cell.as_ref();
+        own.unwrap_or(&self.rock_of_cell)
+    }
+
+    /// The law of a fracture at a facet point, where it varies; `node` is the position (m) of the
+    /// node that the point belongs to, if it belongs to one.
+    ///
+    /// Laws with kinks are taken at the nodes: points that have one jump touch and slide together.
+    pub(crate) fn varying_law(
+        &self,
+        facet: usize,
+        point: &FacetRulePoint,
+        node: Option<DVec3>,
+    ) -> Option<FractureLaw> {
+        let fracture = self.mesh.facets.fracture[facet];
+        let mut all = self.varying.laws.iter();
+        let varying = all.find(|law| law.fracture == fracture as usize)?;
+        let place = match (self.rule_of(fracture), node) {
+            (FacetQuadrature::Control, Some(node)) => FieldPlace::inside(node),
+            _ => self.field_place(facet, point.position),
+        };
+        Some(varying.at(&self.fractures[fracture as usize].law, &place))
+    }
+
+    /// Where a value that varies is taken for a facet point at a position (m).
+    pub(crate) fn field_place(&self, facet: usize, position: DVec3) -> FieldPlace {
+        let corners = self.mesh.corners(&self.mesh.facets.elements, facet);
+        FieldPlace::of(&corners, position)
+    }
+
+    /// Positions (m) at which a law and a fluid pressure of a fracture are asked for.
+    pub fn places_of_fracture(&self, fracture: usize) -> Vec<DVec3> {
+        let facets = &self.mesh.facets;
+        let own =
+            (0..facets.elements.len()).filter(|&facet| facets.fracture[facet] as usize == fracture);
+        let places = own.flat_map(|facet| {
+            let nodes = facets.elements.nodes_of(facet).iter();
+            let nodes: Vec<DVec3> = nodes.map(|&node| self.mesh.nodes[node as usize]).collect();
+            let rule = self.rule_of(fracture as u32);
+            let points = facet_points(facets.elements.shapes[facet], &nodes, rule).into_iter();
+            let places: Vec<DVec3> = points
+                .flat_map(|point| self.field_place(facet, point.position).positions())
+                .collect();
+            let at_nodes = match rule {
+                FacetQuadrature::Control => nodes,
+                FacetQuadrature::Nodal | FacetQuadrature::Gauss => Vec::new(),
+            };
+            places.into_iter().chain(at_nodes)
+        });
+        places.collect()
     }
 
     /// How a fracture is integrated: at control points instead of nodes if its law has kinks,

@@ -56,12 +56,17 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Gives the fractures other laws, one each. Rock and loads stay, and with them whatever a
-    /// solver prepared. A state reached with the former laws serves as a first guess for a step
-    /// with the new ones.
+    /// Gives the fractures other laws, one each, the same all over a fracture. Rock and loads
+    /// stay, and with them whatever a solver prepared. A state reached with the former laws
+    /// serves as a first guess for a step with the new ones.
     pub fn set_laws(&mut self, laws: Vec<FractureLaw>) {
         self.generation += 1;
-        self.discretisation.interface.set_laws(self.problem, laws);
+        let interface = &mut self.discretisation.interface;
+        interface.set_laws(self.problem, laws);
+        if let Some(coupling) = &self.coupling {
+            let pressures = initial_pressures(coupling.flow(), interface);
+            interface.set_initial_pressures(self.problem, &pressures);
+        }
     }
 
     /// Takes other forces instead of those of the problem.
@@ -113,7 +118,7 @@ impl<'a> System<'a> {
         &self.loads
     }
 
-    /// Law of each fracture.
+    /// Law of each fracture, then those of facet points that have their own.
     pub fn laws(&self) -> &[FractureLaw] {
         self.discretisation.interface.laws()
     }
@@ -190,7 +195,7 @@ impl<'a> System<'a> {
 
     /// Law of a facet point.
     pub fn law(&self, point: &FacetPoint) -> &FractureLaw {
-        &self.laws()[point.fracture as usize]
+        &self.laws()[point.law as usize]
     }
 
     /// Tractions of the laws of all facet points in a state (Pa).

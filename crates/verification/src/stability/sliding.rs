@@ -3,7 +3,8 @@
 use glam::DVec3;
 use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::{
-    Discretisation, InitialStress, NewtonSettings, Problem, Profile, Solution, StepRecord, Support,
+    Discretisation, Field, InitialStress, NewtonSettings, Problem, Profile, Solution, StepRecord,
+    Support,
 };
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction};
 
@@ -78,7 +79,9 @@ fn shear_box(law: FractureLaw) -> Problem {
     scenes::support(&mut problem, "top", held(SHIFT));
     let mut components = [Profile::default(); 6];
     components[2].value = NORMAL;
-    problem.initial_stress = Some(InitialStress { components });
+    problem.initial_stress = Some(InitialStress {
+        components: components.map(Field::from),
+    });
     problem
 }
 

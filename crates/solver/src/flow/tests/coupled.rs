@@ -4,6 +4,7 @@
 //! joint opens by what the pressure there does to its law.
 
 use glam::DVec3;
+use kluft_field::Field;
 use kluft_mesh::structured::Patch;
 use kluft_mesh::{Mesh, Shape};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
@@ -238,7 +239,7 @@ fn opened(mesh: &Mesh, law: FractureLaw, schedule: Schedule) -> StepRecord {
         support: Some(Support::Symmetry),
     });
     let mut initial_stress = InitialStress::default();
-    initial_stress.components[2].value = -20e6;
+    initial_stress.components[2] = Field::constant(-20e6);
     let rock = Rock {
         young_modulus: 25e9,
         poisson_ratio: 0.25,

@@ -1,0 +1,71 @@
+//! Places whose values are written down.
+
+use crate::dimension::Dimension;
+use crate::range::Range;
+use crate::table::{Key, KeySection, Kind, Need, quantity};
+
+const fn position(
+    name: &'static str,
+    need: Need,
+    example: &'static str,
+    says: &'static str,
+) -> Key {
+    Key {
+        name,
+        kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
+        need,
+        example,
+        says,
+    }
+}
+
+/// A probe.
+pub static PROBE: KeySection = KeySection {
+    pattern: "[probe.NAME]",
+    says: "Points whose values `probes.csv` has after each load step, in the rock or on a fracture",
+    keys: &[
+        position("at", Need::Or("from"), "[0.5, 0.5, 2.0]", "One point"),
+        position("from", Need::Or("at"), "[0, 0, 0]", "Where a line begins"),
+        position(
+            "to",
+            Need::Without("required with `from`"),
+            "[10, 0, 0]",
+            "Where it ends",
+        ),
+        Key {
+            name: "count",
+            kind: Kind::Whole(Range::Within(2.0, 10_000.0)),
+            need: Need::Default("11"),
+            example: "21",
+            says: "Points on the line, both ends included",
+        },
+        position(
+            "across",
+            Need::Without("a line"),
+            "[0, 0, 5]",
+            "Vector by which the last of `rows` lines is moved from the first: a plane",
+        ),
+        Key {
+            name: "rows",
+            kind: Kind::Whole(Range::Within(2.0, 10_000.0)),
+            need: Need::Default("11"),
+            example: "6",
+            says: "Lines of a plane",
+        },
+        Key {
+            name: "fracture",
+            kind: Kind::Text,
+            need: Need::Without("in the rock"),
+            example: "\"fault\"",
+            says: "The fracture whose nearest nodes are taken, with aperture, jump and tractions",
+        },
+        Key {
+            name: "mean",
+            kind: Kind::Flag,
+            need: Need::Default("false"),
+            example: "true",
+            says: "Whether the mean of the points is written instead of each",
+        },
+    ],
+    also: None,
+};

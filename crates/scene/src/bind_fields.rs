@@ -1,0 +1,431 @@
+//! Gives values that vary to the parts of a problem, and looks at them where they are asked for.
+
+use glam::DVec3;
+use kluft_mesh::{Defect, Mesh};
+use kluft_solver::{LawParameter, Problem, Schedule, VaryingLaw, VaryingLoad, VaryingPressure};
+use lie_core::{ClosureKind, FacetQuadrature, FractureLaw, Tension, facet_points};
+
+use crate::cases::Bound;
+use crate::conditions::FractureEntry;
+use crate::field::FieldEntry;
+use crate::history::LoadHistory;
+use crate::scene::{Named, Scene};
+use crate::warning::Doubt;
+
+/// Most load steps of a scene with values that change with time: each is a load case of its own.
+const MOST_TIMES: usize = 1000;
+
+/// Gives a problem what varies in it; returns what is odd about the values.
+///
+/// # Errors
+/// Values that are out of their range, or that a table or samples do not reach, each with a place.
+pub(crate) fn bind_fields(
+    scene: &Scene,
+    bound: &Bound<'_>,
+    problem: &mut Problem,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<String>, Vec<Defect>> {
+    let mut look = Look {
+        scene,
+        defects: Vec::new(),
+        decisions,
+        warnings: Vec::new(),
+    };
+    for (index, entry) in bound.fractures.iter().enumerate() {
+        bind_law(problem, index, entry, &mut look);
+        bind_pressure(problem, index, entry, &mut look);
+    }
+    let mut conditions = bound.boundaries.iter().enumerate();
+    conditions.try_for_each(|(index, _)| bind_load(problem, bound, index, &mut look));
+    bind_rocks(problem, &mut look);
+    bind_initial_stress(problem, &mut look);
+    match look.defects.is_empty() {
+        true => Ok(look.warnings),
+        false => Err(look.defects),
+    }
+}
+
+/// What was found so far.
+struct Look<'a> {
+    scene: &'a Scene,
+    defects: Vec<Defect>,
+    decisions: &'a mut Vec<String>,
+    warnings: Vec<String>,
+}
+
+/// What a value that varies does over its places.
+struct Seen {
+    low: f64,
+    high: f64,
+    mean: f64,
+    /// Largest distance from a sample (m).
+    reach: Option<f64>,
+}
+
+impl Look<'_> {
+    /// Looks at a value at all its places (m) and times; none if one is refused.
+    fn at(&mut self, entry: &FieldEntry, places: &[DVec3], times: &[f64]) -> Option<Seen> {
+        let mut seen = Seen {
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+            mean: 0.0,
+            reach: None,
+        };
+        let mut refused: Vec<(DVec3, String)> = Vec::new();
+        for &time in times {
+            for &place in places {
+                let value = entry.field.at(place, time);
+                let distance = entry.field.reach(place);
+                match refusal(entry, value, distance) {
+                    Some(refusal) => refused.push((place, refusal)),
+                    None => {
+                        seen.low = seen.low.min(value);
+                        seen.high = seen.high.max(value);
+                        seen.mean += value;
+                        seen.reach = distance.map(|d| seen.reach.map_or(d, |other| other.max(d)));
+                    }
+                }
+            }
+        }
+        seen.mean /= (places.len() * times.len()) as f64;
+        let Some((place, refusal)) = refused.first() else {
+            self.tell(entry, &seen, places.len());
+            return Some(seen);
+        };
+        let [x, y, z] = place.to_array();
+        let others = match refused.len() {
+            1 => String::new(),
+            count => format!(", and at {} more points", count - 1),
+        };
+        let problem = format!(
+            "`{}` from {}: {refusal} at ({x:.6}, {y:.6}, {z:.6}){others}",
+            entry.key, entry.origin
+        );
+        self.defects
+            .push(Defect::new(&entry.place, problem, remedy(entry)));
+        None
+    }
+
+    fn tell(&mut self, entry: &FieldEntry, seen: &Seen, count: usize) {
+        let dimension = entry.quantity.dimension;
+        let reach = seen.reach.map_or(String::new(), |reach| {
+            format!(", at most {reach:.3e} m from a sample")
+        });
+        let line = format!(
+            "{}: {:.4e} to {:.4e} {} at {count} points, by {}{reach}",
+            entry.title,
+            seen.low,
+            seen.high,
+            dimension.unit(),
+            entry.origin
+        );
+        if !self.decisions.contains(&line) {
+            self.decisions.push(line);
+        }
+        let plausible = entry.quantity.plausible;
+        let doubts = [seen.low, seen.high].map(|value| {
+            let doubt = plausible.and_then(|plausible| plausible.doubt(value, dimension));
+            doubt.map(|doubt| format!("{}: a `{}` of {value:e} {doubt}", entry.place, entry.key))
+        });
+        let told = doubts.into_iter().flatten();
+        let told = told.filter_map(|text| self.scene.warning(Doubt::Values, &text));
+        self.warnings.extend(told.take(1));
+    }
+}
+
+/// Why a value is none, `distance` (m) from the nearest sample.
+fn refusal(entry: &FieldEntry, value: f64, distance: Option<f64>) -> Option<String> {
+    let reach = entry.reach.unwrap_or(f64::INFINITY);
+    if let Some(distance) = distance.filter(|distance| *distance > reach) {
+        return Some(format!("the nearest sample is {distance:.4e} m away"));
+    }
+    if value.is_nan() && entry.file.is_none() && entry.origin.starts_with("a table") {
+        return Some("there is no row".into());
+    }
+    if value.is_nan() && entry.file.is_some() {
+        return Some("there are no samples around".into());
+    }
+    let refusal = entry.quantity.range.refusal(value)?;
+    Some(format!("the value {value:e} {refusal},"))
+}
+
+fn remedy(entry: &FieldEntry) -> &'static str {
+    match entry.field {
+        kluft_solver::Field::Table(_) => {
+            "add rows that reach there, or write beyond = \"nearest\"; a value out of range needs \
+             other rows"
+        }
+        kluft_solver::Field::Samples(_) => {
+            "add samples there; beyond = \"nearest\" goes on with the last values, a larger reach \
+             bridges gaps"
+        }
+        _ => "let the expression have a value in range there: max(a, b) and min(a, b) bound it",
+    }
+}
+
+/// Gives each cell of a rock that varies a rock of its own, by the values in the middle of the
+/// cell.
+fn bind_rocks(problem: &mut Problem, look: &mut Look<'_>) {
+    let scene = look.scene;
+    if scene
+        .rocks
+        .iter()
+        .all(|entry| entry.value.fields.is_empty())
+    {
+        return;
+    }
+    let materials = problem.rock_of_cell.clone();
+    let middle = |mesh: &Mesh, cell: usize| {
+        let corners = mesh.corners(&mesh.cells, cell);
+        corners.iter().sum::<DVec3>() / corners.len() as f64
+    };
+    for (number, entry) in scene.rocks.iter().enumerate() {
+        let own = materials.iter().enumerate();
+        let own = own.filter(|(_, material)| **material as usize == number);
+        let cells: Vec<usize> = own.map(|(cell, _)| cell).collect();
+        let places = cells.iter().map(|&cell| middle(&problem.mesh, cell));
+        let places: Vec<DVec3> = places.collect();
+        for (parameter, field) in &entry.value.fields {
+            if let Some(seen) = look.at(field, &places, &[0.0])
+                && !places.is_empty()
+            {
+                parameter.set(&mut problem.rocks[number], seen.mean);
+            }
+        }
+        if entry.value.fields.is_empty() {
+            continue;
+        }
+        for (&cell, &place) in cells.iter().zip(&places) {
+            let mut rock = problem.rocks[number];
+            for (parameter, field) in &entry.value.fields {
+                parameter.set(&mut rock, field.field.at(place, 0.0));
+            }
+            problem.rock_of_cell[cell] = problem.rocks.len() as u32;
+            problem.rocks.push(rock);
+        }
+    }
+    problem.varying.material_of_cell = Some(materials);
+}
+
+fn bind_law(
+    problem: &mut Problem,
+    fracture: usize,
+    entry: &Named<FractureEntry>,
+    look: &mut Look<'_>,
+) {
+    if entry.value.fields.is_empty() {
+        return;
+    }
+    let places = problem.places_of_fracture(fracture);
+    let mut parameters = Vec::new();
+    for (parameter, field) in &entry.value.fields {
+        let Some(seen) = look.at(field, &places, &[0.0]) else {
+            continue;
+        };
+        parameter.set(&mut problem.fractures[fracture].law, seen.mean);
+        parameters.push((*parameter, field.field.clone()));
+    }
+    if parameters.len() < entry.value.fields.len() {
+        return;
+    }
+    let law = VaryingLaw {
+        fracture,
+        parameters,
+    };
+    let base = problem.fractures[fracture].law;
+    let refused = places.iter().find_map(|place| {
+        let refusal = together(&law.at_position(&base, *place), &law)?;
+        Some((place, refusal))
+    });
+    if let Some((place, refusal)) = refused {
+        let [x, y, z] = place.to_array();
+        let problem = format!("at ({x:.6}, {y:.6}, {z:.6}) {refusal}");
+        let remedy = "change one of the two values there";
+        look.defects
+            .push(Defect::new(&entry.place, problem, remedy));
+    }
+    problem.varying.laws.push(law);
+}
+
+/// What parameters of a law refuse of one another, where one of them varies.
+fn together(law: &FractureLaw, varying: &VaryingLaw) -> Option<String> {
+    let closure = &law.closure;
+    let aperture = closure.aperture;
+    let varies = |wanted: LawParameter| varying.parameters.iter().any(|(own, _)| *own == wanted);
+    match closure.kind {
+        ClosureKind::Logarithmic {
+            cutoff: Some(cutoff),
+        } if cutoff > aperture => {
+            return Some(format!(
+                "cutoff_aperture {cutoff:e} is above the aperture {aperture:e}"
+            ));
+        }
+        ClosureKind::Hyperbolic { max_closure } if max_closure > aperture => {
+            return Some(format!(
+                "max_closure {max_closure:e} is above the aperture {aperture:e}"
+            ));
+        }
+        _ => {}
+    }
+    if let Tension::Cohesive { strength, energy } = closure.tension {
+        let stored = strength * strength / 2.0 / closure.normal_stiffness;
+        if energy <= stored {
+            return Some(format!(
+                "fracture_energy {energy:e} J/m^2 is not more than the {stored:.4e} J/m^2 stored at the strength"
+            ));
+        }
+    }
+    let friction = law.friction?;
+    if friction.dilation > friction.coefficient {
+        return Some("dilation_angle is above friction_angle".into());
+    }
+    (law.shear_stiffness == 0.0 && varies(LawParameter::ShearStiffness))
+        .then(|| "shear_stiffness is 0, so that there is nothing for friction to limit".into())
+}
+
+fn bind_pressure(
+    problem: &mut Problem,
+    fracture: usize,
+    entry: &Named<FractureEntry>,
+    look: &mut Look<'_>,
+) {
+    let Some(field) = &entry.value.varying_pressure else {
+        return;
+    };
+    let own = problem.schedule.cases.of_fracture(fracture);
+    let in_time = field.field.depends_on_time();
+    let Some(cases) = cases(
+        problem,
+        (in_time, own),
+        &entry.value.history,
+        look,
+        &field.place,
+    ) else {
+        return;
+    };
+    let places = problem.places_of_fracture(fracture);
+    let times: Vec<f64> = cases.iter().map(|(time, _)| *time).collect();
+    look.at(field, &places, &times);
+    let of_case = |(time, case)| VaryingPressure {
+        fracture,
+        field: field.field.clone(),
+        time,
+        case,
+    };
+    let pressures = cases.into_iter().map(of_case);
+    problem.varying.pressures.extend(pressures);
+}
+
+fn bind_load(
+    problem: &mut Problem,
+    bound: &Bound<'_>,
+    condition: usize,
+    look: &mut Look<'_>,
+) -> Option<()> {
+    let entry = bound.boundaries[condition];
+    let Some(load) = entry.value.varying_load() else {
+        return Some(());
+    };
+    let own = problem.schedule.cases.of_condition(condition);
+    let in_time = load.load.depends_on_time();
+    let cases = cases(
+        problem,
+        (in_time, own),
+        &entry.value.history,
+        look,
+        &entry.place,
+    )?;
+    let boundary = problem.conditions[condition].boundary;
+    let places = places_of_boundary(&problem.mesh, boundary);
+    let times: Vec<f64> = cases.iter().map(|(time, _)| *time).collect();
+    for field in &load.fields {
+        let own = match field.field.depends_on_time() {
+            true => &times[..],
+            false => &[0.0],
+        };
+        look.at(field, &places, own);
+    }
+    let of_case = |(time, case)| VaryingLoad {
+        boundary,
+        load: load.load.clone(),
+        time,
+        case,
+    };
+    let loads = cases.into_iter().map(of_case);
+    problem.varying.loads.extend(loads);
+    Some(())
+}
+
+/// Positions at which a load of a part of the outer surface is asked for (m).
+fn places_of_boundary(mesh: &Mesh, boundary: usize) -> Vec<DVec3> {
+    let elements = &mesh.boundaries[boundary].elements;
+    let places = (0..elements.len()).flat_map(|facet| {
+        let nodes = elements.nodes_of(facet).iter();
+        let nodes: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+        let points = facet_points(elements.shapes[facet], &nodes, FacetQuadrature::Gauss);
+        points.into_iter().map(|point| point.position)
+    });
+    places.collect()
+}
+
+/// The times for which a value is taken, each with its load case. One that changes with time is
+/// what it is at the end of each load step, and linear between: each end is a load case that acts
+/// there alone.
+fn cases(
+    problem: &mut Problem,
+    (in_time, own): (bool, usize),
+    history: &Option<LoadHistory>,
+    look: &mut Look<'_>,
+    place: &str,
+) -> Option<Vec<(f64, usize)>> {
+    if !in_time {
+        return Some(vec![(0.0, own)]);
+    }
+    let count = problem.schedule.steps.len();
+    if count > MOST_TIMES {
+        let problem = format!("the value changes with time over {count} load steps");
+        let remedy = format!("write at most {MOST_TIMES} load steps");
+        look.defects.push(Defect::new(place, problem, remedy));
+        return None;
+    }
+    Some(add_cases(&mut problem.schedule, history.as_ref()))
+}
+
+/// A load case for the end of each load step, which acts there alone, by its factor in the history
+/// then. Cases that are there already serve.
+fn add_cases(schedule: &mut Schedule, history: Option<&LoadHistory>) -> Vec<(f64, usize)> {
+    let times: Vec<f64> = schedule.steps.iter().map(|step| step.load.time).collect();
+    let factor = |time: f64| history.map_or(1.0, |history| history.at(time));
+    let row = |end: usize, step: usize| match end == step {
+        true => factor(times[end]),
+        false => 0.0,
+    };
+    let known = (0..schedule.case_count()).find(|&first| {
+        (0..times.len()).all(|end| {
+            let mut steps = schedule.steps.iter().enumerate();
+            steps.all(|(step, own)| own.load.factors.get(first + end) == Some(&row(end, step)))
+        })
+    });
+    let first = known.unwrap_or(schedule.case_count());
+    if known.is_none() {
+        for (step, own) in schedule.steps.iter_mut().enumerate() {
+            own.load
+                .factors
+                .extend((0..times.len()).map(|end| row(end, step)));
+        }
+    }
+    times.iter().copied().zip(first..).collect()
+}
+
+fn bind_initial_stress(problem: &Problem, look: &mut Look<'_>) {
+    let fields = look.scene.initial_stress.iter();
+    let fields: Vec<&FieldEntry> = fields.flat_map(|entry| &entry.fields).collect();
+    if fields.is_empty() {
+        return;
+    }
+    let used = (0..problem.mesh.nodes.len()).filter(|&node| problem.mesh.sectors.count[node] > 0);
+    let places: Vec<DVec3> = used.map(|node| problem.mesh.nodes[node]).collect();
+    for field in fields {
+        look.at(field, &places, &[0.0]);
+    }
+}

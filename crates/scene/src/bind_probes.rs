@@ -1,0 +1,171 @@
+//! Finds what probes hit.
+
+use glam::DVec3;
+use kluft_keys::section_head;
+use kluft_mesh::{Defect, Mesh, nearest};
+use kluft_solver::{InCell, locate};
+
+use crate::probe::ProbeEntry;
+use crate::scene::{Named, Scene};
+
+/// A probe on a mesh.
+#[derive(Debug, Clone)]
+pub struct Probe {
+    /// Its name.
+    pub name: String,
+    /// Its points.
+    pub points: Vec<ProbePoint>,
+    /// Whether their mean is written.
+    pub mean: bool,
+}
+
+/// A point of a probe.
+#[derive(Debug, Clone)]
+pub struct ProbePoint {
+    /// Where the values are taken (m).
+    pub position: DVec3,
+    /// What it hits.
+    pub hit: Hit,
+}
+
+/// What a point of a probe hits.
+#[derive(Debug, Clone)]
+pub enum Hit {
+    /// A cell.
+    Rock(InCell),
+    /// A node of a facet: its index in the flat node list of the facets.
+    Fracture(usize),
+}
+
+/// The probes of a scene on a mesh; what they hit goes to `decisions`.
+///
+/// # Errors
+/// Fractures that the mesh has not, and points outside the rock or away from their fracture.
+pub(crate) fn bind_probes(
+    scene: &Scene,
+    mesh: &Mesh,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<Probe>, Vec<Defect>> {
+    let mut defects = Vec::new();
+    let mut probes = Vec::new();
+    for entry in &scene.probes {
+        let found = match &entry.value.fracture {
+            Some(fracture) => on_fracture(mesh, entry, fracture, decisions),
+            None => in_rock(mesh, entry, decisions),
+        };
+        match found {
+            Ok(points) => probes.push(Probe {
+                name: entry.name.clone(),
+                points,
+                mean: entry.value.mean,
+            }),
+            Err(defect) => defects.push(defect),
+        }
+    }
+    match defects.is_empty() {
+        true => Ok(probes),
+        false => Err(defects),
+    }
+}
+
+fn in_rock(
+    mesh: &Mesh,
+    entry: &Named<ProbeEntry>,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<ProbePoint>, Defect> {
+    let places = &entry.value.points;
+    let found = locate(mesh, places);
+    let outside: Vec<DVec3> = std::iter::zip(places, &found)
+        .filter(|(_, found)| found.is_none())
+        .map(|(place, _)| *place)
+        .collect();
+    if let Some(first) = outside.first() {
+        return Err(away(entry, *first, outside.len(), "outside the rock"));
+    }
+    decisions.push(format!(
+        "{}: {} points in the rock",
+        section_head("probe", &entry.name),
+        places.len()
+    ));
+    let points = places.iter().zip(found);
+    let points = points.filter_map(|(&position, found)| {
+        let hit = Hit::Rock(found?);
+        Some(ProbePoint { position, hit })
+    });
+    Ok(points.collect())
+}
+
+fn away(entry: &Named<ProbeEntry>, first: DVec3, count: usize, what: &str) -> Defect {
+    let others = match count {
+        1 => String::new(),
+        count => format!(", and {} more points", count - 1),
+    };
+    let [x, y, z] = first.to_array();
+    let problem = format!("({x:.6}, {y:.6}, {z:.6}) is {what}{others}");
+    Defect::new(&entry.place, problem, "move the probe, or make it shorter")
+}
+
+fn on_fracture(
+    mesh: &Mesh,
+    entry: &Named<ProbeEntry>,
+    fracture: &str,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<ProbePoint>, Defect> {
+    let Some(index) = mesh.fractures.iter().position(|name| name == fracture) else {
+        let known = mesh.fractures.iter().map(String::as_str);
+        let remedy = match nearest(fracture, known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("fractures of the mesh: {}", mesh.fractures.join(", ")),
+        };
+        let problem = format!("`{fracture}` is no fracture of the mesh");
+        return Err(Defect::new(&entry.place, problem, remedy));
+    };
+    let elements = &mesh.facets.elements;
+    let own = (0..elements.len()).filter(|&facet| mesh.facets.fracture[facet] as usize == index);
+    let nodes: Vec<usize> = own.flat_map(|facet| elements.range(facet)).collect();
+    let position = |slot: usize| mesh.nodes[elements.nodes[slot] as usize];
+    let mut farthest = 0.0_f64;
+    let mut beside = Vec::new();
+    let mut points = Vec::new();
+    for &at in &entry.value.points {
+        let distance = |slot: &usize| position(*slot).distance_squared(at);
+        let found = nodes
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let Some(&slot) = found else {
+            continue;
+        };
+        let reach = position(slot).distance(at);
+        farthest = farthest.max(reach);
+        if reach > longest_edge(mesh, slot) {
+            beside.push(at);
+        }
+        points.push(ProbePoint {
+            position: position(slot),
+            hit: Hit::Fracture(slot),
+        });
+    }
+    if let Some(first) = beside.first() {
+        let what = format!("farther from `{fracture}` than its facets are long");
+        return Err(away(entry, *first, beside.len(), &what));
+    }
+    decisions.push(format!(
+        "{}: {} nodes of `{fracture}`, at most {farthest:.3e} m from where they were asked for",
+        section_head("probe", &entry.name),
+        points.len()
+    ));
+    Ok(points)
+}
+
+/// The longest edge of the facet that a node of the flat list belongs to (m).
+fn longest_edge(mesh: &Mesh, slot: usize) -> f64 {
+    let elements = &mesh.facets.elements;
+    let facet = elements
+        .offsets
+        .partition_point(|&start| start as usize <= slot)
+        - 1;
+    let corners = mesh.corners(elements, facet);
+    let ends = corners.iter().cycle().skip(1);
+    let edges = corners.iter().zip(ends).map(|(a, b)| a.distance(*b));
+    edges.fold(0.0, f64::max)
+}

@@ -1,0 +1,42 @@
+//! Probes that hit nothing.
+
+use super::{Case, SOUND, judge_all};
+
+#[test]
+fn defects_of_probes_are_named() {
+    judge_all(CASES);
+}
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        name: "outside, on no fracture, and away from it",
+        scene: &[(
+            "[boundary.top]",
+            "[probe.a]\nfrom = [0.1, 0.1, 0.1]\nto = [2, 2, 2]\n[probe.b]\nat = [0, 0, 0]\n\
+             fracture = \"join\"\n[probe.c]\nat = [0, 0, 9]\nfracture = \"joint\"\n[boundary.top]",
+        )],
+        defects: 3,
+        says: &[
+            "[probe.a]: (0.48",
+            "is outside the rock, and 8 more points",
+            "`join` is no fracture of the mesh",
+            "did you mean `joint`?",
+            "(0.000000, 0.000000, 9.000000) is farther from `joint` than its facets are long",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "nothing, and two things",
+        scene: &[(
+            "[boundary.top]",
+            "[probe.a]\n[probe.b]\nat = [0, 0, 0]\nfrom = [0, 0, 0]\n[probe.c]\nfrom = [0, 0, 0]\n[boundary.top]",
+        )],
+        defects: 3,
+        says: &[
+            "`from` is missing in [probe.a]",
+            "both `at` and `from` are given",
+            "`to` is missing in [probe.c]",
+        ],
+        ..SOUND
+    },
+];
