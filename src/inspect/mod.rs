@@ -152,7 +152,7 @@ fn mesh(
     let mut joined = joined(draft, faces, scene, inspection)?;
     let inner = joined.faces.inner_surfaces(&joined.draft);
     let Some(scene) = scene else {
-        let roles = groups::guess(&joined.draft, &inner);
+        let roles = joined.faces.guessed_roles(&joined.draft);
         inspection.groups = groups::list(&joined.draft, &inner, Some(&roles), None);
         return Mesh::build_on(joined.draft, joined.faces, &roles);
     };

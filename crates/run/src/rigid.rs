@@ -72,7 +72,7 @@ impl Run<'_> {
             let rock = || rock_grid(problem);
             let fractures = || fracture_grid(&problem.mesh, made, &solved);
             run.output.write_step(step.load.time, rock, fractures)?;
-            run.write_sources(problem)?;
+            run.write_sources()?;
             if run.request.keep_results {
                 run.keep(rock(), fractures());
             }

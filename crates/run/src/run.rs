@@ -7,10 +7,9 @@ use crate::adapt::{self, SIZES};
 use crate::checkpoint;
 use crate::failures;
 use crate::flow::SOURCES;
-use crate::history;
 use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
-use crate::output::{COLLECTIONS, Output};
+use crate::output::{OWN, Output};
 use crate::prepare::{MESH, inputs};
 use crate::request::{MeshInput, Request};
 use crate::resume::{self, FormerRun};
@@ -64,8 +63,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     let Some(folder) = request.folder else {
         return Output::nowhere();
     };
-    let mut names = vec!["summary.json", history::NAME, checkpoint::NAME];
-    names.extend(COLLECTIONS);
+    let mut names = OWN.to_vec();
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
     if let (MeshSource::Geometry { adapt, .. }, MeshInput::OfScene) =
         (&request.scene.mesh, &request.mesh)

@@ -17,7 +17,7 @@ use crate::history::History;
 use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::outcome::{Ending, Outcome, StepResult};
-use crate::output::Output;
+use crate::output::{Output, SUMMARY};
 use crate::prepare::{self, MeshFile};
 use crate::request::{MeshInput, Request};
 use crate::resume::FormerRun;
@@ -348,8 +348,7 @@ impl<'a> Run<'a> {
         if !self.output.is_kept() {
             return Ok(());
         }
-        self.output
-            .write("summary.json", |path| self.summary.write(path))
+        self.output.write(SUMMARY, |path| self.summary.write(path))
     }
 
     /// Ends the run.
@@ -372,6 +371,7 @@ impl<'a> Run<'a> {
         Outcome {
             ending,
             summary: self.summary,
+            history: self.history.into_text(),
             steps: self.kept,
         }
     }

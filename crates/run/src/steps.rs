@@ -8,7 +8,7 @@ use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
     Estimator, Newton, Plan, Problem, Solution, State, StepOutcome, StepRecord, System,
-    block_motions, determinacy, solution, surface_resultants,
+    determinacy, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -20,7 +20,7 @@ use crate::flow::RunFlow;
 use crate::fluid_step;
 use crate::fractures::fractures;
 use crate::grids::{fracture_grid, rock_grid};
-use crate::history::{self, Entry, History};
+use crate::history::{self, Entry, History, Parts};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
@@ -101,7 +101,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn decide(&mut self, binding: &Binding) {
+    /// Takes over and tells what was decided for a problem.
+    pub fn decide(&mut self, binding: &Binding) {
         let settings = newton_settings(&self.request.scene.solver);
         self.summary.decisions.push(self.choice.1.clone());
         let of_problem =
@@ -191,13 +192,16 @@ impl Run<'_> {
         });
         self.summary.seconds.factorise += record.factorise_seconds;
         self.summary.seconds.solve += record.solve_seconds;
-        let summary = StepSummary::of(step, (&record).into());
+        let summary = StepSummary {
+            completed: record.completed,
+            ..StepSummary::of(step, (&record).into())
+        };
         self.summary.steps.push(summary);
         if record.outcome == StepOutcome::Stopped {
             return Err(Interruption::Stopped);
         }
         if !record.converged() {
-            let why = failures::not_converged(system.problem(), system, index + 1, &record);
+            let why = failures::not_converged(system, (index + 1, step), &record);
             return Err(Interruption::NotConverged(why));
         }
         Ok(record)
@@ -237,9 +241,9 @@ impl Run<'_> {
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
-            let rock = || rock_grid(system, &solution, &accuracy);
+            let rock = || rock_grid(system, &solution, Some(&accuracy));
             let fractures = || {
-                let mut grid = fracture_grid(system, &nodes, &accuracy);
+                let mut grid = fracture_grid(system, &nodes, Some(&accuracy));
                 let field = facets.as_deref().map(undetermined::field);
                 grid.cell_fields.extend(field);
                 if let Some(flow) = &flow {
@@ -257,7 +261,7 @@ impl Run<'_> {
             run.keep(rock, fractures);
             written
         })?;
-        self.write_sources(system.problem())?;
+        self.write_sources()?;
         self.write_history(prepared, &solution)
     }
 
@@ -267,27 +271,23 @@ impl Run<'_> {
         prepared: &Prepared<'_, '_>,
         solution: &Solution,
     ) -> Result<(), Interruption> {
+        if !self.output.is_kept() && !self.request.keep_results {
+            return Ok(());
+        }
+        let system = prepared.system;
+        let number = self.finished.len();
+        let last = self.finished.last();
+        let parts = Parts::of(system, &prepared.state, solution);
+        self.history.add(&Entry {
+            number,
+            step: &system.problem().schedule.steps[number - 1],
+            newton_iterations: last.map_or(0, |last| last.newton_iterations),
+            fractures: &self.summary.fractures,
+            parts,
+        });
         if !self.output.is_kept() {
             return Ok(());
         }
-        let (system, displacements) = (prepared.system, &solution.displacements);
-        let problem = system.problem();
-        let number = self.finished.len();
-        let names = problem.mesh.boundaries.iter();
-        let names = names.map(|boundary| boundary.name.as_str());
-        let (surfaces, blocks) = rayon::join(
-            || surface_resultants(system, &prepared.state, displacements),
-            || block_motions(system, displacements),
-        );
-        let last = self.finished.last();
-        self.history.add(&Entry {
-            number,
-            step: &problem.schedule.steps[number - 1],
-            newton_iterations: last.map_or(0, |last| last.newton_iterations),
-            fractures: &self.summary.fractures,
-            surfaces: names.zip(surfaces).collect(),
-            blocks,
-        });
         let text = self.history.text();
         let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
         Ok(self.output.write(history::NAME, write)?)

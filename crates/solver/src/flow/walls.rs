@@ -3,9 +3,7 @@
 //! At constant hydraulic apertures the flow is linear in what drives it: the pressure under a load
 //! is the sum of those of its cases, each with its factor, and so is their push.
 
-use glam::DVec3;
 use kluft_algebra::LinearFailure;
-use lie_core::facet_points;
 
 use super::solve::FlowState;
 use super::steady::FlowSystem;
@@ -40,30 +38,6 @@ impl FlowSystem<'_> {
 
     /// Pressure at each point of an interface (Pa): at control points, control values.
     pub fn point_pressures(&self, state: &FlowState, interface: &Interface) -> Vec<f64> {
-        let at_nodes = self.facet_pressures(state);
-        let elements = &self.topology.mesh.facets.elements;
-        // The points of a facet keep their order, wherever they stand.
-        let mut seen = vec![0_usize; elements.len()];
-        let points = interface.points().iter();
-        let pressures = points.map(|point| {
-            let facet = point.facet as usize;
-            let place = seen[facet];
-            seen[facet] += 1;
-            let nodes = elements.nodes_of(facet).iter();
-            let nodes: Vec<DVec3> = nodes
-                .map(|&node| self.topology.mesh.nodes[node as usize])
-                .collect();
-            let rule = interface.rule_of(point.fracture);
-            let shares = facet_points(elements.shapes[facet], &nodes, rule)
-                .into_iter()
-                .nth(place)
-                .map_or_else(Vec::new, |own| own.nodes);
-            let own = &at_nodes[elements.range(facet)];
-            let terms = shares.into_iter();
-            terms
-                .map(|(local, share)| share * own[local as usize])
-                .sum()
-        });
-        pressures.collect()
+        interface.point_values(self.topology.mesh, &self.facet_pressures(state))
     }
 }
