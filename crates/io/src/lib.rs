@@ -18,4 +18,4 @@ pub use gmsh::{GmshOptions, MeshCache, Meshed, Meshing, mesh_geometry, write_siz
 pub use load::{arrange_large, load_msh};
 pub use msh::{parse_msh, read_msh, shape_of_gmsh_element};
 pub use pvd::write_pvd;
-pub use vtu::{Field, Grid, Values, shape_of_vtk_cell, vtk_cell, write_vtu};
+pub use vtu::{Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu};

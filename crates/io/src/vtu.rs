@@ -173,7 +173,7 @@ fn fields(fields: &[Field]) -> io::Result<Vec<EncodedArray>> {
 
 /// Points of all cells, ends of the cells and their types.
 fn topology(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> io::Result<[EncodedArray; 3]> {
-    let (connectivity, ends) = connectivity(shapes, offsets, nodes);
+    let (connectivity, ends) = vtk_connectivity(shapes, offsets, nodes);
     let types: Vec<u8> = shapes.iter().map(|&shape| vtk_cell(shape).0).collect();
     Ok([
         EncodedArray::of("connectivity", 1, &connectivity)?,
@@ -183,7 +183,7 @@ fn topology(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> io::Result<[Enc
 }
 
 /// Points of all cells in the order of VTK, and where each cell ends.
-fn connectivity(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> (Vec<u64>, Vec<u64>) {
+pub fn vtk_connectivity(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> (Vec<u64>, Vec<u64>) {
     let mut connectivity = Vec::with_capacity(nodes.len());
     let mut ends = Vec::with_capacity(shapes.len());
     for (cell, &shape) in shapes.iter().enumerate() {

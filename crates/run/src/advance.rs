@@ -294,7 +294,10 @@ impl PreparedRock<'_, '_, '_> {
             fractures,
             rock: match with_rock {
                 true => rock_grid(system, &solution, None),
-                false => Grid::default(),
+                false => Grid {
+                    offsets: vec![0],
+                    ..Grid::default()
+                },
             },
             fracture_grid: grid,
         }

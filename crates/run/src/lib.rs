@@ -64,6 +64,7 @@ mod spread;
 mod stages;
 mod steps;
 mod summary;
+mod threads;
 mod undetermined;
 
 pub use advance::{Advance, PreparedRock, with_prepared_rock};
@@ -84,3 +85,4 @@ pub use save::Saving;
 pub use spread::Spread;
 pub use stages::Interruption;
 pub use summary::{FractureSummary, StepMeasures, StepSummary, Summary, Undetermined};
+pub use threads::{ThreadCount, pool, thread_count};

@@ -92,6 +92,7 @@ impl Run<'_> {
         };
         prepared.flow = flow.as_ref();
         for index in self.finished.len()..problem.schedule.steps.len() {
+            self.go_on_if_asked()?;
             let record = self.solve_step(&mut prepared, index)?;
             self.finished.push((&record).into());
             self.take_results(&mut prepared)?;
@@ -187,7 +188,7 @@ impl Run<'_> {
         let record = self.stage(Stage::Solve, |run| {
             let Prepared { newton, state, .. } = prepared;
             newton.solve_step(system, state, &step.load, |number, iteration| {
-                run.observer.iteration(number, iteration)
+                run.ask_after(number, iteration)
             })
         });
         self.summary.seconds.factorise += record.factorise_seconds;
