@@ -46,8 +46,8 @@ impl Mesh {
         })
     }
 
-    /// Takes arrays: coordinates (m) with numbers of the nodes, groups as (dimension, tag, name), and
-    /// blocks of elements.
+    /// Takes arrays: coordinates (m) with numbers of the nodes, groups as (dimension, tag, name),
+    /// and blocks of elements.
     #[staticmethod]
     fn of_blocks(
         py: Python<'_>,

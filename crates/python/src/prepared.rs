@@ -123,8 +123,8 @@ impl Prepared {
         self.results.clone_ref(py)
     }
 
-    /// Solves a further load step: its time, the factors, pressures at the points, a scene whose laws
-    /// hold from now on, whether the rock is wanted.
+    /// Solves a further load step: its time, the factors, pressures at the points, a scene whose
+    /// laws hold from now on, whether the rock is wanted.
     fn advance(
         &self,
         py: Python<'_>,

@@ -14,8 +14,8 @@ use crate::results::Results;
 use crate::scene::Scene;
 
 
-/// How a run ended (`solved`, `stopped`, `not converged`), why, its results, and what a signal or the
-/// callback raised.
+/// How a run ended (`solved`, `stopped`, `not converged`), why, its results, and what a signal or
+/// the callback raised.
 type Ended = (&'static str, String, Results, Option<Py<PyAny>>);
 
 /// Solves all load steps of a scene, on a mesh in memory or on that which the scene names. `folder`

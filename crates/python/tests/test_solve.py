@@ -1,7 +1,12 @@
 """Runs in memory beside closed forms."""
 
+import pathlib
+import shutil
+import signal
 import subprocess
+import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -175,11 +180,6 @@ def test_a_notebook_shows_a_run(scene, mesh):
 
 def test_a_real_interrupt_ends_a_process_of_its_own(tmp_path):
     """SIGINT reaches the thread that called while the run works."""
-    import pathlib
-    import signal
-    import sys
-    import time
-
     script = tmp_path / "long.py"
     script.write_text(
         "import sys; sys.path.insert(0, sys.argv[1])\n"
@@ -209,3 +209,13 @@ def test_numbers_do_not_depend_on_threads(scene, mesh):
     one, two = (scene.solve(mesh, threads=count).rock.cell_fields["stress"] for count in (1, 2))
     np.testing.assert_array_equal(one, two)
     assert one.shape[1] == 6
+
+
+def test_a_scene_with_a_geometry_is_meshed_and_solved(tmp_path):
+    """The shipped joint as it stands, with the closed form of its head."""
+    geometry = pathlib.Path(__file__).parents[3] / "geometries" / "inclined-joint"
+    if shutil.which("gmsh") is None:
+        pytest.skip("gmsh is not installed")
+    run = kluft.Scene.read(geometry / "scene.toml").solve()
+    np.testing.assert_allclose(run.fractures["joint"].aperture, 1.987915035e-6, rtol=1e-8)
+    assert list(tmp_path.iterdir()) == []

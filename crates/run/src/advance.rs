@@ -35,8 +35,8 @@ pub struct Advance {
     /// Factor on each thing that acts, see [`PreparedRock::acting`].
     pub factors: Vec<f64>,
     /// Fluid pressure on the walls (Pa) at the nodes of the facets, in the order of the points of
-    /// [`PreparedRock::fracture_points`]; those of the step before if none are given. It acts beside
-    /// what the scene gives.
+    /// [`PreparedRock::fracture_points`]; those of the step before if none are given. It acts
+    /// beside what the scene gives.
     pub pressures: Option<Vec<f64>>,
     /// Law of each fracture from now on; those of the step before if none are given.
     pub laws: Option<Vec<FractureLaw>>,
@@ -60,7 +60,8 @@ pub struct PreparedRock<'r, 'a, 'p> {
 /// solved. Nothing is written.
 ///
 /// # Errors
-/// Defects of geometry, mesh and scene, a scene whose fluid flows, and rock that cannot be prepared.
+/// Defects of geometry, mesh and scene, a scene whose fluid flows, and rock that cannot be
+/// prepared.
 pub fn with_prepared_rock<T: Send>(
     request: Request<'_>,
     observer: &mut dyn Observer,
@@ -150,8 +151,8 @@ impl PreparedRock<'_, '_, '_> {
         self.completed
     }
 
-    /// Solves a further load step from where the last one ended. A step that does not converge or is
-    /// stopped leaves everything where it was, but for the laws.
+    /// Solves a further load step from where the last one ended. A step that does not converge or
+    /// is stopped leaves everything where it was, but for the laws.
     ///
     /// # Errors
     /// Numbers of factors, pressures or laws that do not fit, a step that does not converge, and an

@@ -12,8 +12,8 @@ pub struct ActingCases {
 pub const GRAVITY: &str = "gravity";
 
 impl ActingCases {
-    /// Names of the boundaries with a condition, of all fractures (the pressure that the scene gives
-    /// them), of the fixed points, and [`GRAVITY`], in the order of the factors.
+    /// Names of the boundaries with a condition, of all fractures (the pressure that the scene
+    /// gives them), of the fixed points, and [`GRAVITY`], in the order of the factors.
     pub fn names(&self) -> &[String] {
         &self.names
     }

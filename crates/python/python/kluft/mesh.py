@@ -58,7 +58,7 @@ class Survey:
         return f"Survey({len(self.fractures)} fractures, {len(self.blocks)} blocks)"
 
     def _repr_html_(self) -> str:
-        quality = f"worst cell {self.worst_quality:.3f}, mean {self.mean_quality:.3f} (1 is regular)"
+        quality = f"worst cell {self.worst_quality:.3f}, mean {self.mean_quality:.3f} of 1"
         return f"<p>{len(self.blocks)} blocks; {quality}</p>{tables.html(self.fractures)}"
 
 
@@ -244,7 +244,7 @@ class _Groups:
     def add(
         self, numbering: str, kind: int, nodes: Any, own: Iterable[int], tags: Any = None
     ) -> None:
-        """Adds elements of one type that belong to the same groups; points and lines are left out."""
+        """Adds elements of one type and of the same groups; points and lines are left out."""
         rows = np.ascontiguousarray(nodes, np.int64)
         if kind == 0 or len(rows) == 0:
             return

@@ -37,8 +37,8 @@ class PreparedRun(Run):
 
     @property
     def acting(self) -> list[str]:
-        """What acts and may have a factor: boundaries with conditions, fractures with the pressure of
-        the scene, fixed points, ``gravity``."""
+        """What acts and may have a factor: boundaries with conditions, fractures with the pressure
+        of the scene, fixed points, ``gravity``."""
         return self._prepared.acting
 
     def points(self, fracture: str) -> Array:
@@ -63,10 +63,10 @@ class PreparedRun(Run):
             load: Factor on everything that acts.
             factors: Other factors by the names of :attr:`acting`.
             fluid_pressure: Pressure on both walls (Pa), opening, by fracture: a number, or an array
-                with one for each of :meth:`points`. It takes the place of the pressure that the scene
-                gives, and stays until another one is given.
-            fracture: Keys of fractures that change, as in the scene: ``{"fault": {"normal_stiffness":
-                "20 GPa/m"}}``. They stay changed.
+                with one for each of :meth:`points`. It takes the place of the pressure that the
+                scene gives, and stays until another one is given.
+            fracture: Keys of fractures that change, as in the scene:
+                ``{"fault": {"normal_stiffness": "20 GPa/m"}}``. They stay changed.
             time: Time at the end of the step, ascending; the number of the step if none is given.
             rock: Whether displacements and stresses of the rock are wanted too.
             progress: As in :meth:`Scene.solve`.

@@ -37,8 +37,9 @@ class FractureResult:
         facets, ends = self._facets(), self._grid.cells[1].astype(np.int64)
         starts = np.concatenate([[0], ends[:-1]])
         if isinstance(facets, slice):
-            empty = facets.stop <= facets.start
-            return slice(0, 0) if empty else slice(int(starts[facets.start]), int(ends[facets.stop - 1]))
+            if facets.stop <= facets.start:
+                return slice(0, 0)
+            return slice(int(starts[facets.start]), int(ends[facets.stop - 1]))
         pairs = zip(starts[facets], ends[facets])
         return np.concatenate([np.arange(start, end) for start, end in pairs])
 
@@ -152,9 +153,10 @@ class Step:
 class Source(Protocol):
     """Where the results of a run are."""
 
-    summary: str
-    history: str
-
+    @property
+    def summary(self) -> str: ...
+    @property
+    def history(self) -> str: ...
     def __len__(self) -> int: ...
     def numbers(self, index: int) -> tuple[str, list[tuple[str, str]]]: ...
     def grid(self, index: int, of_rock: bool) -> Grid: ...
@@ -228,12 +230,12 @@ class Run:
 
     @property
     def history(self) -> Any:
-        """How fractures, parts of the surface and blocks fare: a ``pandas.DataFrame`` with a row for
-        each of them and each load step. The column ``kind`` says what a row is of."""
+        """How fractures, parts of the surface and blocks fare: a ``pandas.DataFrame`` with a row
+        for each of them and each load step. The column ``kind`` says what a row is of."""
         return tables.frame_of_csv(self.history_csv)
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Writes what ``kluft run`` writes: grids for ParaView, ``summary.json``, ``history.csv``."""
+        """Writes what ``kluft run`` writes: grids, ``summary.json``, ``history.csv``."""
         self._source.save(folder)
         return Path(folder)
 
@@ -261,7 +263,8 @@ class Run:
             }
             for name, own in self.summary["fractures"].items()
         ]
-        head = f"<p><b>{_html.escape(self.title)}</b>: {len(self._source)} load steps, {self.ending}</p>"
+        steps = f"{len(self._source)} load steps, {self.ending}"
+        head = f"<p><b>{_html.escape(self.title)}</b>: {steps}</p>"
         told = "".join(f"<li>{_html.escape(warning)}</li>" for warning in self.warnings)
         return head + tables.html(rows) + (f"<p>Warnings</p><ul>{told}</ul>" if told else "")
 

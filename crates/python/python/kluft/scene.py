@@ -63,8 +63,8 @@ class Scene(SceneSections):
         return self._text if self._text is not None else _kluft.toml_of(_json(self.tables))
 
     def replace(self, **sections: Any) -> Scene:
-        """The same scene with other values: ``replace(rock={"granite": {"density": 2700}})``. Tables
-        are merged key by key, everything else is replaced."""
+        """The same scene with other values: ``replace(rock={"granite": {"density": 2700}})``.
+        Tables are merged key by key, everything else is replaced."""
         scene = Scene.__new__(Scene)
         scene._name, scene._folder = self._name, self._folder
         scene.tables = _merged(self._plain(), _plain_tables(sections))
