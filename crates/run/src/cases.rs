@@ -8,6 +8,9 @@ pub struct ActingCases {
     names: Vec<String>,
 }
 
+/// Load steps that a linear solver is chosen for: who keeps the rock prepared asks for many.
+const EXPECTED_STEPS: usize = 100;
+
 /// How gravity is called.
 pub const GRAVITY: &str = "gravity";
 
@@ -29,8 +32,8 @@ impl ActingCases {
     }
 }
 
-/// Gives everything that acts on a problem a load case of its own, in one load step in which all of
-/// it acts.
+/// Gives everything that acts on a problem a load case of its own, in load steps in which all of it
+/// acts.
 pub fn separate(problem: &mut Problem) -> ActingCases {
     let mesh = &problem.mesh;
     let conditions = problem.conditions.iter();
@@ -56,7 +59,7 @@ pub fn separate(problem: &mut Problem) -> ActingCases {
     };
     problem.schedule = Schedule {
         cases,
-        steps: vec![Step { load, phase: None }],
+        steps: vec![Step { load, phase: None }; EXPECTED_STEPS],
         is_timed: true,
     };
     ActingCases { names }
