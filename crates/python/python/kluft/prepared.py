@@ -24,11 +24,10 @@ class PreparedRun(Run):
     As a context manager it gives the memory of the rock back at the end; results stay.
     """
 
-    def __init__(self, scene: Scene, prepared: _kluft.Prepared, told: Progress | None) -> None:
+    def __init__(self, scene: Scene, prepared: _kluft.Prepared) -> None:
         super().__init__(MemorySource(prepared.results))
         self._scene = scene
         self._prepared = prepared
-        self._told = told
         self._own_pressures: set[str] = set()
         points = Grid(**prepared.points(), cells=prepared.cells)
         names = enumerate(prepared.fractures)

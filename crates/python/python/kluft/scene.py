@@ -15,7 +15,7 @@ from . import _kluft
 from .keys import SceneSections, Section
 from .mesh import Mesh
 from .prepared import PreparedRun
-from .run import Run
+from .run import FolderSource, Run
 from .solving import MemorySource, Progress, end, follower, judge
 
 _IN_MEMORY = "mesh in memory"
@@ -112,8 +112,6 @@ class Scene(SceneSections):
         end(told)
         run = Run(MemorySource(results), ending)
         if not keep and out is not None:
-            from .run import FolderSource
-
             run = Run(FolderSource(out), ending)
         steps = run.summary["steps"]
         reached = steps[-1]["completed"] if steps else 0.0
@@ -137,7 +135,7 @@ class Scene(SceneSections):
         given = None if mesh is None else mesh._mesh
         prepared = _kluft.Prepared(scene, given, threads, told)
         end(told)
-        return PreparedRun(self, prepared, told)
+        return PreparedRun(self, prepared)
 
     def _parsed(self, needs_mesh: bool) -> _kluft.Scene:
         """The scene as it is solved; a mesh in memory stands for one that is not named."""
