@@ -133,7 +133,9 @@ impl FieldArray {
 
     fn field(&self, py: Python<'_>) -> PyResult<Field> {
         let values = match &self.values {
-            ValueArray::Real(values) => Values::Real(values.bind(py).readonly().as_slice()?.to_vec()),
+            ValueArray::Real(values) => {
+                Values::Real(values.bind(py).readonly().as_slice()?.to_vec())
+            }
             ValueArray::Integer(values) => {
                 Values::Integer(values.bind(py).readonly().as_slice()?.to_vec())
             }

@@ -165,4 +165,3 @@ fn element_block(
         groups: groups.clone(),
     })
 }
-

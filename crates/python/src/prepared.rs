@@ -6,7 +6,8 @@ use std::thread::JoinHandle;
 
 use kluft_io::Grid;
 use kluft_run::{
-    Advance, Interruption, MeshInput, PreparedRock, Request, StepResult, Summary, with_prepared_rock,
+    Advance, Interruption, MeshInput, PreparedRock, Request, StepResult, Summary,
+    with_prepared_rock,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyRuntimeError;

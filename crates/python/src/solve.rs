@@ -13,7 +13,6 @@ use crate::mesh::Mesh;
 use crate::results::Results;
 use crate::scene::Scene;
 
-
 /// How a run ended (`solved`, `stopped`, `not converged`), why, its results, and what a signal or
 /// the callback raised.
 type Ended = (&'static str, String, Results, Option<Py<PyAny>>);

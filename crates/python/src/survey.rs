@@ -1,6 +1,6 @@
 //! What a mesh is like, for tables.
 
-use kluft_mesh::{Contact, Draft, Faces, FractureSurvey, Mesh, Survey, SurfaceRole};
+use kluft_mesh::{Contact, Draft, Faces, FractureSurvey, Mesh, SurfaceRole, Survey};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
