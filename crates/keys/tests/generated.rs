@@ -1,5 +1,6 @@
 //! What is made of the table and committed: the schemas of `docs/schema` and the pages of
-//! `docs/reference`, and the classes of the Python package. With `KLUFT_BLESS=1` they are written again.
+//! `docs/reference`, and the classes of the Python package. With `KLUFT_BLESS=1` they are written
+//! again.
 
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! A run works on threads of its own; the thread that called follows it.
 //!
 //! The thread that called is the only one that signals reach, and the one on which Python code
-//! runs: it waits for events, looks for signals and hands events on. The run waits for the answer to an
-//! iteration, so that it stops exactly there.
+//! runs: it waits for events, looks for signals and hands events on. The run waits for the answer
+//! to an iteration, so that it stops exactly there.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
