@@ -17,7 +17,6 @@ mod run;
 mod start_gmsh;
 mod stdout;
 mod study;
-mod threads;
 
 use std::process::ExitCode;
 

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use kluft_io::GmshOptions;
-use kluft_run::{Ending, MeshInput, Origin, Outcome, Request, folder_for};
+use kluft_run::{
+    Ending, MeshInput, Origin, Outcome, Request, ThreadCount, folder_for, pool, thread_count,
+};
 use kluft_scene::Scene;
 
 use crate::failure::Failure;
 use crate::input::expect_scene;
 use crate::report::{Report, Verbosity};
-use crate::threads::{ThreadCount, pool, thread_count};
 
 /// How to run a scene.
 #[derive(Debug, Clone)]
@@ -46,7 +47,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     if let Some(word) = word {
         report.entry("warning", &word);
     }
-    let pool = pool(count)?;
+    let pool = pool(count).map_err(|defect| Failure::Machine(vec![defect]))?;
     let request = Request {
         scene: &scene,
         mesh: MeshInput::OfScene,

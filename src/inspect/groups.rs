@@ -1,27 +1,11 @@
 //! Physical groups: how many elements they hold and what the scene makes of them.
 
 use kluft_keys::section_head;
-use kluft_mesh::{Draft, SurfaceRole, TaggedElements};
+use kluft_mesh::{Draft, SurfaceRole};
 use kluft_solver::{Support, SurfaceLoad};
 
 use super::findings::GroupFinding;
 use kluft_scene::{BoundaryEntry, LoadEntry, Scene};
-
-/// Roles for a mesh without a scene: surfaces with rock on both sides are fractures.
-pub fn guess(draft: &Draft, inner: &[bool]) -> Vec<SurfaceRole> {
-    let role = |inside: &bool| match inside {
-        true => SurfaceRole::Fracture,
-        false => SurfaceRole::Boundary,
-    };
-    let is_empty = counts(draft, &draft.facets);
-    let roles = inner.iter().zip(is_empty).zip(&draft.groups);
-    roles
-        .map(|((inside, count), group)| match (group.dimension, count) {
-            (2, 1..) => role(inside),
-            _ => SurfaceRole::Unused,
-        })
-        .collect()
-}
 
 /// What is said of a mesh that names no volumes or no surfaces, and how names are made.
 pub fn missing(draft: &Draft) -> Option<String> {
@@ -52,7 +36,10 @@ pub fn list(
     roles: Option<&[SurfaceRole]>,
     scene: Option<&Scene>,
 ) -> Vec<GroupFinding> {
-    let (cells, facets) = (counts(draft, &draft.cells), counts(draft, &draft.facets));
+    let (cells, facets) = (
+        draft.group_sizes(&draft.cells),
+        draft.group_sizes(&draft.facets),
+    );
     let groups = draft.groups.iter().enumerate();
     groups
         .map(|(index, group)| {
@@ -80,21 +67,6 @@ pub fn list(
             }
         })
         .collect()
-}
-
-/// Number of elements in each group.
-fn counts(draft: &Draft, elements: &TaggedElements) -> Vec<usize> {
-    let mut of_set = vec![0; draft.group_sets.len()];
-    for &set in &elements.group_set {
-        of_set[set as usize] += 1;
-    }
-    let mut of_group = vec![0; draft.groups.len()];
-    for (set, count) in draft.group_sets.iter().zip(of_set) {
-        for &group in set {
-            of_group[group] += count;
-        }
-    }
-    of_group
 }
 
 fn rock(scene: Option<&Scene>, name: &str) -> String {

@@ -22,8 +22,9 @@ use crate::failure::Failure;
 use crate::input::{expect_scene, is_mesh};
 use crate::printing;
 use crate::stdout::print;
-use crate::threads::{pool, thread_count};
-use kluft_run::{MESH, Output, RunFlow, folder_for, inputs, mesh_file, read_mesh};
+use kluft_run::{
+    MESH, Output, RunFlow, folder_for, inputs, mesh_file, pool, read_mesh, thread_count,
+};
 use kluft_scene::{
     Binding, JoinedDraft, MeshSource, Scene, SurfaceMesh, bind, in_terms_of_scene, join, refine,
     roles, surface_mesh,
@@ -53,7 +54,7 @@ pub struct InspectOptions {
 /// [`Failure::BadInput`] with every defect found, or [`Failure::Machine`]; what could be inspected
 /// in spite of them is printed before.
 pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
-    let pool = pool(thread_count(None).count)?;
+    let pool = pool(thread_count(None).count).map_err(|defect| Failure::Machine(vec![defect]))?;
     pool.install(|| inspect_here(input, options))
 }
 
@@ -159,7 +160,7 @@ fn mesh(
     let mut joined = joined(draft, faces, scene, inspection)?;
     let inner = joined.faces.inner_surfaces(&joined.draft);
     let Some(scene) = scene else {
-        let roles = groups::guess(&joined.draft, &inner);
+        let roles = joined.faces.guessed_roles(&joined.draft);
         inspection.groups = groups::list(&joined.draft, &inner, Some(&roles), None);
         return Mesh::build_on(joined.draft, joined.faces, &roles);
     };

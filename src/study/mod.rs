@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 
 use kluft_io::{sync_folder, write_atomically};
 use kluft_mesh::Defect;
+use kluft_run::{ThreadCount, thread_count};
 
 use crate::failure::Failure;
 use crate::gmsh::GmshArgs;
@@ -32,7 +33,6 @@ use crate::input::expect_scene;
 use crate::printing::{lines, one_line};
 use crate::report::{Report, Verbosity};
 use crate::stdout::print;
-use crate::threads::{ThreadCount, thread_count};
 use assess::{Assessment, assess};
 use files::{PAGE, TABLE};
 use kluft_io::fingerprint_of;

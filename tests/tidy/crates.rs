@@ -8,7 +8,7 @@ use crate::Violation;
 const PROGRAM: &str = "kluft";
 
 /// Every package of ours with those that it may depend on.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("kluft-defect", &[]),
     ("kluft-algebra", &[]),
     ("kluft-chart", &[]),
@@ -48,6 +48,16 @@ const ALLOWED: [(&str, &[&str]); 14] = [
             "kluft-scene",
             "kluft-solver",
             "lie-core",
+        ],
+    ),
+    (
+        "kluft-python",
+        &[
+            "kluft-io",
+            "kluft-mesh",
+            "kluft-run",
+            "kluft-scene",
+            "kluft-solver",
         ],
     ),
     (

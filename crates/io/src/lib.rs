@@ -17,7 +17,7 @@ pub use fingerprint::{Fingerprint, fingerprint, fingerprint_of};
 pub use gmsh::{
     Dimension, GmshOptions, MeshCache, Meshed, Meshing, mesh_geometry, write_size_field,
 };
-pub use load::load_msh;
-pub use msh::{parse_msh, read_msh};
+pub use load::{arrange_large, load_msh};
+pub use msh::{parse_msh, read_msh, shape_of_gmsh_element};
 pub use pvd::write_pvd;
-pub use vtu::{Field, Grid, Values, write_vtu};
+pub use vtu::{Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu};

@@ -19,11 +19,16 @@ const LARGE: usize = 20_000;
 /// As [`crate::read_msh`], and what gmsh says against the file.
 pub fn load_msh(path: &Path, scratch_dir: &Path, gmsh: &GmshOptions) -> Result<Draft, Vec<Defect>> {
     let (mut draft, bytes) = load(path, scratch_dir, gmsh)?;
-    if draft.cells.elements.len() >= LARGE {
-        // To give back the memory of a large file takes the system a while.
-        rayon::join(|| drop(bytes), || draft.arrange());
-    }
+    // To give back the memory of a large file takes the system a while.
+    rayon::join(|| drop(bytes), || arrange_large(&mut draft));
     Ok(draft)
+}
+
+/// Arranges a mesh if it is large, as [`load_msh`] does.
+pub fn arrange_large(draft: &mut Draft) {
+    if draft.cells.elements.len() >= LARGE {
+        draft.arrange();
+    }
 }
 
 /// The draft, and the bytes that it was read from where they are still there.

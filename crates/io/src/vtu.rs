@@ -173,8 +173,8 @@ fn fields(fields: &[Field]) -> io::Result<Vec<EncodedArray>> {
 
 /// Points of all cells, ends of the cells and their types.
 fn topology(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> io::Result<[EncodedArray; 3]> {
-    let (connectivity, ends) = connectivity(shapes, offsets, nodes);
-    let types: Vec<u8> = shapes.iter().map(|&shape| cell_of(shape).0).collect();
+    let (connectivity, ends) = vtk_connectivity(shapes, offsets, nodes);
+    let types: Vec<u8> = shapes.iter().map(|&shape| vtk_cell(shape).0).collect();
     Ok([
         EncodedArray::of("connectivity", 1, &connectivity)?,
         EncodedArray::of("offsets", 1, &ends)?,
@@ -183,12 +183,12 @@ fn topology(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> io::Result<[Enc
 }
 
 /// Points of all cells in the order of VTK, and where each cell ends.
-fn connectivity(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> (Vec<u64>, Vec<u64>) {
+pub fn vtk_connectivity(shapes: &[Shape], offsets: &[u32], nodes: &[u32]) -> (Vec<u64>, Vec<u64>) {
     let mut connectivity = Vec::with_capacity(nodes.len());
     let mut ends = Vec::with_capacity(shapes.len());
     for (cell, &shape) in shapes.iter().enumerate() {
         let nodes = &nodes[offsets[cell] as usize..offsets[cell + 1] as usize];
-        match cell_of(shape).1 {
+        match vtk_cell(shape).1 {
             [] => connectivity.extend(nodes.iter().map(|&node| u64::from(node))),
             order => {
                 connectivity.extend(order.iter().map(|&local| u64::from(nodes[local as usize])));
@@ -213,10 +213,16 @@ fn write_arrays<'a>(
     write!(out, "</{element}>")
 }
 
+/// The shape of a VTK cell (`vtkCellType.h`) that can be solved on.
+pub fn shape_of_vtk_cell(number: u8) -> Option<Shape> {
+    let mut shapes = Shape::CELLS.into_iter().chain(Shape::FACETS);
+    shapes.find(|&shape| vtk_cell(shape).0 == number)
+}
+
 /// The number of the VTK cell of a shape (`vtkCellType.h`) and which of our nodes stands at each of
 /// its places; none where the order is the same. VTK has no 14-node pyramid: its 13-node pyramid
 /// leaves the middle of the base out.
-fn cell_of(shape: Shape) -> (u8, &'static [u8]) {
+pub fn vtk_cell(shape: Shape) -> (u8, &'static [u8]) {
     match shape {
         Shape::Tri3 => (5, &[]),
         Shape::Tri6 => (22, &[]),

@@ -1,9 +1,10 @@
 //! What is made of the table and committed: the schemas of `docs/schema` and the pages of
-//! `docs/reference`. With `KLUFT_BLESS=1` they are written again.
+//! `docs/reference`, and the classes of the Python package. With `KLUFT_BLESS=1` they are written
+//! again.
 
 use std::path::{Path, PathBuf};
 
-use kluft_keys::{Document, page, schema};
+use kluft_keys::{Document, page, python, schema};
 use serde_json::Value;
 
 const MADE: [Document; 3] = [Document::Scene, Document::Network, Document::Study];
@@ -48,6 +49,13 @@ fn the_committed_pages_are_those_of_the_table() {
         let file = root().join(format!("docs/reference/keys-{}.md", document.name()));
         compare(&file, &made, |committed| committed == made);
     }
+}
+
+#[test]
+fn the_committed_classes_are_those_of_the_table() {
+    let made = python();
+    let file = root().join("crates/python/python/kluft/keys.py");
+    compare(&file, &made, |committed| committed == made);
 }
 
 #[test]

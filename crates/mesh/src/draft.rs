@@ -188,3 +188,20 @@ pub struct Draft {
     /// Elements of dimension 2.
     pub facets: TaggedElements,
 }
+
+impl Draft {
+    /// Number of the given elements of this draft in each group.
+    pub fn group_sizes(&self, elements: &TaggedElements) -> Vec<usize> {
+        let mut of_set = vec![0; self.group_sets.len()];
+        for &set in &elements.group_set {
+            of_set[set as usize] += 1;
+        }
+        let mut of_group = vec![0; self.groups.len()];
+        for (set, count) in self.group_sets.iter().zip(of_set) {
+            for &group in set {
+                of_group[group] += count;
+            }
+        }
+        of_group
+    }
+}

@@ -26,6 +26,7 @@ mod check;
 mod disjoint_sets;
 mod doubled;
 mod draft;
+mod element_blocks;
 mod facets;
 mod fracture_edges;
 mod geometry;
@@ -51,6 +52,7 @@ pub use check::{
 pub use disjoint_sets::DisjointSets;
 pub use doubled::{DoubledSurface, Touch};
 pub use draft::{Draft, Elements, Group, TaggedElements};
+pub use element_blocks::ElementBlock;
 pub use facets::{Boundary, Facets};
 pub use fracture_edges::{FacetEdge, FractureEdges, FracturesAtNodes};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};

@@ -51,6 +51,21 @@ impl Faces {
         doubled_surfaces(draft, &nodes, &self.adjacency, &doubled)
     }
 
+    /// Roles for the same `draft` without a scene: surfaces with a facet between two cells are
+    /// fractures, the others boundaries.
+    pub fn guessed_roles(&self, draft: &Draft) -> Vec<SurfaceRole> {
+        let inner = self.inner_surfaces(draft);
+        let sizes = draft.group_sizes(&draft.facets);
+        let groups = draft.groups.iter().zip(inner).zip(sizes);
+        groups
+            .map(|((group, inside), size)| match (group.dimension, size) {
+                (2, 1..) if inside => SurfaceRole::Fracture,
+                (2, 1..) => SurfaceRole::Boundary,
+                _ => SurfaceRole::Unused,
+            })
+            .collect()
+    }
+
     /// For each group of the same `draft` whether it is a surface with a facet inside the body,
     /// between two cells.
     pub fn inner_surfaces(&self, draft: &Draft) -> Vec<bool> {

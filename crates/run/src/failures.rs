@@ -3,7 +3,7 @@
 use kluft_io::NOT_WRITTEN;
 use kluft_mesh::Defect;
 use kluft_scene::SolverEntry;
-use kluft_solver::{LinearFailure, Plan, Problem, StepOutcome, StepRecord, System};
+use kluft_solver::{LinearFailure, Plan, Problem, Step, StepOutcome, StepRecord, System};
 
 use crate::decisions::{gigabytes, of_step};
 
@@ -58,12 +58,12 @@ pub fn with_what_is_kept(mut defects: Vec<Defect>, steps: usize) -> Vec<Defect> 
 
 /// Why a load step did not converge, and where.
 pub fn not_converged(
-    problem: &Problem,
     system: &System<'_>,
-    number: usize,
+    (number, step): (usize, &Step),
     record: &StepRecord,
 ) -> String {
-    let step = of_step(&problem.schedule, &problem.schedule.steps[number - 1]);
+    let problem = system.problem();
+    let step = of_step(&problem.schedule, step);
     let count = record.iterations.len();
     let at = |point: Option<usize>| {
         point.map_or(String::new(), |point| {

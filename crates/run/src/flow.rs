@@ -6,11 +6,12 @@ use kluft_io::printable::cell;
 use kluft_io::{Field, write_atomically};
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{
-    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, Schedule, State, System,
+    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, State, System,
 };
 
 use crate::flow_summary::{self, FlowSummary, Hydraulics, StepFlow};
 use crate::grids::real_field;
+use crate::summary::StepSummary;
 
 /// The file of what flows where it is driven.
 pub const SOURCES: &str = "sources.csv";
@@ -155,14 +156,14 @@ impl SolvedFlow {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn write_sources(path: &Path, schedule: &Schedule, steps: &[StepFlow]) -> Result<(), Defect> {
+pub fn write_sources(path: &Path, steps: &[StepSummary]) -> Result<(), Defect> {
     write_atomically(path, |out| {
         let mut table = csv::Writer::from_writer(out);
         table.write_record(["step", "time", "source", "pressure", "rate", "volume"])?;
-        for (index, (step, flow)) in schedule.steps.iter().zip(steps).enumerate() {
-            for source in &flow.sources {
+        for (index, step) in steps.iter().enumerate() {
+            for source in step.flow.iter().flat_map(|flow| &flow.sources) {
                 let number = (index + 1).to_string();
-                let values = [step.load.time, source.pressure, source.rate, source.volume];
+                let values = [step.time, source.pressure, source.rate, source.volume];
                 let [time, pressure, rate, volume] = values.map(|value| format!("{value:?}"));
                 let name = cell(&source.name);
                 table.write_record([number, time, name, pressure, rate, volume])?;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use kluft_io::Grid;
 use kluft_scene::{Binding, in_terms_of_scene};
-use kluft_solver::{FacetResult, LinearFailure, Problem, State, System};
+use kluft_solver::{FacetResult, LinearFailure, State, System};
 
 use crate::failures;
 use crate::flow::{RunFlow, SOURCES, SolvedFlow, write_sources};
@@ -89,13 +89,12 @@ impl Run<'_> {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn write_sources(&mut self, problem: &Problem) -> Result<(), Interruption> {
-        let flows = self.summary.steps.iter();
-        let flows: Vec<_> = flows.filter_map(|step| step.flow.clone()).collect();
-        if flows.is_empty() || !self.output.is_kept() {
+    pub fn write_sources(&mut self) -> Result<(), Interruption> {
+        let steps = &self.summary.steps;
+        if steps.iter().all(|step| step.flow.is_none()) || !self.output.is_kept() {
             return Ok(());
         }
-        let write = |path: &Path| write_sources(path, &problem.schedule, &flows);
+        let write = |path: &Path| write_sources(path, steps);
         Ok(self.output.write(SOURCES, write)?)
     }
 }

@@ -8,7 +8,7 @@ use kluft_solver::{FacetResult, Solution, System};
 use crate::accuracy::Accuracy;
 
 /// The rock, with one copy of a node for each of its sectors.
-pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) -> Grid {
+pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Accuracy>) -> Grid {
     let mesh = &system.problem().mesh;
     let points = &system.discretisation().points();
     let rocks = system
@@ -17,7 +17,11 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
         .iter()
         .map(|&rock| rock as i32);
     let displacements = solution.displacements.iter().map(|u| u.to_array());
-    Grid {
+    let errors = accuracy.map(|accuracy| {
+        let errors = accuracy.stress_errors.iter();
+        real_field("stress_error", errors.map(|&error| [error]))
+    });
+    let mut grid = Grid {
         points: points
             .node
             .iter()
@@ -30,17 +34,19 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: &Accuracy) 
         cell_fields: vec![
             real_field("stress", solution.stresses.iter().copied()),
             integer_field("rock", rocks),
-            real_field(
-                "stress_error",
-                accuracy.stress_errors.iter().map(|&error| [error]),
-            ),
         ],
-    }
+    };
+    grid.cell_fields.extend(errors);
+    grid
 }
 
 /// The fractures; every facet has its own points, so that fields may jump between facets. `results`
 /// are those of the nodes of the facets.
-pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Accuracy) -> Grid {
+pub fn fracture_grid(
+    system: &System<'_>,
+    results: &[FacetResult],
+    accuracy: Option<&Accuracy>,
+) -> Grid {
     let mesh = &system.problem().mesh;
     let vectors =
         |of: fn(&FacetResult) -> DVec3| results.iter().map(move |result| of(result).to_array());
@@ -59,7 +65,7 @@ pub fn fracture_grid(system: &System<'_>, results: &[FacetResult], accuracy: &Ac
             integer_field("state", results.iter().map(|result| result.state as i32)),
         ],
     );
-    if let Some(jumps) = &accuracy.jumps {
+    if let Some(jumps) = accuracy.and_then(|accuracy| accuracy.jumps.as_ref()) {
         let of_facets = mesh.facets.fracture.iter();
         let of_facets = of_facets.map(|&fracture| [jumps.aperture[fracture as usize]]);
         let field = real_field("aperture_uncertainty", of_facets);

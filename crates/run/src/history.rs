@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use kluft_io::printable::cell;
-use kluft_solver::{BlockMotion, Step, SurfaceResultant};
+use kluft_solver::{
+    BlockMotion, Solution, State, Step, SurfaceResultant, System, block_motions, surface_resultants,
+};
 
 use crate::spread::Spread;
 use crate::summary::FractureSummary;
@@ -63,10 +65,33 @@ pub struct Entry<'a> {
     pub newton_iterations: usize,
     /// Each fracture with its name.
     pub fractures: &'a [(String, FractureSummary)],
+    /// Parts of the surface, and blocks.
+    pub parts: Parts<'a>,
+}
+
+/// What whole parts feel and do.
+pub struct Parts<'a> {
     /// Each part of the outer surface with its name.
-    pub surfaces: Vec<(&'a str, SurfaceResultant)>,
+    surfaces: Vec<(&'a str, SurfaceResultant)>,
     /// Each block, numbered from 1 in the order of the lowest cell.
-    pub blocks: Vec<BlockMotion>,
+    blocks: Vec<BlockMotion>,
+}
+
+impl<'a> Parts<'a> {
+    /// Those of a state and its solution.
+    pub fn of(system: &System<'a>, state: &State, solution: &Solution) -> Self {
+        let displacements = &solution.displacements;
+        let (surfaces, blocks) = rayon::join(
+            || surface_resultants(system, state, displacements),
+            || block_motions(system, displacements),
+        );
+        let names = system.problem().mesh.boundaries.iter();
+        let names = names.map(|boundary| boundary.name.as_str());
+        Self {
+            surfaces: names.zip(surfaces).collect(),
+            blocks,
+        }
+    }
 }
 
 /// A table that grows by load steps.
@@ -84,6 +109,11 @@ impl History {
     /// The table so far, for the file and for checkpoints.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The whole table.
+    pub fn into_text(self) -> String {
+        self.text
     }
 
     /// Adds the rows of a load step.
@@ -139,7 +169,7 @@ impl Entry<'_> {
             .fractures
             .iter()
             .map(|(name, summary)| self.fracture(name, summary));
-        let surfaces = self.surfaces.iter().map(|(name, resultant)| {
+        let surfaces = self.parts.surfaces.iter().map(|(name, resultant)| {
             let mut row = self.row("boundary", name);
             row.number("area", resultant.area);
             row.vector("force", resultant.force);
@@ -147,7 +177,7 @@ impl Entry<'_> {
             row.number("displacement", resultant.displacement.length());
             row
         });
-        let blocks = self.blocks.iter().enumerate().map(|(index, motion)| {
+        let blocks = self.parts.blocks.iter().enumerate().map(|(index, motion)| {
             let mut row = self.row("block", &(index + 1).to_string());
             row.number("volume", motion.volume);
             row.vector("displacement", motion.displacement);

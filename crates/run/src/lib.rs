@@ -8,12 +8,13 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
 //! | `permeability`, `flow_history` | the equivalent permeability; the history in rigid rock |
 //! | `rigid`, `fluid_step` | flow alone in rigid rock; what a fluid adds in rock that deforms |
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
-//! | `output`, `grids`, `checkpoint`, `resume`, `former` | files |
+//! | `output`, `grids`, `checkpoint`, `resume`, `former`, `save` | files |
 //! | `decisions`, `failures` | what the program decided, and why a run failed, in words |
 //!
 //! ```
@@ -34,6 +35,8 @@
 
 mod accuracy;
 mod adapt;
+mod advance;
+mod cases;
 mod checkpoint;
 mod crack_front;
 mod decisions;
@@ -61,13 +64,17 @@ mod request;
 mod resume;
 mod rigid;
 mod run;
+mod save;
 mod spread;
 mod stages;
 mod steps;
 mod summary;
+mod threads;
 mod undetermined;
 mod unresolved;
 
+pub use advance::{Advance, PreparedRock, with_prepared_rock};
+pub use cases::{ActingCases, GRAVITY};
 pub use flow::RunFlow;
 pub use flow_summary::{
     ConduitSummary, FlowSummary, Hydraulics, NetworkSummary, SourceFlow, StepFlow,
@@ -81,5 +88,8 @@ pub use permeability_summary::{PermeabilitySummary, PrincipalPermeability, Tenso
 pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use request::{MeshInput, Origin, Request};
 pub use run::run;
+pub use save::Saving;
 pub use spread::Spread;
+pub use stages::Interruption;
 pub use summary::{FractureSummary, StepMeasures, StepSummary, Summary, Undetermined};
+pub use threads::{ThreadCount, pool, thread_count};

@@ -24,6 +24,9 @@ pub struct Outcome {
     pub ending: Ending,
     /// Its numbers, as `summary.json` holds them.
     pub summary: Summary,
+    /// The history of its load steps, as `history.csv` holds it; empty if neither files nor results
+    /// were asked for, and in rigid rock.
+    pub history: String,
     /// The results of the load steps that it solved, if it was asked to keep them.
     pub steps: Vec<StepResult>,
 }

@@ -16,6 +16,18 @@ use crate::probes;
 /// The collections of the grids of all load steps.
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
 
+/// Files of every run beside the grids of its load steps.
+pub const OWN: [&str; 5] = [
+    SUMMARY,
+    history::NAME,
+    checkpoint::NAME,
+    COLLECTIONS[0],
+    COLLECTIONS[1],
+];
+
+/// The numbers of a run.
+pub const SUMMARY: &str = "summary.json";
+
 /// Writes the results of a run into one folder, step by step; the collections always list exactly
 /// the steps that are complete.
 ///

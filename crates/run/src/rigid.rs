@@ -97,7 +97,7 @@ impl Run<'_> {
             let rock = || rock_grid(problem);
             let fractures = || fracture_grid(&problem.mesh, made, &solved);
             run.output.write_step(step.load.time, rock, fractures)?;
-            run.write_sources(problem)?;
+            run.write_sources()?;
             let text = history.text().as_bytes();
             let write = |path: &Path| write_atomically(path, |out| out.write_all(text));
             if run.output.is_kept() {

@@ -7,10 +7,9 @@ use crate::adapt::{self, SIZES};
 use crate::checkpoint;
 use crate::failures;
 use crate::flow::SOURCES;
-use crate::history;
 use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
-use crate::output::{COLLECTIONS, Output};
+use crate::output::{OWN, Output};
 use crate::prepare::{MESH, inputs};
 use crate::probes;
 use crate::request::{MeshInput, Request};
@@ -65,8 +64,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     let Some(folder) = request.folder else {
         return Output::nowhere();
     };
-    let mut names = vec!["summary.json", history::NAME, checkpoint::NAME];
-    names.extend(COLLECTIONS);
+    let mut names = OWN.to_vec();
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
     if !request.scene.probes.is_empty() {
         names.push(probes::NAME);

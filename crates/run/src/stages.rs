@@ -1,5 +1,6 @@
 //! The stages of a run that are done once: mesh, problem, unknowns, matrix, linear solver.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -7,7 +8,8 @@ use kluft_io::{Meshed, fingerprint_of};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
-    Discretisation, LinearFailure, Newton, NewtonSettings, Plan, Problem, System, Workload,
+    Discretisation, Iteration, LinearFailure, Newton, NewtonSettings, Plan, Problem, System,
+    Workload,
 };
 
 use crate::checkpoint::{self, Identity};
@@ -17,7 +19,7 @@ use crate::history::History;
 use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::outcome::{Ending, Outcome, StepResult};
-use crate::output::Output;
+use crate::output::{Output, SUMMARY};
 use crate::prepare::{self, MeshFile};
 use crate::probes::ProbeTable;
 use crate::request::{MeshInput, Request};
@@ -72,6 +74,8 @@ pub struct Run<'a> {
     pub doubts: Vec<String>,
     /// Closed form of each fracture that has one.
     pub oracles: Vec<Option<Oracle>>,
+    /// Whether the observer wants no more.
+    is_stopped: bool,
     /// Whether its mesh came from memory; no checkpoint could tell it from another.
     pub has_own_mesh: bool,
     /// When it would have begun, had a former run not been interrupted.
@@ -129,9 +133,28 @@ impl<'a> Run<'a> {
             choice: Default::default(),
             doubts: Vec::new(),
             oracles: Vec::new(),
+            is_stopped: false,
             start,
             took: Duration::ZERO,
             meshing: Remeshing::Given,
+        }
+    }
+
+    /// Tells the observer of an iteration, and asks whether to go on.
+    pub fn ask_after(&mut self, number: usize, iteration: &Iteration) -> ControlFlow<()> {
+        let answer = self.observer.iteration(number, iteration);
+        self.is_stopped |= answer.is_break();
+        answer
+    }
+
+    /// Whether the observer wants more: a load step may converge in the iteration that it stops at.
+    ///
+    /// # Errors
+    /// [`Interruption::Stopped`] if not.
+    pub fn go_on_if_asked(&self) -> Result<(), Interruption> {
+        match self.is_stopped {
+            true => Err(Interruption::Stopped),
+            false => Ok(()),
         }
     }
 
@@ -355,8 +378,7 @@ impl<'a> Run<'a> {
         if !self.output.is_kept() {
             return Ok(());
         }
-        self.output
-            .write("summary.json", |path| self.summary.write(path))
+        self.output.write(SUMMARY, |path| self.summary.write(path))
     }
 
     /// Ends the run.
@@ -379,6 +401,7 @@ impl<'a> Run<'a> {
         Outcome {
             ending,
             summary: self.summary,
+            history: self.history.into_text(),
             steps: self.kept,
         }
     }

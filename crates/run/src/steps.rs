@@ -8,7 +8,7 @@ use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
     Estimator, FacetResult, Newton, Plan, Problem, Solution, State, StepOutcome, System,
-    block_motions, determinacy, solution, surface_resultants,
+    determinacy, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -20,7 +20,7 @@ use crate::flow::RunFlow;
 use crate::fluid_step;
 use crate::fractures::fractures;
 use crate::grids::{fracture_grid, rock_grid};
-use crate::history::{self, Entry, History};
+use crate::history::{self, Entry, History, Parts};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
@@ -95,6 +95,7 @@ impl Run<'_> {
         };
         prepared.flow = flow.as_ref();
         for index in self.finished.len()..problem.schedule.steps.len() {
+            self.go_on_if_asked()?;
             let measures = self.solve_step(&mut prepared, index)?;
             self.finished.push(measures);
             self.take_results(&mut prepared)?;
@@ -104,7 +105,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn decide(&mut self, binding: &Binding) {
+    /// Takes over and tells what was decided for a problem.
+    pub fn decide(&mut self, binding: &Binding) {
         let settings = newton_settings(&self.request.scene.solver);
         self.summary.decisions.push(self.choice.1.clone());
         let of_problem =
@@ -193,20 +195,23 @@ impl Run<'_> {
         let record = self.stage(Stage::Solve, |run| {
             let Prepared { newton, state, .. } = prepared;
             newton.solve_step(system, state, &step.load, |number, iteration| {
-                run.observer.iteration(number, iteration)
+                run.ask_after(number, iteration)
             })
         });
         self.summary.seconds.factorise += record.factorise_seconds;
         self.summary.seconds.solve += record.solve_seconds;
         let unresolved = unresolved::of_step(system, &record);
         let measures = StepMeasures::of(&record, unresolved);
-        let summary = StepSummary::of(step, measures.clone());
+        let summary = StepSummary {
+            completed: record.completed,
+            ..StepSummary::of(step, measures.clone())
+        };
         self.summary.steps.push(summary);
         if record.outcome == StepOutcome::Stopped {
             return Err(Interruption::Stopped);
         }
         if !record.converged() {
-            let why = failures::not_converged(system.problem(), system, index + 1, &record);
+            let why = failures::not_converged(system, (index + 1, step), &record);
             return Err(Interruption::NotConverged(why));
         }
         Ok(measures)
@@ -248,9 +253,9 @@ impl Run<'_> {
         self.summary.warnings.extend(unresolved);
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
-            let rock = || rock_grid(system, &solution, &accuracy);
+            let rock = || rock_grid(system, &solution, Some(&accuracy));
             let fractures = || {
-                let mut grid = fracture_grid(system, &nodes, &accuracy);
+                let mut grid = fracture_grid(system, &nodes, Some(&accuracy));
                 let field = facets.as_deref().map(undetermined::field);
                 grid.cell_fields.extend(field);
                 if let Some(flow) = &flow {
@@ -268,7 +273,7 @@ impl Run<'_> {
             run.keep(rock, fractures);
             written
         })?;
-        self.write_sources(system.problem())?;
+        self.write_sources()?;
         self.write_probes(prepared, &solution, &nodes)?;
         self.write_history(prepared, &solution)
     }
@@ -303,27 +308,23 @@ impl Run<'_> {
         prepared: &Prepared<'_, '_>,
         solution: &Solution,
     ) -> Result<(), Interruption> {
+        if !self.output.is_kept() && !self.request.keep_results {
+            return Ok(());
+        }
+        let system = prepared.system;
+        let number = self.finished.len();
+        let last = self.finished.last();
+        let parts = Parts::of(system, &prepared.state, solution);
+        self.history.add(&Entry {
+            number,
+            step: &system.problem().schedule.steps[number - 1],
+            newton_iterations: last.map_or(0, |last| last.newton_iterations),
+            fractures: &self.summary.fractures,
+            parts,
+        });
         if !self.output.is_kept() {
             return Ok(());
         }
-        let (system, displacements) = (prepared.system, &solution.displacements);
-        let problem = system.problem();
-        let number = self.finished.len();
-        let names = problem.mesh.boundaries.iter();
-        let names = names.map(|boundary| boundary.name.as_str());
-        let (surfaces, blocks) = rayon::join(
-            || surface_resultants(system, &prepared.state, displacements),
-            || block_motions(system, displacements),
-        );
-        let last = self.finished.last();
-        self.history.add(&Entry {
-            number,
-            step: &problem.schedule.steps[number - 1],
-            newton_iterations: last.map_or(0, |last| last.newton_iterations),
-            fractures: &self.summary.fractures,
-            surfaces: names.zip(surfaces).collect(),
-            blocks,
-        });
         let text = self.history.text();
         let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
         Ok(self.output.write(history::NAME, write)?)

@@ -107,6 +107,8 @@ pub struct StepSummary {
     /// Its phase, if the scene names phases.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
+    /// Share of it that was solved: 1, unless it did not converge.
+    pub completed: f64,
     /// How it was solved; none in rigid rock.
     #[serde(flatten)]
     pub measures: Option<StepMeasures>,
@@ -151,6 +153,7 @@ impl StepSummary {
             load: step.load.single_factor(),
             time: step.load.time,
             phase: step.phase.clone(),
+            completed: 1.0,
             measures: None,
             flow: None,
         }

@@ -165,6 +165,26 @@ fn an_observer_hears_the_stages_and_may_stop_the_run() {
     assert_eq!(listener.stages[..2], [Stage::Read, Stage::Enrich]);
 }
 
+/// Says after every iteration that it is enough.
+struct Impatient;
+
+impl Observer for Impatient {
+    fn iteration(&mut self, _number: usize, _iteration: &Iteration) -> ControlFlow<()> {
+        ControlFlow::Break(())
+    }
+}
+
+#[test]
+fn a_step_that_converges_where_it_is_stopped_is_the_last() {
+    let linear = SCENE.replace("logarithmic", "linear");
+    let scene = Scene::parse(&linear, "a scene in memory", ".".as_ref()).expect("a sound scene");
+    let (mesh, pool) = (MeshInput::Draft(Box::new(draft())), threads(1));
+    let outcome = run(Request::in_memory(&scene, mesh, &pool), &mut Impatient);
+    let outcome = outcome.expect("no defects");
+    assert_eq!(outcome.ending, Ending::Stopped);
+    assert_eq!(outcome.steps.len(), 1);
+}
+
 #[test]
 fn defects_come_back_as_values() {
     let (scene, pool) = (scene(), threads(1));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
 use kluft_solver::{Condition, FixedPoint, Flow, Problem, Varying};
-use lie_core::Rock;
+use lie_core::{FractureLaw, Rock};
 
 use crate::bind_fields::bind_fields;
 use crate::bind_flow::bind_flow;
@@ -84,6 +84,15 @@ impl Binding {
     }
 }
 
+impl Scene {
+    /// The laws of these fractures of a mesh, of those that the scene names or has a default for.
+    pub fn laws(&self, fractures: &[String]) -> Vec<FractureLaw> {
+        let entries = bind_fractures(self, fractures, &mut Vec::new());
+        let laws = entries.iter().map(|entry| entry.value.fracture.law);
+        laws.collect()
+    }
+}
+
 /// Binds a scene to its mesh.
 ///
 /// # Errors
@@ -96,7 +105,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
         decisions.extend(quarter_points(mesh.move_to_quarter_points()));
     }
     let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
-    let fractures = bind_fractures(scene, &mesh, &mut decisions);
+    let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
     if scene.body.gravity != DVec3::ZERO && !scene.is_rigid() {
         defects.extend(missing_densities(scene));
     }
@@ -287,12 +296,12 @@ fn rock_defect(
 /// The entry of each fracture.
 fn bind_fractures<'a>(
     scene: &'a Scene,
-    mesh: &Mesh,
+    names: &[String],
     decisions: &mut Vec<String>,
 ) -> Vec<&'a Named<FractureEntry>> {
     let by_name = |name: &str| scene.fractures.iter().find(|entry| entry.name == name);
     let mut by_default = Vec::new();
-    let entries = mesh.fractures.iter().filter_map(|name| {
+    let entries = names.iter().filter_map(|name| {
         by_name(name).or_else(|| {
             by_default.push(name.as_str());
             by_name(DEFAULT)

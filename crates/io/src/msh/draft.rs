@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use kluft_mesh::{Defect, Draft, Elements, Shape, TaggedElements, sample};
 use mshio::ElementType;
+use num_traits::FromPrimitive;
 use rayon::prelude::*;
 
 use super::cursor::ItemRange;
@@ -36,6 +37,11 @@ fn shape_of(kind: ElementType) -> Option<Shape> {
         ElementType::Pyr14 => Some(Shape::Pyramid14),
         _ => None,
     }
+}
+
+/// The shape of an element of a number that gmsh gives its types, if it can be solved on.
+pub fn shape_of_gmsh_element(number: i32) -> Option<Shape> {
+    ElementType::from_i32(number).and_then(shape_of)
 }
 
 /// Builds the draft, or lists everything that stands against it.

@@ -22,6 +22,7 @@ use kluft_mesh::{Defect, Draft, Group};
 use memchr::memmem;
 use rayon::prelude::*;
 
+pub use draft::shape_of_gmsh_element;
 use header::Format;
 use source::MshSource;
 

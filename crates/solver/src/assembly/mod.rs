@@ -2,6 +2,7 @@
 
 pub(crate) mod cell_forces;
 pub(crate) mod facet_point;
+mod facet_values;
 pub(crate) mod interface;
 pub(crate) mod loads;
 pub(crate) mod rock;

@@ -1,9 +1,7 @@
-//! The threads that a command works on.
+//! The threads that a run works on.
 
 use kluft_mesh::Defect;
 use rayon::ThreadPool;
-
-use crate::failure::Failure;
 
 /// Stack of each thread (bytes): that of a main thread.
 const STACK: usize = 8 << 20;
@@ -44,8 +42,8 @@ fn capped(asked: Option<usize>, cores: usize) -> ThreadCount {
 /// So many threads.
 ///
 /// # Errors
-/// [`Failure::Machine`] if the system does not give them.
-pub fn pool(count: usize) -> Result<ThreadPool, Failure> {
+/// If the system does not give them.
+pub fn pool(count: usize) -> Result<ThreadPool, Defect> {
     let builder = rayon::ThreadPoolBuilder::new()
         .num_threads(count)
         .stack_size(STACK);
@@ -53,7 +51,7 @@ pub fn pool(count: usize) -> Result<ThreadPool, Failure> {
         let problem = format!("the system does not give {count} threads: {error}");
         let remedy =
             "ask for fewer, e.g. --threads 1, or raise the limit of processes or of memory";
-        Failure::Machine(vec![Defect::new("threads", problem, remedy)])
+        Defect::new("threads", problem, remedy)
     })
 }
 

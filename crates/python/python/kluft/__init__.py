@@ -1,0 +1,35 @@
+"""Kluft: how fractured rock deforms in three dimensions.
+
+    import gmsh, kluft
+    mesh = kluft.Mesh.from_gmsh()
+    run = kluft.Scene.read("scene.toml").solve(mesh)
+    run.fractures["fault"].aperture
+
+Values are in SI units; tension is positive, and the normal of a fracture points from minus to plus.
+"""
+
+from . import keys
+from .errors import Defect, InputError, NotConverged, Stopped
+from .grid import Grid
+from .keys import *  # noqa: F403
+from .mesh import Mesh, Survey
+from .prepared import PreparedRun
+from .run import FractureResult, Run, Step, read
+from .scene import Scene
+
+__all__ = [
+    "Defect",
+    "FractureResult",
+    "Grid",
+    "InputError",
+    "Mesh",
+    "NotConverged",
+    "PreparedRun",
+    "Run",
+    "Scene",
+    "Step",
+    "Stopped",
+    "Survey",
+    "read",
+    *keys.__all__,
+]

@@ -1,0 +1,118 @@
+"""A run whose rock stays prepared: each load step costs a solve for the jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _kluft
+from .grid import Array, Grid
+from .run import FractureResult, Run, Step
+from .solving import MemorySource, Progress, end, follower, judge
+
+if TYPE_CHECKING:
+    from .keys import Fracture
+    from .scene import Scene
+
+
+class PreparedRun(Run):
+    """A run that keeps the rock prepared, and solves the load steps that it is asked for.
+
+    Load steps follow one another: each begins where the last one ended, so that friction remembers.
+    As a context manager it gives the memory of the rock back at the end; results stay.
+    """
+
+    def __init__(self, scene: Scene, prepared: _kluft.Prepared) -> None:
+        super().__init__(MemorySource(prepared.results))
+        self._scene = scene
+        self._prepared = prepared
+        self._own_pressures: set[str] = set()
+        points = Grid(**prepared.points(), cells=prepared.cells)
+        names = enumerate(prepared.fractures)
+        self._facets = {name: FractureResult(name, {}, points, index) for index, name in names}
+        self._pressures = np.zeros(len(points.points))
+
+    @property
+    def acting(self) -> list[str]:
+        """What acts and may have a factor: boundaries with conditions, fractures with the pressure
+        of the scene, fixed points, ``gravity``."""
+        return self._prepared.acting
+
+    def points(self, fracture: str) -> Array:
+        """Coordinates (m) of the corners of the facets of a fracture: where pressures are given and
+        fields of results are."""
+        return self._facets[fracture].points
+
+    def advance(
+        self,
+        load: float = 1.0,
+        factors: Mapping[str, float] | None = None,
+        *,
+        fluid_pressure: Mapping[str, Any] | None = None,
+        fracture: Mapping[str, Fracture | Mapping[str, Any]] | None = None,
+        time: float | None = None,
+        rock: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> Step:
+        """Solves a further load step.
+
+        Args:
+            load: Factor on everything that acts.
+            factors: Other factors by the names of :attr:`acting`.
+            fluid_pressure: Pressure on both walls (Pa), opening, by fracture: a number, or an array
+                with one for each of :meth:`points`. It takes the place of the pressure that the
+                scene gives, and stays until another one is given.
+            fracture: Keys of fractures that change, as in the scene:
+                ``{"fault": {"normal_stiffness": "20 GPa/m"}}``. They stay changed.
+            time: Time at the end of the step, ascending; the number of the step if none is given.
+            rock: Whether displacements and stresses of the rock are wanted too.
+            progress: As in :meth:`Scene.solve`.
+
+        Raises:
+            InputError: if something given does not fit.
+            NotConverged: if the step does not converge; the run stays where it was.
+            Stopped: after Ctrl-C; the run stays where it was.
+        """
+        all_factors = self._factors(load, factors or {}, fluid_pressure or {})
+        pressures = self._push(fluid_pressure) if fluid_pressure else None
+        changed = self._scene.replace(fracture=fracture) if fracture else None
+        parsed = changed._parsed(needs_mesh=False) if changed is not None else None
+        told = follower(progress)
+        ending, why, reached, raised = self._prepared.advance(
+            (time, all_factors), pressures, (parsed, rock), told
+        )
+        end(told)
+        if changed is not None:
+            self._scene = changed
+        number = len(self._source) + (ending != "solved")
+        judge(self, ending, why, number, reached, raised)
+        return self.last
+
+    def _factors(
+        self, load: float, factors: Mapping[str, float], pressures: Mapping[str, Any]
+    ) -> list[float]:
+        unknown = [name for name in factors if name not in self.acting]
+        unknown += [name for name in pressures if name not in self._facets]
+        if unknown:
+            known = ", ".join(self.acting)
+            raise KeyError(f"nothing here is called {', '.join(unknown)}; there are: {known}")
+        self._own_pressures |= set(pressures)
+        given = {**{name: 0.0 for name in self._own_pressures}, **factors}
+        return [float(given.get(name, load)) for name in self.acting]
+
+    def _push(self, given: Mapping[str, Any]) -> Array:
+        for name, pressure in given.items():
+            self._pressures[self._facets[name]._points()] = pressure
+        return self._pressures
+
+    def close(self) -> None:
+        """Gives the memory of the rock back; results stay."""
+        self._prepared.close()
+
+    def __enter__(self) -> PreparedRun:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

@@ -1,0 +1,77 @@
+//! Results that were held in memory become files: those that a run into the folder writes.
+
+use std::io::Write;
+use std::path::Path;
+
+use kluft_io::{Grid, write_atomically};
+use kluft_mesh::Defect;
+
+use crate::flow::{SOURCES, write_sources};
+use crate::history;
+use crate::output::{OWN, Output, SUMMARY};
+use crate::summary::Summary;
+
+/// A folder that takes the results of a run, load step by load step.
+pub struct Saving<'a> {
+    output: Output,
+    summary: &'a Summary,
+    history: &'a str,
+}
+
+impl<'a> Saving<'a> {
+    /// Prepares a folder for a run of this summary and history, and removes what a former run has
+    /// written there.
+    ///
+    /// # Errors
+    /// If the folder cannot be written to, if another run writes there, and if a file would be
+    /// written over that is no result.
+    pub fn into(
+        folder: &Path,
+        summary: &'a Summary,
+        history: &'a str,
+    ) -> Result<Self, Vec<Defect>> {
+        let mut names = OWN.to_vec();
+        if has_flow(summary) {
+            names.push(SOURCES);
+        }
+        let mut output = Output::prepare(folder, &names, &[])?;
+        output.expect_steps(summary.steps.len())?;
+        output.remove_former().map_err(|defect| vec![defect])?;
+        Ok(Self {
+            output,
+            summary,
+            history,
+        })
+    }
+
+    /// Writes the grids of the next load step, which ends at a time.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn step(&mut self, time: f64, rock: Grid, fractures: Grid) -> Result<(), Defect> {
+        self.output.write_step(time, || rock, || fractures)
+    }
+
+    /// Writes what speaks of the whole run.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn finish(mut self) -> Result<(), Defect> {
+        let output = &self.output;
+        if !self.history.is_empty() {
+            output.write(history::NAME, |path| {
+                write_atomically(path, |out| out.write_all(self.history.as_bytes()))
+            })?;
+        }
+        if has_flow(self.summary) {
+            output.write(SOURCES, |path| write_sources(path, &self.summary.steps))?;
+        }
+        output.write(SUMMARY, |path| self.summary.write(path))?;
+        output.sync()?;
+        self.output.close()
+    }
+}
+
+fn has_flow(summary: &Summary) -> bool {
+    summary.steps.iter().any(|step| step.flow.is_some())
+}
