@@ -137,7 +137,7 @@ fn number_below(section: &'static KeySection, path: &[&str]) -> Option<&'static 
     let (first, rest) = path.split_first()?;
     let key = section.key(first)?;
     match rest {
-        [] => Some(key).filter(|key| matches!(key.kind, Kind::Number(_))),
+        [] => Some(key).filter(|key| matches!(key.kind, Kind::Number(_) | Kind::NumberOr(..))),
         rest => number_below(key.kind.section()?, rest),
     }
 }

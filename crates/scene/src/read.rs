@@ -236,7 +236,7 @@ fn read_mesh(
             adapt,
         }),
         (None, Some(file)) => {
-            let Some(key) = idle_beside_file(&section, &parameters) else {
+            let Some(key) = idle_beside_file(&section, &parameters, order) else {
                 section.finish();
                 return Some(MeshSource::File(file));
             };
@@ -268,9 +268,12 @@ fn read_mesh(
 fn idle_beside_file(
     section: &Section<'_, '_>,
     parameters: &[(String, f64)],
+    order: Option<f64>,
 ) -> Option<&'static str> {
     let is_said = |key: &&'static str| match *key {
         "parameters" => !parameters.is_empty(),
+        // An order that does not exist is refused by itself.
+        "order" => order.is_some(),
         key => section.has(key),
     };
     let all = ["order", "dimension", "adapt", "parameters"];

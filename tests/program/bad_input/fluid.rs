@@ -31,23 +31,10 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
-        name: "walls that move",
-        scene: &[(
-            "[boundary.top]",
-            "[fluid]\nviscosity = 1e-3\n[boundary.top]",
-        )],
-        says: &[
-            "the walls of [fracture.joint] move",
-            "add hydraulic_aperture = 1e-4",
-            "leave out young_modulus everywhere",
-        ],
-        ..SOUND
-    },
-    Case {
         name: "no pressure and no source",
         scene: &[(
             "[boundary.top]",
-            "hydraulic_aperture = 1e-4\n[fluid]\nviscosity = 1e-3\n[boundary.top]",
+            "[fluid]\nviscosity = 1e-3\n[boundary.top]",
         )],
         says: &[
             "fracture `joint`: nothing drives a flow, and no pressure is given",

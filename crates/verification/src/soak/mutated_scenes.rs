@@ -5,7 +5,6 @@ use std::any::Any;
 use std::fs;
 use std::ops::Range;
 use std::panic::catch_unwind;
-use std::path::Path;
 
 use kluft_mesh::structured::{Patch, tetrahedra};
 use kluft_mesh::{Defect, Draft};
@@ -199,7 +198,9 @@ fn mutated(text: &str, random: &mut RandomStream) -> String {
 }
 
 fn parse(text: &str) -> Result<Scene, Vec<Defect>> {
-    Scene::parse(text, "scene.toml", Path::new("folder"))
+    // Where the samples are that a scene names.
+    let folder = root().join("geometries/scanned-joint");
+    Scene::parse(text, "scene.toml", &folder)
 }
 
 /// What is wrong with a refusal; nothing if each defect says what is wrong, where, and what to do.
