@@ -109,15 +109,26 @@ fn write_class(out: &mut String, section: &'static KeySection) {
         let _ = writeln!(
             out,
             "        {}: {} | None = None,",
-            key.name,
+            argument(key.name),
             annotation(&key.kind)
         );
     }
     out.push_str("    ) -> None:\n        super().__init__(\n");
     for key in &keys {
-        let _ = writeln!(out, "            {0}={0},", key.name);
+        let _ = match argument(key.name) {
+            same if same == key.name => writeln!(out, "            {same}={same},"),
+            other => writeln!(out, "            **{{\"{}\": {other}}},", key.name),
+        };
     }
     out.push_str("        )\n");
+}
+
+/// The name of the argument for a key: with an underscore behind what is a word of Python's own.
+fn argument(name: &str) -> String {
+    match name {
+        "from" | "in" | "is" | "as" | "global" | "lambda" | "with" => format!("{name}_"),
+        name => name.to_owned(),
+    }
 }
 
 /// A key with its unit, meaning, range and need.
@@ -140,7 +151,7 @@ fn write_meaning(out: &mut String, key: &Key) {
         Need::Default(value) => format!("Without it {value}"),
         Need::Without(what) => format!("Without it: {what}"),
     };
-    let text = format!("{}: {}{unit}{range}. {need}.", key.name, key.says);
+    let text = format!("{}: {}{unit}{range}. {need}.", argument(key.name), key.says);
     wrap(out, &text.replace('\\', "\\\\"));
 }
 
@@ -221,6 +232,7 @@ mod tests {
             "class Rock(",
             "young_modulus: Quantity | Varying | Mapping[str, Any] | None",
             "class SceneSections(",
+            "**{\"from\": from_},",
         ] {
             assert!(module.contains(found), "{found}");
         }

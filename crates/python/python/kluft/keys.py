@@ -31,7 +31,7 @@ class Probe(Section):
 
     Args:
         at: One point (m). This or `from` is required.
-        from: Where a line begins (m). This or `at` is required.
+        from_: Where a line begins (m). This or `at` is required.
         to: Where it ends (m). Without it: required with `from`.
         count: Points on the line, both ends included; 2 to 10000. Without it 11.
         across: Vector by which the last of `rows` lines is moved from the first: a plane (m).
@@ -46,7 +46,7 @@ class Probe(Section):
         self,
         *,
         at: Sequence[Quantity] | None = None,
-        from: Sequence[Quantity] | None = None,
+        from_: Sequence[Quantity] | None = None,
         to: Sequence[Quantity] | None = None,
         count: int | None = None,
         across: Sequence[Quantity] | None = None,
@@ -56,7 +56,7 @@ class Probe(Section):
     ) -> None:
         super().__init__(
             at=at,
-            from=from,
+            **{"from": from_},
             to=to,
             count=count,
             across=across,
@@ -328,7 +328,7 @@ class Source(Section):
         name: What messages and results call it. Without it: source number 1, 2, ....
         at: Where it is; the nearest node of a fracture is taken, and the run names it if it lies
             elsewhere (m). Required, unless there is `from` or `fracture`.
-        from: Where a borehole begins that is open to every fracture it crosses; its `pressure` is
+        from_: Where a borehole begins that is open to every fracture it crosses; its `pressure` is
             that here, and hydrostatic along it (m). Without it: `at`.
         to: Where it ends (m). Required, unless there is no `from`.
         fracture: The fracture all of which it feeds, a rate by area times transmissivity; no
@@ -345,7 +345,7 @@ class Source(Section):
         *,
         name: str | None = None,
         at: Sequence[Quantity] | None = None,
-        from: Sequence[Quantity] | None = None,
+        from_: Sequence[Quantity] | None = None,
         to: Sequence[Quantity] | None = None,
         fracture: str | None = None,
         rate: Quantity | None = None,
@@ -356,7 +356,7 @@ class Source(Section):
         super().__init__(
             name=name,
             at=at,
-            from=from,
+            **{"from": from_},
             to=to,
             fracture=fracture,
             rate=rate,
