@@ -1,10 +1,8 @@
 //! Facet points as the flow sees them: which pressures act there, what the aperture there conducts
 //! and stores.
 
-use glam::DVec3;
 use kluft_algebra::Lists;
 use kluft_mesh::Shape;
-use lie_core::facet_points;
 use rayon::prelude::*;
 
 use super::topology::Topology;
@@ -75,28 +73,19 @@ impl WallPoints {
         for (conducting, &facet) in (0..).zip(&topology.nodes.facets) {
             index[facet as usize] = conducting;
         }
-        // The points of a facet keep their order, wherever they stand.
-        let mut seen = vec![0_usize; elements.len()];
         let points = interface.points();
         let mut rows = Vec::with_capacity(points.len());
         let mut of_row = vec![Vec::new(); topology.nodes.len()];
         let mut of_facet = vec![Vec::new(); topology.nodes.facets.len()];
-        for (number, point) in (0..).zip(points) {
+        let numbered = (0..).zip(points).zip(interface.node_shares(mesh));
+        for ((number, point), own) in numbered {
             let facet = point.facet as usize;
-            let place = seen[facet];
-            seen[facet] += 1;
             if index[facet] == SEALED {
                 rows.push(Vec::new());
                 continue;
             }
-            let nodes = elements.nodes_of(facet).iter();
-            let nodes: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
-            let rule = interface.rule_of(point.fracture);
-            let shape = elements.shapes[facet];
-            let own = facet_points(shape, &nodes, rule).into_iter().nth(place);
-            let own = own.map_or_else(Vec::new, |own| own.nodes);
             let corners = topology.nodes.corners.of(index[facet] as usize);
-            let shares = corner_shares(shape, &own, corners);
+            let shares = corner_shares(elements.shapes[facet], &own, corners);
             for &(row, share) in &shares {
                 of_row[row as usize].push((number, point.area * share));
             }
