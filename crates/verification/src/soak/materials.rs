@@ -1,6 +1,5 @@
 //! Random materials on six junctions: one answer, whatever the linear solver and the load steps.
 
-use std::time::Duration;
 
 use kluft_solver::{LinearMethod, NewtonSettings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -107,15 +106,15 @@ impl Case {
 /// Runs the suite.
 pub fn run(asked: &Asked) -> Finding {
     let meshes = Meshes::none();
-    let limit = Duration::from_secs(match asked.effort {
-        Effort::Quick => 120,
-        Effort::Full => 300,
-    });
+    let most = match asked.effort {
+        Effort::Quick => 2000,
+        Effort::Full => 5000,
+    };
     let verdicts = each(asked.cases(3, 1000), |number| {
         let case = Case::of(number, asked.seed);
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.expect("a thread");
-        let ends = ends(&case, &meshes, &pool, limit);
+        let ends = ends(&case, &meshes, &pool, most);
         let mut verdict = judged(&case, &ends);
         if let Some(miss) = &mut verdict.miss {
             let name = format!("materials-{}-{number}.toml", asked.seed);
@@ -136,13 +135,13 @@ fn with_words(case: &Case, miss: &str) -> String {
     words + &case.text
 }
 
-/// How the runs of a case end; the first that is out of time is the last.
-fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool, limit: Duration) -> Vec<(Way, End)> {
+/// How the runs of a case end; the first that is out of iterations is the last.
+fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool, most: usize) -> Vec<(Way, End)> {
     let mut ends = Vec::new();
     for way in case.ways() {
         let draft = meshes.of(case.junction, case.fineness);
-        let end = solve(&case.scene(way), draft, pool, limit);
-        let is_last = matches!(end, End::OutOfTime);
+        let end = solve(&case.scene(way), draft, pool, most);
+        let is_last = matches!(end, End::OutOfIterations);
         ends.push((way, end));
         if is_last {
             break;
@@ -172,8 +171,8 @@ fn judged(case: &Case, ends: &[(Way, End)]) -> Verdict {
     if let Some(what) = first(panic_of) {
         return missed("panic", &what);
     }
-    if let Some(what) = first(|end| matches!(end, End::OutOfTime).then_some("stopped")) {
-        return missed("out of time", &what);
+    if let Some(what) = first(|end| matches!(end, End::OutOfIterations).then_some("stopped")) {
+        return missed("out of iterations", &what);
     }
     let solved = || {
         ends.iter().filter_map(|(way, end)| match end {

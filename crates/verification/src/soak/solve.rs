@@ -4,7 +4,6 @@ use std::any::Any;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use kluft_io::{Grid, Values};
 use kluft_mesh::{Defect, Draft};
@@ -24,8 +23,8 @@ pub enum End {
     Failed(String),
     /// The input has defects: the first.
     Refused(String),
-    /// It was stopped after its time.
-    OutOfTime,
+    /// It was stopped after its iterations.
+    OutOfIterations,
     /// It panicked, with these words.
     Panicked(String),
 }
@@ -41,25 +40,26 @@ pub struct Fields {
     pub is_declared: bool,
 }
 
-/// Stops a run after its time.
-struct Clock(Instant);
+/// Stops a run after so many iterations of Newton's method: the same on any machine.
+struct Countdown(usize);
 
-impl Observer for Clock {
+impl Observer for Countdown {
     fn iteration(&mut self, _number: usize, _iteration: &Iteration) -> ControlFlow<()> {
-        if Instant::now() < self.0 {
-            return ControlFlow::Continue(());
+        self.0 = self.0.saturating_sub(1);
+        match self.0 {
+            0 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
         }
-        ControlFlow::Break(())
     }
 }
 
-/// Runs a scene on a mesh for at most this time.
-pub fn solve(text: &str, draft: Draft, pool: &ThreadPool, limit: Duration) -> End {
-    let mut clock = Clock(Instant::now() + limit);
+/// Runs a scene on a mesh for at most so many iterations of Newton's method.
+pub fn solve(text: &str, draft: Draft, pool: &ThreadPool, most: usize) -> End {
+    let mut countdown = Countdown(most);
     let run = || -> Result<Outcome, Vec<Defect>> {
         let scene = Scene::parse(text, "scene.toml", Path::new("."))?;
         let mesh = MeshInput::Draft(Box::new(draft));
-        kluft_run::run(Request::in_memory(&scene, mesh, pool), &mut clock)
+        kluft_run::run(Request::in_memory(&scene, mesh, pool), &mut countdown)
     };
     catch_unwind(AssertUnwindSafe(run)).map_or_else(panicked, ended)
 }
@@ -74,7 +74,7 @@ fn ended(result: Result<Outcome, Vec<Defect>>) -> End {
         Ok(outcome) => match &outcome.ending {
             Ending::Solved | Ending::NothingLeft => End::Solved(fields(&outcome)),
             Ending::NotConverged(why) => End::Failed(kind_of(why)),
-            Ending::Stopped => End::OutOfTime,
+            Ending::Stopped => End::OutOfIterations,
         },
     }
 }
