@@ -10,10 +10,13 @@ use crate::conjugate_gradients::{
     ConjugateGradientOutcome as Outcome, ConjugateGradientReport as Report,
     ConjugateGradientSettings as Settings,
 };
-use crate::vectors::{PER_TASK, dot_of_tasks};
+use crate::vectors::{add_shares, dot_of_tasks, dots_of_tasks};
 
 /// Directions that are kept before the iteration starts anew from what it has.
 const RESTART: usize = 60;
+
+/// Share of its length below which what is left of a vector is made orthogonal again.
+const LITTLE: f64 = 0.1;
 
 /// Share of the residual that a whole cycle may leave.
 const STAGNANT: f64 = 0.3;
@@ -109,15 +112,22 @@ impl Krylov {
         let mut next = vec![DVec3::ZERO; image.len()];
         product(&image, &mut next);
         let mut column = vec![0.0; count + 1];
-        // Twice, because once loses orthogonality to rounding.
-        for _ in 0..2 {
-            for (entry, former) in column.iter_mut().zip(&self.basis) {
-                let share = dot_of_tasks(&next, former);
+        let mut before = dot_of_tasks(&next, &next).sqrt();
+        // Once more where little is left, because then rounding is not orthogonal (Giraud et al.
+        // 2005, "Rounding error analysis of the classical Gram-Schmidt orthogonalization process").
+        let length = loop {
+            let shares = dots_of_tasks(&self.basis, &next);
+            let opposite: Vec<f64> = shares.iter().map(|share| -share).collect();
+            add_shares(&opposite, &self.basis, &mut next);
+            for (entry, share) in column.iter_mut().zip(&shares) {
                 *entry += share;
-                add(-share, former, &mut next);
             }
-        }
-        let length = dot_of_tasks(&next, &next).sqrt();
+            let left = dot_of_tasks(&next, &next).sqrt();
+            if left > LITTLE * before || left <= f64::EPSILON * before || !left.is_finite() {
+                break left;
+            }
+            before = left;
+        };
         if length > 0.0 {
             next.par_iter_mut().for_each(|v| *v /= length);
         }
@@ -162,26 +172,8 @@ impl Krylov {
         if !shares.iter().all(|share| share.is_finite()) {
             return false;
         }
-        for (share, image) in shares.iter().zip(&self.images) {
-            add(*share, image, solution);
-        }
+        add_shares(&shares, &self.images, solution);
         true
-    }
-}
-
-/// Adds `share` times `from` to `to`.
-fn add(share: f64, from: &[DVec3], to: &mut [DVec3]) {
-    let add = |(to, from): (&mut [DVec3], &[DVec3])| {
-        for (to, from) in to.iter_mut().zip(from) {
-            *to += share * *from;
-        }
-    };
-    // Waking another thread costs more than a short vector.
-    if from.len() <= PER_TASK {
-        add((to, from));
-    } else {
-        let pairs = to.par_chunks_mut(PER_TASK).zip(from.par_chunks(PER_TASK));
-        pairs.for_each(add);
     }
 }
 

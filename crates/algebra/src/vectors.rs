@@ -35,6 +35,33 @@ pub(crate) fn dot_of_tasks(a: &[DVec3], b: &[DVec3]) -> f64 {
     sums.iter().sum()
 }
 
+/// Scalar products of vectors with one, as [`dot_of_tasks`].
+pub(crate) fn dots_of_tasks(vectors: &[Vec<DVec3>], with: &[DVec3]) -> Vec<f64> {
+    let tasks = with.par_chunks(PER_TASK).enumerate();
+    let sums = tasks.map(|(task, own)| -> Vec<f64> {
+        let start = task * PER_TASK;
+        let parts = vectors.iter().map(|v| &v[start..start + own.len()]);
+        parts.map(|part| dot(part, own)).collect()
+    });
+    let sums: Vec<Vec<f64>> = sums.collect();
+    let product = |i: usize| sums.iter().map(|of_task| of_task[i]).sum();
+    (0..vectors.len()).map(product).collect()
+}
+
+/// Adds shares of vectors to one.
+pub(crate) fn add_shares(shares: &[f64], vectors: &[Vec<DVec3>], to: &mut [DVec3]) {
+    let tasks = to.par_chunks_mut(PER_TASK).enumerate();
+    tasks.for_each(|(task, own)| {
+        let start = task * PER_TASK;
+        for (share, vector) in shares.iter().zip(vectors) {
+            let part = &vector[start..start + own.len()];
+            for (to, from) in own.iter_mut().zip(part) {
+                *to += *share * *from;
+            }
+        }
+    });
+}
+
 /// Sum of the diagonal of a block.
 pub fn trace(block: DMat3) -> f64 {
     block.x_axis.x + block.y_axis.y + block.z_axis.z

@@ -30,7 +30,7 @@ pub struct FlowBalance {
 }
 
 /// Rates below this share of the terms they are made of are their rounding.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING: f64 = 1e-15;
 
 impl FlowBalance {
     /// The balance of what enters through conditions and what is stored at nodes (m^3/s) with what

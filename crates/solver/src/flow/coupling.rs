@@ -56,8 +56,11 @@ pub struct Coupling<'a> {
 /// The fluid in a state.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct FluidState {
-    /// `p - rho g . x` at each node that has a pressure (Pa), nodes ascending.
+    /// `p - rho g . x` at each node that has a pressure (Pa), less the reference of its network;
+    /// nodes ascending.
     pub(crate) potentials: Vec<f64>,
+    /// What potentials are counted from in each network (Pa).
+    pub(crate) references: Vec<f64>,
     /// What belongs to each of them (m^3) at the end of the last increment.
     pub(crate) volumes: Vec<f64>,
     /// Aperture that each facet point conducts with (m).
@@ -97,15 +100,6 @@ pub(crate) struct FlowAtWalls {
     pub(crate) balance: FlowBalance,
     /// Flow through each condition.
     pub(crate) conditions: Vec<ConditionFlow>,
-}
-
-/// Apertures of all facet points (m).
-#[derive(Clone, Copy)]
-pub(crate) struct Walls<'a> {
-    /// That conduct.
-    pub(crate) conducting: &'a [f64],
-    /// That store.
-    pub(crate) storing: &'a [f64],
 }
 
 impl<'a> Coupling<'a> {
@@ -180,15 +174,15 @@ impl<'a> Coupling<'a> {
         load: &Load,
         displacement: f64,
     ) -> f64 {
-        let loaded = Loaded::of(&self.topology, load).counted_from_means();
         let mut volumes = [0.0; 2];
         let mut squares = [0.0; 2];
+        let pressures = [a, b].map(|fluid| self.pressures(fluid, load));
         for row in 0..self.nodes() {
             volumes[0] += (a.volumes[row] - b.volumes[row]).abs();
             volumes[1] += (b.volumes[row] - self.initial_volumes[row]).abs();
-            let pressure = b.potentials[row] + loaded.weight(row);
-            squares[0] += self.areas[row] * (a.potentials[row] - b.potentials[row]).powi(2);
-            squares[1] += self.areas[row] * (pressure - self.initial(row)).powi(2);
+            let [first, second] = [pressures[0][row], pressures[1][row]];
+            squares[0] += self.areas[row] * (first - second).powi(2);
+            squares[1] += self.areas[row] * (second - self.initial(row)).powi(2);
         }
         let area: f64 = self.areas.iter().sum();
         volumes[1] = volumes[1].max(LEAST_MOVED * area * displacement);
@@ -200,6 +194,7 @@ impl<'a> Coupling<'a> {
     pub(crate) fn fits(&self, fluid: &FluidState) -> bool {
         let conditions = self.topology.flow.conditions.len();
         [fluid.potentials.len(), fluid.volumes.len()] == [self.nodes(); 2]
+            && fluid.references.len() == self.topology.networks.len()
             && fluid.apertures.len() == self.hydraulic.len()
             && [fluid.conditions.len(), fluid.entered.len()] == [conditions; 2]
     }
@@ -216,6 +211,7 @@ impl<'a> Coupling<'a> {
         let conditions = self.topology.flow.conditions.len();
         FluidState {
             potentials: potentials.collect(),
+            references: loaded.references.clone(),
             volumes: self.initial_volumes.clone(),
             apertures: apertures.to_vec(),
             conditions: vec![none; conditions],
@@ -231,14 +227,28 @@ impl<'a> Coupling<'a> {
         self.topology.flow.initial_pressure.at_elevation(elevation)
     }
 
-    /// Potentials under another load: pressures stay, but those that are given.
-    pub(crate) fn move_load(&self, potentials: &mut [f64], from: &Load, to: &Load) {
-        let [from, to] =
-            [from, to].map(|load| Loaded::of(&self.topology, load).counted_from_means());
-        for (row, potential) in potentials.iter_mut().enumerate() {
+    /// Moves a fluid to another load: pressures stay, but those that are given.
+    pub(crate) fn move_load(&self, fluid: &mut FluidState, from: &Load, to: &Load) {
+        let pressures = self.pressures(fluid, from);
+        let to = Loaded::of(&self.topology, to).counted_from_means_of(pressures.iter().copied());
+        let from = self.loaded(fluid, from);
+        for (row, potential) in fluid.potentials.iter_mut().enumerate() {
             *potential += from.weight(row) - to.weight(row);
         }
-        to.set_given(potentials);
+        to.set_given(&mut fluid.potentials);
+        fluid.references = to.references;
+    }
+
+    /// The load of a fluid, with potentials counted as it has them.
+    pub(super) fn loaded<'s>(&'s self, fluid: &FluidState, load: &'s Load) -> Loaded<'s, 'a> {
+        Loaded::of(&self.topology, load).counted_from(&fluid.references)
+    }
+
+    /// Pressures of a fluid under a load (Pa), nodes ascending.
+    pub(crate) fn pressures(&self, fluid: &FluidState, load: &Load) -> Vec<f64> {
+        let loaded = self.loaded(fluid, load);
+        let rows = fluid.potentials.iter().enumerate();
+        rows.map(|(row, phi)| phi + loaded.weight(row)).collect()
     }
 
     /// Potentials of the steady flow under a load through walls as far apart as they are; none if
@@ -250,7 +260,7 @@ impl<'a> Coupling<'a> {
         let mut system = self.system(fluid);
         system.factorise().ok()?;
         let state = system.solve(load).ok()?;
-        let loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let loaded = self.loaded(fluid, load);
         let rows = state.pressures.iter().enumerate();
         Some(rows.map(|(row, p)| p - loaded.weight(row)).collect())
     }
@@ -280,23 +290,23 @@ impl<'a> Coupling<'a> {
     }
 
     /// Pressure at each facet point (Pa); 0 where nothing flows.
-    pub(crate) fn point_pressures(&self, potentials: &[f64], load: &Load) -> Vec<f64> {
-        let loaded = Loaded::of(&self.topology, load).counted_from_means();
-        self.points
-            .at_points(|row| potentials[row] + loaded.weight(row))
+    pub(crate) fn point_pressures(&self, fluid: &FluidState, load: &Load) -> Vec<f64> {
+        let pressures = self.pressures(fluid, load);
+        self.points.at_points(|row| pressures[row])
     }
 
-    /// The flow at apertures and potentials in an increment to a load.
+    /// The flow of a fluid in an increment to a load, between walls that store at these apertures
+    /// (m).
     pub(crate) fn at(
         &self,
-        walls: Walls<'_>,
-        potentials: &[f64],
+        fluid: &FluidState,
+        storing: &[f64],
         (increment, load): (&FlowIncrement, &Load),
     ) -> FlowAtWalls {
         let viscosity = self.topology.flow.fluid.viscosity;
         let conduction = |point: usize| {
             let hydraulic = self.hydraulic[point];
-            hydraulic.map(|hydraulic| hydraulic.at(walls.conducting[point]))
+            hydraulic.map(|hydraulic| hydraulic.at(fluid.apertures[point]))
         };
         let transmissivity = self.points.at_facets(|point| {
             conduction(point).map_or(0.0, |conduction| conduction.transmissivity(viscosity))
@@ -308,13 +318,14 @@ impl<'a> Coupling<'a> {
         } = &*self.topology;
         let conductance = Conductance::of(nodes, stencils, transmissivity);
         let operator = FlowOperator::of(&self.topology, conductance);
-        let mut loaded = Loaded::of(&self.topology, load).counted_from_means();
+        let mut loaded = self.loaded(fluid, load);
+        let potentials = &fluid.potentials;
         let compressibility = self.topology.flow.fluid.compressibility;
         let density = potentials.iter().enumerate().map(|(row, potential)| {
             1.0 + compressibility * (potential + loaded.weight(row) - self.initial(row))
         });
         let density: Vec<f64> = density.collect();
-        let spaces = self.points.at_rows(walls.storing);
+        let spaces = self.points.at_rows(storing);
         let volumes = density.iter().zip(&spaces).map(|(rho, space)| rho * space);
         let volumes: Vec<f64> = volumes.collect();
         if let Some(duration) = increment.duration {
@@ -325,7 +336,7 @@ impl<'a> Coupling<'a> {
             });
         }
         let missing = loaded.missing(&operator, potentials);
-        let state = loaded.state(&operator, potentials.to_vec());
+        let state = loaded.state(&operator, potentials.clone());
         FlowAtWalls {
             slopes: (0..self.hydraulic.len()).map(slope).collect(),
             balance: state.balance,
@@ -355,10 +366,8 @@ impl<'a> Coupling<'a> {
 
     /// The flow in a state under a load, for results.
     pub fn state(&self, fluid: &FluidState, load: &Load) -> FlowState {
-        let loaded = Loaded::of(&self.topology, load).counted_from_means();
-        let rows = fluid.potentials.iter().enumerate();
         FlowState {
-            pressures: rows.map(|(row, phi)| phi + loaded.weight(row)).collect(),
+            pressures: self.pressures(fluid, load),
             potentials: fluid.potentials.clone(),
             conditions: fluid.conditions.clone(),
             entered: fluid.entered.clone(),

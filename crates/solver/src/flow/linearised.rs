@@ -13,8 +13,7 @@
 use kluft_algebra::{LinearFailure, ScalarCholesky, ScalarMatrix};
 use rayon::prelude::*;
 
-use super::coupling::{Coupling, FlowAtWalls, FlowIncrement};
-use super::loaded::Loaded;
+use super::coupling::{Coupling, FlowAtWalls, FlowIncrement, FluidState};
 use super::places::Place;
 use crate::problem::Load;
 
@@ -32,12 +31,12 @@ pub(crate) struct LinearisedFlow<'s, 'a> {
 }
 
 impl<'a> Coupling<'a> {
-    /// The flow at some walls, linearised in an increment; `potentials` (Pa) are those it is at,
+    /// The flow at some walls, linearised in an increment; `fluid` is that it is of,
     /// `load` that at the end of the increment.
     pub(crate) fn linearised<'s>(
         &'s self,
         flow: &'s FlowAtWalls,
-        potentials: &[f64],
+        fluid: &FluidState,
         (increment, load): (&FlowIncrement, &Load),
     ) -> LinearisedFlow<'s, 'a> {
         let compressibility = self.topology.flow.fluid.compressibility;
@@ -46,13 +45,14 @@ impl<'a> Coupling<'a> {
         LinearisedFlow {
             matrix: flow.operator.free_matrix(&self.topology, stored),
             storing: flow.density.iter().map(|density| rate * density).collect(),
-            gradients: Some(self.gradients(potentials, load)),
+            gradients: Some(self.gradients(fluid, load)),
             coupling: self,
             flow,
         }
     }
 
-    fn gradients(&self, potentials: &[f64], load: &Load) -> Vec<Vec<f64>> {
+    fn gradients(&self, fluid: &FluidState, load: &Load) -> Vec<Vec<f64>> {
+        let potentials = &fluid.potentials;
         let topology = &self.topology;
         let nodes = &topology.nodes;
         let rows = (0..nodes.len()).into_par_iter();
@@ -74,7 +74,7 @@ impl<'a> Coupling<'a> {
                 facets.map(gradient).collect()
             })
             .collect();
-        let loaded = Loaded::of(topology, load).counted_from_means();
+        let loaded = self.loaded(fluid, load);
         for (place, condition) in topology.places.iter().zip(&topology.flow.conditions) {
             let Place::Well(well) = place else {
                 continue;

@@ -27,7 +27,7 @@ pub(super) struct Loaded<'s, 'a> {
     topology: &'s Topology<'a>,
     load: &'s Load,
     /// What potentials are counted from in each network (Pa).
-    references: Vec<f64>,
+    pub(super) references: Vec<f64>,
     /// What is stored at each row (m^3/s), if the flow takes time.
     pub(super) stored: Option<Stored>,
 }
@@ -53,7 +53,15 @@ impl<'s, 'a> Loaded<'s, 'a> {
 
     /// Counts potentials from the mean of those that are given to each network, and elsewhere from
     /// the initial pressure.
-    pub(super) fn counted_from_means(mut self) -> Self {
+    pub(super) fn counted_from_means(self) -> Self {
+        let elsewhere = self.topology.flow.initial_pressure.value;
+        let elsewhere = vec![elsewhere; self.references.len()];
+        self.counted_from_given(&elsewhere)
+    }
+
+    /// Counts potentials from the mean of those that are given to each network, else from
+    /// `elsewhere` (Pa).
+    fn counted_from_given(mut self, elsewhere: &[f64]) -> Self {
         let mut sums = vec![(0.0, 0_usize); self.references.len()];
         for (place, condition) in self.places() {
             if !condition.drive.is_pressure() {
@@ -69,13 +77,35 @@ impl<'s, 'a> Loaded<'s, 'a> {
                 *count += 1;
             }
         }
-        let elsewhere = self.topology.flow.initial_pressure.value;
-        let mean = |(sum, count): (f64, usize)| match count {
-            0 => elsewhere,
+        let pairs = sums.into_iter().zip(elsewhere);
+        let mean = |((sum, count), elsewhere): ((f64, usize), &f64)| match count {
+            0 => *elsewhere,
             _ => sum / count as f64,
         };
-        self.references = sums.into_iter().map(mean).collect();
+        self.references = pairs.map(mean).collect();
         self
+    }
+
+    /// Counts potentials from given pressures, one of each network (Pa).
+    pub(super) fn counted_from(mut self, references: &[f64]) -> Self {
+        self.references = references.to_vec();
+        self
+    }
+
+    /// Counts potentials from the mean of those that are given to each network, and elsewhere from
+    /// that of `pressures` (Pa), less the weight of the fluid: what is stored of a potential is
+    /// as exact as the differences that drive the flow.
+    pub(super) fn counted_from_means_of(self, pressures: impl Iterator<Item = f64>) -> Self {
+        let mut sums = vec![(0.0, 0_usize); self.references.len()];
+        for (row, pressure) in pressures.enumerate() {
+            let (sum, count) = &mut sums[self.topology.network_of_row[row] as usize];
+            *sum += pressure - self.weight(row);
+            *count += 1;
+        }
+        let means = sums
+            .into_iter()
+            .map(|(sum, count)| sum / count.max(1) as f64);
+        self.counted_from_given(&means.collect::<Vec<f64>>())
     }
 
     /// Sets the potentials that are given.

@@ -49,7 +49,7 @@ mod wells;
 
 pub use balance::{ConditionFlow, FlowBalance};
 pub use coupling::{Coupling, FluidState};
-pub(crate) use coupling::{FlowAtWalls, FlowIncrement, Walls};
+pub(crate) use coupling::{FlowAtWalls, FlowIncrement};
 pub use fields::FlowFields;
 pub(crate) use linearised::LinearisedFlow;
 pub use loaded::FlowState;

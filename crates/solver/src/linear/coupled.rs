@@ -180,6 +180,19 @@ impl CoupledTangent<'_, '_> {
         }
     }
 
+    /// The change that leaves nothing missing if every unknown answers by itself.
+    pub(super) fn conserving(
+        &self,
+        factor: &ScalarCholesky,
+        missing: &[f64],
+    ) -> (Vec<DVec3>, Vec<f64>) {
+        let pressures = factor.solve(missing);
+        let mut push = vec![DVec3::ZERO; self.fixed.matrix.rows()];
+        let of_points = self.flow.point_pressures(&pressures);
+        self.interface.add_pressures(&of_points, &mut push);
+        (self.alone(&push), pressures)
+    }
+
     /// Factors of forces (1/N) and rates (s/m^3) that make what may be left of each 1. Either may
     /// be in balance as long as the other is not, so each counts with what the other makes of it.
     fn scales(&self, factor: Option<&ScalarCholesky>, rhs: &CoupledRhs<'_>) -> [f64; 2] {

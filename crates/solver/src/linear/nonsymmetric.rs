@@ -71,12 +71,7 @@ impl NonsymmetricSolver {
         flow: &LinearisedFlow<'_, '_>,
         rhs: &CoupledRhs<'_>,
     ) -> Result<CoupledSolution, LinearFailure> {
-        let tangent = |stiffness| CoupledTangent {
-            fixed: system.fixed_part(),
-            interface: &system.discretisation.interface,
-            stiffness,
-            flow,
-        };
+        let tangent = |stiffness| coupled(system, stiffness, flow);
         tangent(&self.positive).factorise(&mut self.pressures)?;
         let exact = self.exact.as_ref().unwrap_or(&self.positive);
         let (tangent, factor) = (tangent(exact), self.pressures.as_ref());
@@ -88,6 +83,24 @@ impl NonsymmetricSolver {
             }
             done => done,
         }
+    }
+
+    /// A change that leaves nothing missing in a flow where every unknown and pressure answers as
+    /// the preconditioner of the last coupled solve has it; none before the first.
+    pub(crate) fn conserving(
+        &self,
+        system: &System<'_>,
+        flow: &LinearisedFlow<'_, '_>,
+        missing: &[f64],
+    ) -> Option<CoupledSolution> {
+        let factor = self.pressures.as_ref()?;
+        let tangent = coupled(system, &self.positive, flow);
+        let (unknowns, potentials) = tangent.conserving(factor, missing);
+        Some(CoupledSolution {
+            unknowns,
+            potentials,
+            iterations: 0,
+        })
     }
 
     /// Solves with the positive tangents for the forces `rhs` (N), to `tolerance` times their norm.
@@ -188,5 +201,19 @@ impl NonsymmetricSolver {
             }),
             _ => Err(LinearFailure::Stalled(report.iterations)),
         }
+    }
+}
+
+/// The tangent of rock and flow, for a stiffness of the fractures.
+fn coupled<'s, 'a>(
+    system: &'s System<'_>,
+    stiffness: &'s [DMat3],
+    flow: &'s LinearisedFlow<'s, 'a>,
+) -> CoupledTangent<'s, 'a> {
+    CoupledTangent {
+        fixed: system.fixed_part(),
+        interface: &system.discretisation.interface,
+        stiffness,
+        flow,
     }
 }

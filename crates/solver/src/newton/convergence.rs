@@ -34,29 +34,50 @@ impl NewtonSettings {
         iterate: &Iterate,
         iteration: &Iteration,
     ) -> bool {
+        self.unmet(system, iterate, iteration) == Unmet::Nothing
+    }
+
+    /// Which tests do not hold.
+    pub(super) fn unmet(
+        &self,
+        system: &System<'_>,
+        iterate: &Iterate,
+        iteration: &Iteration,
+    ) -> Unmet {
         let increment = if system.is_smooth() {
             self.increment
         } else {
             INCREMENT_AT_KINKS * self.increment
         };
-        if system.is_nonlinear()
-            && iteration.increment.max(iteration.pressure_increment) > increment
-        {
-            return false;
-        }
-        let rounding_of_flow = iterate
-            .flow
-            .as_ref()
-            .map_or(0.0, |flow| flow.at.balance.rounding);
-        if iteration.mass_error > self.mass.max(rounding_of_flow) {
-            return false;
+        let change = iteration.increment.max(iteration.pressure_increment);
+        if system.is_nonlinear() && change > increment {
+            return Unmet::Others;
         }
         let is_below = |share: f64| {
             iteration.force_residual <= self.force.max(share)
                 && iteration.closure_error <= self.closure.max(share)
         };
-        is_below(0.0) || (is_below(MOST_ROUNDING) && is_below(rounding(system, iterate)))
+        let is_balanced =
+            is_below(0.0) || (is_below(MOST_ROUNDING) && is_below(rounding(system, iterate)));
+        let balance = iterate.flow.as_ref().map(|flow| flow.at.balance);
+        let rounding_of_flow = balance.map_or(0.0, |balance| balance.rounding);
+        match iteration.mass_error > self.mass.max(rounding_of_flow) {
+            _ if !is_balanced => Unmet::Others,
+            true => Unmet::Mass,
+            false => Unmet::Nothing,
+        }
     }
+}
+
+/// Tests of convergence that do not hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unmet {
+    /// None.
+    Nothing,
+    /// That of the mass of a flow only.
+    Mass,
+    /// Others.
+    Others,
 }
 
 /// What rounding alone leaves out of balance, against the largest force. Stiff rock that rides on
@@ -117,12 +138,15 @@ fn sizes(system: &System<'_>, iterate: &Iterate, tractions: &[DVec3]) -> StateSc
     // A body that does not move may still hold joints closed by its initial stress.
     let points = state.facet_points.iter();
     let openings = points.map(|point| point.joint.separation.opening.abs());
-    let moved = iterate.flow.as_ref().zip(state.fluid.as_ref());
+    let fluid = system.coupling().zip(state.fluid.as_ref());
+    let moved = iterate.flow.as_ref().zip(fluid);
     StateScales {
         force: system.force_scale(&iterate.rock_forces, tractions, &state.load),
         displacement: openings.fold(largest(&displacements), f64::max),
         traction: largest(tractions).max(RECLOSING_SHARE * reclosing_traction(system, state)),
-        pressure: moved.map_or(0.0, |(flow, fluid)| flow.moved(fluid)),
+        pressure: moved.map_or(0.0, |(flow, (coupling, fluid))| {
+            flow.moved(coupling, fluid, &state.load)
+        }),
     }
 }
 

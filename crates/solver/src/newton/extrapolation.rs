@@ -4,7 +4,7 @@
 //! if there are several load cases. Both enter the balance of forces linearly, so the guess is in
 //! balance with the loads continued alike; all that is wrong with it is how far the apertures are
 //! from the law, and how far the loads are from their own continuation. A path is not continued
-//! around a corner.
+//! around a corner. Pressures of a fluid that follows the walls are continued with them.
 
 use std::collections::VecDeque;
 
@@ -14,6 +14,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::facet_points::interface;
+use super::fluid;
+use crate::flow::Coupling;
 use crate::problem::Load;
 use crate::system::{FacetPointState, State, System};
 
@@ -35,6 +37,8 @@ struct Former {
     unknowns: Vec<DVec3>,
     /// Tractions of the laws (Pa).
     tractions: Vec<DVec3>,
+    /// Potentials of the fluid and what they are counted from (Pa), if there is one.
+    potentials: [Vec<f64>; 2],
 }
 
 /// Weights of the states of a path.
@@ -45,31 +49,66 @@ struct Weights {
     former: Vec<f64>,
 }
 
+impl Former {
+    fn of(system: &System<'_>, state: &State) -> Self {
+        Self {
+            load: state.load.clone(),
+            unknowns: state.unknowns.clone(),
+            tractions: system.law_tractions(state),
+            potentials: fluid::potentials(state).map(<[f64]>::to_vec),
+        }
+    }
+}
+
 impl Path {
     /// Remembers a converged state that a step has left.
     pub(super) fn remember(&mut self, system: &System<'_>, state: &State) {
         self.0.truncate(FORMER_STATES - 1);
-        self.0.push_front(Former {
-            load: state.load.clone(),
-            unknowns: state.unknowns.clone(),
-            tractions: system.law_tractions(state),
-        });
+        self.0.push_front(Former::of(system, state));
     }
 
-    /// Whether its states are of these numbers of unknowns and facet points.
-    pub(super) fn fits(&self, unknowns: usize, facet_points: usize) -> bool {
+    /// Lets the path lead to a state that is only an estimate, until [`Self::lead_on`].
+    pub(super) fn lead_to(&mut self, system: &System<'_>, estimate: &State) {
+        self.0.push_front(Former::of(system, estimate));
+    }
+
+    /// Forgets the estimate.
+    pub(super) fn lead_on(&mut self) {
+        self.0.pop_front();
+    }
+
+    /// Number of its states.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether its states have as many numbers as one.
+    pub(super) fn fits(&self, state: &State) -> bool {
+        let counts = fluid::potentials(state).map(<[f64]>::len);
         let mut formers = self.0.iter();
-        formers.all(|f| f.unknowns.len() == unknowns && f.tractions.len() == facet_points)
+        formers.all(|former| {
+            former.unknowns.len() == state.unknowns.len()
+                && former.tractions.len() == state.facet_points.len()
+                && [0, 1].map(|part| former.potentials[part].len()) == counts
+        })
     }
 
-    /// Continues the path through `state` to `load`, or close to it, if there is one and `load` is
-    /// not too far.
-    pub(super) fn continue_through(&self, system: &System<'_>, state: &mut State, load: &Load) {
+    /// Continues the path through `state` to `load`, or close to it, by at most `most` former
+    /// states, if there is one and `load` is not too far; returns by how many.
+    pub(super) fn continue_through(
+        &self,
+        system: &System<'_>,
+        state: &mut State,
+        load: &Load,
+        most: usize,
+    ) -> usize {
         let smooth = system.is_smooth();
-        let Some(weights) = self.weights(&state.load, load).filter(|_| smooth) else {
-            return;
+        let abscissa = abscissa(system.coupling().is_some_and(Coupling::is_transient));
+        let weights = self.weights(abscissa, [&state.load, load], most);
+        let Some(weights) = weights.filter(|_| smooth) else {
+            return 0;
         };
-        let continued = self.continued(&state.load, load, &weights);
+        let continued = self.continued([&state.load, load], &weights);
         let own = weights.present;
         let formers = || self.0.iter().zip(&weights.former);
         let tractions: Vec<DVec3> = system
@@ -84,6 +123,18 @@ impl Path {
         unknowns.for_each(|(i, now)| {
             *now = own * *now + formers().map(|(f, w)| *w * f.unknowns[i]).sum::<DVec3>();
         });
+        let part = |part: usize, now: &[f64]| -> Vec<f64> {
+            let sum = |i| {
+                formers()
+                    .map(|(f, w)| w * f.potentials[part][i])
+                    .sum::<f64>()
+            };
+            let now = now.iter().enumerate();
+            now.map(|(i, now)| own * now + sum(i)).collect()
+        };
+        let [potentials, references] = fluid::potentials(state);
+        let potentials = [part(0, potentials), part(1, references)];
+        fluid::set_potentials(state, potentials);
         state.load = continued;
         let after = interface.jumps(&state.unknowns, &state.load);
         for (index, point) in interface.points.iter().enumerate() {
@@ -97,19 +148,23 @@ impl Path {
                 tractions[index],
             );
         }
+        fluid::conduct(system, state);
+        weights.former.len()
     }
 
-    /// Lagrange's weights of the present state and of the former ones, of as many as are close
-    /// enough together and continue the loads as they are; none if there is nothing to continue.
-    fn weights(&self, present: &Load, load: &Load) -> Option<Weights> {
-        (1..=self.0.len()).rev().find_map(|count| {
+    /// Lagrange's weights of the present state and of the former ones at a load, of as many up to
+    /// `most` as are close enough together and continue the loads as they are; none if there is
+    /// nothing to continue. States are a function of the `abscissa` of their loads.
+    fn weights(
+        &self,
+        abscissa: fn(&Load) -> f64,
+        [present, load]: [&Load; 2],
+        most: usize,
+    ) -> Option<Weights> {
+        (1..=self.0.len().min(most)).rev().find_map(|count| {
             let formers = self.0.iter().take(count).map(|former| &former.load);
-            let points: Vec<f64> = [present]
-                .into_iter()
-                .chain(formers)
-                .map(Load::abscissa)
-                .collect();
-            let all = lagrange(&points, load.abscissa());
+            let points: Vec<f64> = [present].into_iter().chain(formers).map(abscissa).collect();
+            let all = lagrange(&points, abscissa(load));
             // Two states at one point have infinite weights, or none that are numbers.
             let size: f64 = all.iter().map(|weight| weight.abs()).sum();
             let weights = Weights {
@@ -117,7 +172,7 @@ impl Path {
                 former: all[1..].to_vec(),
             };
             let continues = || {
-                let continued = self.continued(present, load, &weights);
+                let continued = self.continued([present, load], &weights);
                 continued.distance(load) <= LARGEST_LOAD_ERROR * present.distance(load)
             };
             (size <= LARGEST_WEIGHTS && continues()).then_some(weights)
@@ -125,7 +180,7 @@ impl Path {
     }
 
     /// The load that the path leads to on the way to `load`.
-    fn continued(&self, present: &Load, load: &Load, weights: &Weights) -> Load {
+    fn continued(&self, [present, load]: [&Load; 2], weights: &Weights) -> Load {
         // A single factor is continued to itself; rounding would only spoil it.
         if load.single_factor().is_some() {
             return load.clone();
@@ -133,6 +188,16 @@ impl Path {
         let formers = self.0.iter().zip(&weights.former);
         let terms = formers.map(|(former, weight)| (*weight, &former.load));
         Load::combination([(weights.present, present)].into_iter().chain(terms))
+    }
+}
+
+/// What a path of states is a function of: time if a flow takes it, or if there are several load
+/// cases, else the factor of the only one.
+fn abscissa(flow_takes_time: bool) -> fn(&Load) -> f64 {
+    if flow_takes_time {
+        |load| load.time
+    } else {
+        |load| load.single_factor().unwrap_or(load.time)
     }
 }
 
@@ -187,6 +252,7 @@ mod tests {
             load,
             unknowns: Vec::new(),
             tractions: Vec::new(),
+            potentials: [Vec::new(), Vec::new()],
         };
         Path(loads.into_iter().map(former).collect())
     }
@@ -197,7 +263,8 @@ mod tests {
 
     impl Path {
         fn weights_at(&self, present: f64, load: f64) -> Option<Weights> {
-            self.weights(&Load::proportional(present), &Load::proportional(load))
+            let loads = [present, load].map(Load::proportional);
+            self.weights(abscissa(false), [&loads[0], &loads[1]], FORMER_STATES)
         }
     }
 
@@ -243,24 +310,43 @@ mod tests {
         let straight = loads(&[[3.0, 3.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 1.0]]);
         let further = loads(&[[4.0, 4.0, 1.0], [4.0, 3.0, 2.0], [4.0, 3.0, 1.0]]);
         let path = path_of(straight[1..].to_vec());
-        let weights = path.weights(&straight[0], &further[0]).expect("a path");
+        let weights = path
+            .weights(abscissa(false), [&straight[0], &further[0]], FORMER_STATES)
+            .expect("a path");
         let expected = Weights {
             present: 3.0,
             former: vec![-3.0, 1.0],
         };
         assert_eq!(weights, expected);
-        let continued = path.continued(&straight[0], &further[0], &weights);
+        let continued = path.continued([&straight[0], &further[0]], &weights);
         assert_eq!(continued, further[0]);
         for corner in &further[1..] {
-            assert!(path.weights(&straight[0], corner).is_none());
+            assert!(
+                path.weights(abscissa(false), [&straight[0], corner], FORMER_STATES)
+                    .is_none()
+            );
         }
+    }
+
+    #[test]
+    fn one_case_is_followed_by_its_factor_and_several_or_a_flow_by_time() {
+        let [one, two] = [vec![0.5], vec![0.5, 1.0]].map(|factors| Load { time: 3.0, factors });
+        assert_eq!(abscissa(false)(&one), 0.5);
+        assert_eq!(abscissa(false)(&two), 3.0);
+        assert_eq!(abscissa(true)(&one), 3.0);
     }
 
     #[test]
     fn two_states_of_one_time_are_never_used_together() {
         let same = loads(&[[1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]]);
         let path = path_of(same[..1].to_vec());
-        assert!(path.weights(&same[1], &same[2]).is_none());
-        assert!(path.weights(&same[1], &same[1]).is_none());
+        assert!(
+            path.weights(abscissa(false), [&same[1], &same[2]], FORMER_STATES)
+                .is_none()
+        );
+        assert!(
+            path.weights(abscissa(false), [&same[1], &same[1]], FORMER_STATES)
+                .is_none()
+        );
     }
 }

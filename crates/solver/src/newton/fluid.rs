@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::facet_points::interface;
-use crate::flow::{Coupling, FlowAtWalls, FlowIncrement, FluidState, LinearisedFlow, Walls};
+use crate::flow::{Coupling, FlowAtWalls, FlowIncrement, FluidState, LinearisedFlow};
 use crate::problem::Load;
 use crate::system::{State, System};
 
@@ -20,7 +20,7 @@ const FAR: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub(super) struct FlowIterate {
     increment: Arc<FlowIncrement>,
-    /// Pressures that the increment began with, at each node that has one (Pa).
+    /// Pressures that the increment began with, nodes ascending (Pa).
     start: Arc<Vec<f64>>,
     /// Where it stands.
     pub(super) at: Arc<FlowAtWalls>,
@@ -28,24 +28,60 @@ pub(super) struct FlowIterate {
     pub(super) change: f64,
 }
 
-/// Moves the fluid of a state, which stands under the load `from` at its end, to the load of the
-/// state, and finds the flow there; none without a flow that follows the walls.
-pub(super) fn begin(system: &System<'_>, state: &mut State, from: &Load) -> Option<FlowIterate> {
+/// The flow of an increment from a state to a guess, which stands under its load at the end; none
+/// without a flow that follows the walls.
+pub(super) fn begin(system: &System<'_>, from: &State, guess: &mut State) -> Option<FlowIterate> {
     let coupling = system.coupling()?;
-    let fluid = state.fluid.as_mut()?;
-    let increment = coupling.increment(fluid, from, &state.load);
-    let start = fluid.potentials.clone();
-    match coupling.steady(fluid, &state.load) {
-        Some(steady) => fluid.potentials = steady,
-        None => coupling.move_load(&mut fluid.potentials, from, &state.load),
+    let fluid = guess.fluid.as_mut()?;
+    let increment = coupling.increment(fluid, &from.load, &guess.load);
+    if let Some(steady) = coupling.steady(fluid, &guess.load) {
+        fluid.potentials = steady;
     }
-    let at = at(system, coupling, state, &increment)?;
+    let start = from.fluid.as_ref();
+    let start = start.map_or_else(Vec::new, |fluid| coupling.pressures(fluid, &from.load));
+    let at = at(system, coupling, guess, &increment)?;
     Some(FlowIterate {
         increment: Arc::new(increment),
         start: Arc::new(start),
         at: Arc::new(at),
         change: 0.0,
     })
+}
+
+/// Moves the fluid of a state to another load: pressures stay, but those that are given.
+pub(super) fn move_load(system: &System<'_>, state: &mut State, load: &Load) {
+    if let Some((coupling, fluid)) = system.coupling().zip(state.fluid.as_mut()) {
+        coupling.move_load(fluid, &state.load, load);
+    }
+}
+
+/// Potentials of the fluid of a state and what they are counted from (Pa); none without a fluid
+/// that follows the walls.
+pub(super) fn potentials(state: &State) -> [&[f64]; 2] {
+    let fluid = state.fluid.as_ref();
+    fluid.map_or([&[]; 2], |fluid| [&fluid.potentials, &fluid.references])
+}
+
+/// Replaces what [`potentials`] gives.
+pub(super) fn set_potentials(state: &mut State, [potentials, references]: [Vec<f64>; 2]) {
+    if let Some(fluid) = &mut state.fluid {
+        fluid.potentials = potentials;
+        fluid.references = references;
+    }
+}
+
+/// Lets the fluid of a state conduct where the walls are.
+pub(super) fn conduct(system: &System<'_>, state: &mut State) {
+    let reached = apertures(system, state);
+    if let Some((coupling, fluid)) = system.coupling().zip(state.fluid.as_mut()) {
+        fluid.apertures = coupling.conducting(&fluid.apertures, &reached);
+    }
+}
+
+/// Mass error of a guess for an increment from a state.
+pub(super) fn mass_error(system: &System<'_>, from: &State, guess: &State) -> f64 {
+    let begun = begin(system, from, &mut guess.clone());
+    begun.map_or(f64::INFINITY, |flow| flow.at.balance.mass_error)
 }
 
 /// Apertures at the jumps of the walls (m).
@@ -64,23 +100,19 @@ fn at(
     increment: &FlowIncrement,
 ) -> Option<FlowAtWalls> {
     let fluid = state.fluid.as_ref()?;
-    let walls = Walls {
-        conducting: &fluid.apertures,
-        storing: &apertures(system, state),
-    };
-    Some(coupling.at(walls, &fluid.potentials, (increment, &state.load)))
+    let storing = apertures(system, state);
+    Some(coupling.at(fluid, &storing, (increment, &state.load)))
 }
 
 impl FlowIterate {
     /// Adds changes of the pressures that are not given (Pa), and follows the walls of a state to
     /// where they are.
     pub(super) fn follow(&mut self, system: &System<'_>, state: &mut State, changes: &[f64]) {
-        let reached = apertures(system, state);
+        conduct(system, state);
         let (Some(coupling), Some(fluid)) = (system.coupling(), state.fluid.as_mut()) else {
             return;
         };
         coupling.add(&mut fluid.potentials, changes);
-        fluid.apertures = coupling.conducting(&fluid.apertures, &reached);
         self.change = changes
             .iter()
             .fold(0.0, |most, change| most.max(change.abs()));
@@ -96,7 +128,7 @@ impl FlowIterate {
         fluid: &FluidState,
         load: &Load,
     ) -> LinearisedFlow<'s, 'a> {
-        coupling.linearised(&self.at, &fluid.potentials, (&self.increment, load))
+        coupling.linearised(&self.at, fluid, (&self.increment, load))
     }
 
     /// Makes a converged flow the one that the next increment starts from.
@@ -104,9 +136,11 @@ impl FlowIterate {
         coupling.commit(fluid, &self.at, &self.increment);
     }
 
-    /// Largest difference of a potential of the fluid from what the increment began with (Pa).
-    pub(super) fn moved(&self, fluid: &FluidState) -> f64 {
-        let pairs = fluid.potentials.iter().zip(&*self.start);
+    /// Largest difference of a pressure of the fluid under a load from what the increment began
+    /// with (Pa).
+    pub(super) fn moved(&self, coupling: &Coupling<'_>, fluid: &FluidState, load: &Load) -> f64 {
+        let pressures = coupling.pressures(fluid, load);
+        let pairs = pressures.iter().zip(&*self.start);
         pairs.fold(0.0, |most, (now, then)| most.max((now - then).abs()))
     }
 }
@@ -118,7 +152,7 @@ pub(super) fn total_tractions(
     mut tractions: Vec<DVec3>,
 ) -> Vec<DVec3> {
     if let (Some(coupling), Some(fluid)) = (system.coupling(), &state.fluid) {
-        let pressures = coupling.point_pressures(&fluid.potentials, &state.load);
+        let pressures = coupling.point_pressures(fluid, &state.load);
         let points = interface(system).points.iter().zip(pressures);
         for (traction, (point, pressure)) in tractions.iter_mut().zip(points) {
             *traction -= pressure * point.normal;

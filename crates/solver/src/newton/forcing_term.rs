@@ -17,6 +17,8 @@ const SMALLEST_FORCING_TERM: f64 = 1e-8;
 const LINEAR_SHARE: f64 = 0.1;
 /// Share of what the test of the forces allows that counts as rounding.
 const ROUNDING_SHARE: f64 = 1e-3;
+/// What nodes of a flow may miss, summed up, against what moves, for `conservation` to mend.
+const CONSERVED: f64 = 1e-7;
 /// Largest error of a linear solve that is done at all.
 const LARGEST_TOLERANCE: f64 = 0.1;
 
@@ -76,8 +78,9 @@ pub(super) fn coupled_goals(
         .max(exact_enough(settings) * scale)
         .min(LARGEST_TOLERANCE * force);
     let balance = iterate.flow.as_ref().map(|flow| flow.at.balance);
+    let mended = if iterate.conserves { CONSERVED } else { 0.0 };
     let enough = balance.map_or(0.0, |balance| {
-        settings.mass.max(balance.rounding) * balance.moved
+        settings.mass.max(balance.rounding).max(mended) * balance.moved
     });
     let enough = LINEAR_SHARE * enough / (missing.max(1) as f64).sqrt();
     [forces, (iterate.forcing_term * rate).max(enough)]

@@ -28,6 +28,8 @@ pub(super) struct Iterate {
     pub(super) linearisation: Linearisation,
     /// Former iterates of the splitting.
     pub(super) acceleration: Acceleration,
+    /// Whether what linear solves leave of a flow is found again, see `conservation`.
+    pub(super) conserves: bool,
     /// Largest error allowed in the next linear solve, against its right-hand side.
     pub(super) forcing_term: f64,
     /// Errors after the last iteration, see `line_search`.

@@ -195,7 +195,7 @@ impl Newton {
             iterate.corrections.push(correction);
         }
         iterate.forcing_term = forcing_term::after(iteration.increment);
-        Ok(iteration)
+        Ok(self.conserve(step, iterate, iteration))
     }
 
     /// Gives the linear solver the tangents.

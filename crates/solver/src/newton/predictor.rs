@@ -10,6 +10,7 @@ use super::forcing_term;
 use super::iterate::Iterate;
 use super::recycling::GalerkinGuess;
 use super::{Iteration, Newton, Step, StepOutcome};
+use crate::flow::Coupling;
 use crate::problem::Load;
 use crate::system::{State, StateScales, System};
 
@@ -18,7 +19,6 @@ impl Newton {
     pub(super) fn predict(&mut self, system: &System<'_>, state: &State, load: &Load) -> Iterate {
         let mut from = state.clone();
         system.restate(&mut from);
-        let start = from.load.clone();
         let recycled = self.recycled.as_mut();
         let guess = recycled.and_then(|space| space.solve(system, &from, load));
         let (mut state, last_trials, guess) = match guess {
@@ -28,15 +28,12 @@ impl Newton {
                 last,
             }) => (state, last_trials, Some(last)),
             None => {
-                if system.coupling().is_none() {
-                    self.path.continue_through(system, &mut from, load);
-                }
-                facet_points::move_supports(system, &mut from, load);
+                let continued = self.continued(system, &from, load);
                 let last_trials = vec![LastTrial::default(); from.facet_points.len()];
-                (from, last_trials, None)
+                (continued, last_trials, None)
             }
         };
-        let flow = fluid::begin(system, &mut state, &start);
+        let flow = fluid::begin(system, &from, &mut state);
         let reached = state.reached;
         let rock_forces = system.rock_forces(&state.unknowns);
         let tractions = system.law_tractions(&state);
@@ -51,12 +48,41 @@ impl Newton {
             first_force: force,
             damping: damping::LEAST,
             linearisation: Linearisation::Tangents,
+            conserves: system.coupling().is_some_and(Coupling::is_transient),
             acceleration: Acceleration::default(),
             rock_forces,
             forcing_term: forcing_term::first(system, &self.settings),
             merit: None,
             state,
         }
+    }
+
+    /// The path continued to a load. Where a fluid spreads, states of long ago may mislead: of the
+    /// ways to continue the path the one with the least mass error is taken, if none but the
+    /// present state.
+    fn continued(&self, system: &System<'_>, from: &State, load: &Load) -> State {
+        let guess = |most: usize| {
+            let mut state = from.clone();
+            let used = self.path.continue_through(system, &mut state, load, most);
+            fluid::move_load(system, &mut state, load);
+            facet_points::move_supports(system, &mut state, load);
+            (state, used)
+        };
+        let (mut best, mut most) = guess(self.path.len());
+        if system.coupling().is_none() || most == 0 {
+            return best;
+        }
+        let error = |state: &State| fluid::mass_error(system, from, state);
+        let mut least = error(&best);
+        while most > 0 {
+            let (other, used) = guess(most - 1);
+            let own = error(&other);
+            if own < least {
+                (best, least) = (other, own);
+            }
+            most = used;
+        }
+        best
     }
 
     /// The last iteration of a guess in the recycled space, if it leaves nothing to do: no more

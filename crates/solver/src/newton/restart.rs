@@ -29,12 +29,12 @@ impl RestartState<'_> {
         let facet_points = system.discretisation.interface.points.len();
         let blocks = system.discretisation.interface.columns.entries.len();
         let recycled = (*self.recycled).as_ref();
-        let pressures = |fluid: &FluidState| system.coupling().is_some_and(|flow| flow.fits(fluid));
+        let fluid = |fluid: &FluidState| system.coupling().is_some_and(|flow| flow.fits(fluid));
         self.state.unknowns.len() == unknowns
-            && self.state.fluid.as_ref().is_none_or(pressures)
+            && self.state.fluid.as_ref().is_none_or(fluid)
             && self.state.fluid.is_some() == system.coupling().is_some()
             && self.state.facet_points.len() == facet_points
-            && self.path.fits(unknowns, facet_points)
+            && self.path.fits(&self.state)
             && recycled.is_none_or(|space| space.fits(unknowns))
             && self.linear.fits(blocks)
     }

@@ -132,9 +132,15 @@ impl Newton {
                 may_grow: true,
             };
         }
+        if step.system.is_smooth() {
+            self.path.lead_to(step.system, &whole);
+        }
         let halves = self
             .solve_counted(step, from, &substep.middle)
             .and_then(|half| self.solve_counted(step, &half, &substep.end));
+        if step.system.is_smooth() {
+            self.path.lead_on();
+        }
         let halves = match halves {
             Ok(halves) => halves,
             Err(outcome) => return Solved::failed(outcome, Some(whole)),

@@ -62,11 +62,6 @@ impl Load {
         }
     }
 
-    /// What a path of states is a function of: the factor of the only load case, or else the time.
-    pub(crate) fn abscissa(&self) -> f64 {
-        self.single_factor().unwrap_or(self.time)
-    }
-
     /// Largest difference of a factor from that of another load.
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let cases = 0..self.factors.len().max(other.factors.len());
@@ -205,12 +200,6 @@ mod tests {
         assert_eq!(Load::between(&a, &b, 0.25), load(1.5, &[0.25, 1.0]));
         assert_eq!(Load::between(&a, &b, 0.0), a);
         assert_eq!(Load::between(&a, &b, 1.0), b);
-    }
-
-    #[test]
-    fn one_case_is_followed_by_its_factor_and_several_by_time() {
-        assert_eq!(load(3.0, &[0.5]).abscissa(), 0.5);
-        assert_eq!(load(3.0, &[0.5, 1.0]).abscissa(), 3.0);
     }
 
     #[test]
