@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use kluft_io::{GmshOptions, NOT_WRITTEN, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey, outer_surfaces};
-use kluft_solver::{Discretisation, Problem, Workload};
+use kluft_solver::{Discretisation, FlowWorkload, Problem, Workload};
 
 use crate::failure::Failure;
 use crate::input::{expect_scene, is_mesh};
@@ -135,10 +135,14 @@ fn look(
     };
     match bind(scene, mesh) {
         Ok(binding) => {
-            defects.extend(connect(&binding, inspection));
+            let is_steady = scene.is_rigid() || !binding.problem.schedule.is_timed;
+            let pressures = connect(&binding, is_steady, inspection);
             if !scene.is_rigid() {
-                defects.extend(weigh(&binding.problem, &survey, inspection));
+                let pressures = pressures.as_ref().ok().copied().flatten();
+                let flow = workload(scene, &binding, pressures);
+                defects.extend(weigh((&binding.problem, flow), &survey, inspection));
             }
+            defects.extend(pressures.err().unwrap_or_default());
             inspection.decisions.extend(binding.decisions);
             inspection.warnings.extend(binding.warnings);
         }
@@ -206,30 +210,56 @@ fn joined(
     }
 }
 
-/// Adds what supports, loads and laws make of the mesh.
-fn weigh(problem: &Problem, survey: &Survey, inspection: &mut Inspection) -> Vec<Defect> {
+/// What a flow that follows the walls, of a number of pressures, asks of the linear solver.
+fn workload(scene: &Scene, binding: &Binding, pressures: Option<usize>) -> Option<FlowWorkload> {
+    let is_timed = binding.problem.schedule.is_timed;
+    let flow = binding.flow.as_ref()?;
+    let time = scene.solver.time_accuracy;
+    let is_divided = is_timed && time.is_none_or(|time| time < 1.0);
+    flow.follows_walls(is_timed).then_some(FlowWorkload {
+        pressures: pressures?,
+        increments: if is_divided { 3 } else { 1 },
+    })
+}
+
+/// Adds what supports, loads, laws and a flow with them make of the mesh.
+fn weigh(
+    (problem, flow): (&Problem, Option<FlowWorkload>),
+    survey: &Survey,
+    inspection: &mut Inspection,
+) -> Vec<Defect> {
     gather::held_and_loaded(problem, inspection);
     walls::judge(problem, survey, inspection);
     let (discretisation, defects) = match Discretisation::of(problem) {
         Ok(discretisation) => (Some(discretisation), Vec::new()),
         Err(defects) => (None, in_terms_of_scene(defects)),
     };
-    let workload = Workload::of(problem);
+    let workload = Workload::of(problem).with_flow(flow);
     cost::predict(&problem.mesh, discretisation.as_ref(), workload, inspection);
     defects
 }
 
-/// Tells which fractures fluid can pass between, and what drives it there.
-fn connect(binding: &Binding, inspection: &mut Inspection) -> Vec<Defect> {
+/// Tells which fractures fluid can pass between, and what drives it there; returns the number of
+/// pressures, if anything flows.
+fn connect(
+    binding: &Binding,
+    is_steady: bool,
+    inspection: &mut Inspection,
+) -> Result<Option<usize>, Vec<Defect>> {
     let Some(flow) = &binding.flow else {
-        return Vec::new();
+        return Ok(None);
     };
-    match RunFlow::of(&binding.problem, flow) {
-        Ok(made) => {
-            inspection.hydraulics = Some(made.hydraulics());
-            in_terms_of_scene(made.system().undriven())
-        }
-        Err(defects) => in_terms_of_scene(defects),
+    let made = RunFlow::of(&binding.problem, flow).map_err(in_terms_of_scene)?;
+    inspection.hydraulics = Some(made.hydraulics());
+    // A flow that takes time begins with the pressures that fractures have.
+    let undriven = match is_steady {
+        true => made.system().undriven(),
+        false => Vec::new(),
+    };
+    if undriven.is_empty() {
+        Ok(Some(made.system().nodes().len()))
+    } else {
+        Err(in_terms_of_scene(undriven))
     }
 }
 

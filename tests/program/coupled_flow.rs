@@ -128,3 +128,27 @@ fn contact_that_leaves_nothing_open_is_refused() {
         assert!(run.err.contains(said), "{said}: {}", run.err);
     }
 }
+
+/// Fluid that enters where nothing leaves has a state at each time, though none that is steady; and
+/// pressures cost what mechanics alone does not.
+#[test]
+fn an_inspection_knows_what_a_flow_in_time_asks_for() {
+    let seconds = |edits: &[(&str, &str)]| {
+        let workshop = Workshop::new("filling-joint", edits);
+        let (scene, out) = (workshop.scene(), workshop.path("look"));
+        let [command, to] = ["inspect", "--out"].map(AsRef::as_ref);
+        let run = kluft(&[command, scene.as_os_str(), to, out.as_os_str()]);
+        assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+        let text = fs::read_to_string(out.join("inspect.json")).expect("inspect.json");
+        let said: Value = serde_json::from_str(&text).expect("JSON");
+        let solvers = said["solvers"].as_array().expect("solvers");
+        let direct = solvers.iter().find(|solver| solver["name"] == "direct");
+        number(&direct.expect("a direct solver")["seconds"])
+    };
+    let filled = seconds(&[("fluid_pressure = 0.9e6", "fluid_inflow = 1e-7")]);
+    let dry = [
+        ("[fluid]\nviscosity = 1e-3\n\n", ""),
+        ("fluid_pressure = 0.9e6", "pressure = 0.9e6"),
+    ];
+    assert!(filled > 3.0 * seconds(&dry), "{filled}");
+}

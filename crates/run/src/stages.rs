@@ -336,7 +336,7 @@ impl<'a> Run<'a> {
         let before = former.and_then(|former| former.progress.choice.0.parse().ok());
         let plan = self.stage(Stage::ChooseSolver, |_| {
             let discretisation = system.discretisation();
-            let workload = Workload::of(system.problem());
+            let workload = Workload::of_system(system, newton_settings(&asked).time);
             let points = discretisation.points().len();
             let workload = workload.with_extra_memory(&system.problem().mesh, points);
             let unknowns = discretisation.into();

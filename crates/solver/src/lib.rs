@@ -50,8 +50,9 @@ pub use flow::{
 };
 pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
 pub use linear::{
-    Condensed, Direct, ExtraMemory, Iterative, LinearMethod, LinearSolution, NonsymmetricSolver,
-    Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns, Workload,
+    Condensed, Direct, ExtraMemory, FlowWorkload, Iterative, LinearMethod, LinearSolution,
+    NonsymmetricSolver, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
+    Workload,
 };
 pub use newton::{
     Determinacy, Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord,

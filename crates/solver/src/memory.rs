@@ -10,7 +10,7 @@ impl Workload {
     /// Counts in what estimates of errors and moves of former steps take, on a mesh with this
     /// number of unknown 3-vectors.
     pub fn with_extra_memory(self, mesh: &Mesh, unknowns: usize) -> Self {
-        let recycles = self.is_smooth && self.steps > 1;
+        let recycles = self.is_smooth && self.flow.is_none() && self.steps > 1;
         let iterative = if recycles {
             recycling_bytes(unknowns, self.steps)
         } else {

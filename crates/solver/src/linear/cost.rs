@@ -6,6 +6,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use glam::DVec3;
 use kluft_algebra::Analysis;
 use kluft_mesh::Mesh;
 use lie_core::{FractureLaw, Rock};
@@ -112,8 +113,41 @@ pub struct Workload {
     pub is_path_dependent: bool,
     /// Factor on the iterations of the multigrid, 1 for cells of about equal edges.
     pub difficulty: f64,
+    /// The flow that is solved with it, if there is one.
+    pub flow: Option<FlowWorkload>,
     /// Memory that others take while the solver stands.
     pub extra: ExtraMemory,
+}
+
+/// What a flow that follows the walls asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FlowWorkload {
+    /// Pressures.
+    pub pressures: usize,
+    /// Increments of a load step: three where each is solved in one and in two.
+    pub increments: usize,
+}
+
+impl FlowWorkload {
+    /// Linear solves of a first increment and of later ones, which continue a path, and linear
+    /// iterations of each: measured.
+    const FIRST: f64 = 5.0;
+    const LATER: f64 = 3.0;
+    const ITERATIONS: f64 = 16.0;
+    /// Time of an iteration of GMRES on rock and pressures against one of conjugate gradients.
+    const DEARER: f64 = 1.4;
+    /// Memory of the flow beside that of the rock for each pressure, its factor included (bytes).
+    const BYTES: f64 = 1500.0;
+
+    fn solves(self, steps: usize) -> f64 {
+        Self::FIRST + Self::LATER * (self.increments * steps).saturating_sub(1) as f64
+    }
+
+    fn memory_bytes(self, unknowns: Unknowns<'_>) -> usize {
+        let vectors = 2.0 * Self::ITERATIONS;
+        let basis = vectors * size_of::<DVec3>() as f64 * unknowns.points.len() as f64;
+        (basis + Self::BYTES * self.pressures as f64) as usize
+    }
 }
 
 impl Workload {
@@ -124,8 +158,17 @@ impl Workload {
     }
 
     /// What a system asks for, with its present laws.
-    pub fn of_system(system: &System<'_>) -> Self {
-        Self::with_laws(system.problem, system.laws())
+    /// `time` is the accuracy of time steps, see
+    /// [`NewtonSettings::time`](crate::NewtonSettings::time).
+    pub fn of_system(system: &System<'_>, time: f64) -> Self {
+        let flow = system.coupling().map(|coupling| FlowWorkload {
+            pressures: coupling.nodes(),
+            increments: match coupling.is_transient() && time < 1.0 {
+                true => 3,
+                false => 1,
+            },
+        });
+        Self::with_laws(system.problem, system.laws()).with_flow(flow)
     }
 
     fn with_laws(problem: &Problem, laws: &[FractureLaw]) -> Self {
@@ -147,15 +190,33 @@ impl Workload {
             is_smooth: true,
             is_path_dependent: false,
             difficulty: difficulty(mesh, rocks),
+            flow: None,
             extra: ExtraMemory::default(),
         }
+    }
+
+    /// With a flow that follows the walls.
+    pub fn with_flow(self, flow: Option<FlowWorkload>) -> Self {
+        Self { flow, ..self }
+    }
+
+    /// Linear iterations of a solve with a direct solver inside.
+    fn substitutions(self) -> f64 {
+        self.flow.map_or(1.0, |_| FlowWorkload::ITERATIONS)
+    }
+
+    fn flow_bytes(self, unknowns: Unknowns<'_>) -> usize {
+        self.flow.map_or(0, |flow| flow.memory_bytes(unknowns))
     }
 
     /// Linear solves of the whole run: Newton takes about four iterations in its first step and two
     /// in a step that continues a path. Friction has no path to continue.
     fn solves(self) -> f64 {
+        let of_flow = self.flow.map_or(0.0, |flow| flow.solves(self.steps));
         if self.is_path_dependent {
-            15.0 * self.steps as f64
+            of_flow.max(15.0 * self.steps as f64)
+        } else if self.flow.is_some() {
+            of_flow
         } else if self.is_nonlinear {
             2.0 + 2.0 * self.steps as f64
         } else {
@@ -168,6 +229,7 @@ impl Workload {
         if self.is_nonlinear {
             self.solves()
         } else {
+            // A flow leaves a linear law its stiffness.
             1.0
         }
     }
@@ -229,7 +291,7 @@ pub(super) fn predict(
     let (seconds, extra) = match method {
         LinearMethod::Condensed => {
             let iterations = 8.0 * 16.0 * jumps.powi(2) / BYTES;
-            let each = substitute + iterations.min(dense);
+            let each = workload.substitutions() * (substitute + iterations.min(dense));
             (
                 factorise + 3.0 * dense + solves * each,
                 24.0 * jumps.powi(2),
@@ -237,13 +299,17 @@ pub(super) fn predict(
         }
         _ => {
             let factorise = workload.factorisations() * factorise;
+            let substitute = workload.substitutions() * substitute;
             (factorise + solves * substitute, 0.0)
         }
     };
     Prediction {
         method,
         seconds: seconds + ANALYSIS * 3.0 * unknowns.points.len() as f64,
-        memory_bytes: analysis.memory_bytes() + extra as usize + workload.extra.always,
+        memory_bytes: analysis.memory_bytes()
+            + extra as usize
+            + workload.flow_bytes(unknowns)
+            + workload.extra.always,
         factor_entries: analysis.factor_entries(),
         operations: analysis.factor_operations(),
     }
@@ -259,6 +325,8 @@ pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Predictio
     let blocks = unknowns.pattern.blocks.columns.len() as f64;
     let iterations = if workload.is_path_dependent {
         UNSYMMETRIC * workload.solves()
+    } else if workload.flow.is_some() {
+        FlowWorkload::DEARER * FlowWorkload::ITERATIONS * workload.solves()
     } else {
         let first = if workload.is_nonlinear { 40.0 } else { 20.0 };
         // Steps made of the moves of former ones, what it takes to make them included.
@@ -270,6 +338,7 @@ pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Predictio
         seconds: blocks * (SETUP_BYTES + workload.difficulty * iterations * ITERATION_BYTES)
             / BYTES,
         memory_bytes: (blocks * MEMORY_BYTES) as usize
+            + workload.flow_bytes(unknowns)
             + workload.extra.iterative
             + workload.extra.always,
         factor_entries: 0,

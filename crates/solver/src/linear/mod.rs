@@ -16,7 +16,7 @@ mod tangent_solver;
 
 pub use choice::Plan;
 pub use condensed::Condensed;
-pub use cost::{ExtraMemory, LinearMethod, Prediction, Unknowns, Workload};
+pub use cost::{ExtraMemory, FlowWorkload, LinearMethod, Prediction, Unknowns, Workload};
 pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
 pub use iterative::Iterative;

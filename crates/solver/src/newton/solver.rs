@@ -28,7 +28,7 @@ impl Newton {
     /// If it cannot be prepared.
     pub fn new(system: &System<'_>, settings: NewtonSettings) -> Result<Self, LinearFailure> {
         let unknowns = Unknowns::from(&system.discretisation);
-        let workload = Workload::of_system(system);
+        let workload = Workload::of_system(system, settings.time);
         let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX)?;
         Self::planned(system, settings, plan)
     }

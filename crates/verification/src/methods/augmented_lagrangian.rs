@@ -119,7 +119,7 @@ pub fn augmented(
     settings: NewtonSettings,
 ) -> Option<Augmented> {
     let unknowns = Unknowns::from(system.discretisation());
-    let workload = Workload::of_system(system);
+    let workload = Workload::of_system(system, 1.0);
     let points = system.discretisation().points().len();
     let workload = workload.with_extra_memory(&system.problem().mesh, points);
     let plan = Plan::of(unknowns, workload, settings.linear, usize::MAX).ok()?;

@@ -1,6 +1,5 @@
 //! Random materials on six junctions: one answer, whatever the linear solver and the load steps.
 
-
 use kluft_solver::{LinearMethod, NewtonSettings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
