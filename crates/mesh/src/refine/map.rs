@@ -33,7 +33,7 @@ pub(super) fn serendipity(members: &[u8], edges: &[[u8; 2]]) -> Vec<(u8, f64)> {
 }
 
 /// `l (2 l - 1)` of corners and `4 l_a l_b` of edges, from barycentric coordinates.
-fn simplex(complete: Shape, corners: &[f64]) -> Vec<f64> {
+pub(super) fn simplex(complete: Shape, corners: &[f64]) -> Vec<f64> {
     let of_corners = corners.iter().map(|l| l * (2.0 * l - 1.0));
     let edges = complete.edges().iter();
     let of_edges = edges.map(|&[a, b]| 4.0 * corners[a as usize] * corners[b as usize]);
