@@ -152,3 +152,32 @@ fn an_inspection_knows_what_a_flow_in_time_asks_for() {
     ];
     assert!(filled > 3.0 * seconds(&dry), "{filled}");
 }
+
+#[test]
+fn time_steps_that_no_division_makes_short_enough_are_told() {
+    let times = "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]";
+    let coarse = [
+        ("first = 0.1", "first = 1.0"),
+        (times, "times = [10, 1e4]"),
+        ("[[0, 1], [100, 1]]", "[[0, 1], [1e4, 1]]"),
+    ];
+    let strict = ("[load]", "[solver]\ntime_accuracy = 1e-5\n\n[load]");
+    let silent = (
+        "[load]",
+        "[warnings]\nsilence = [\"long_time_steps\"]\n\n[load]",
+    );
+    let warned = |edits: &[(&str, &str)]| {
+        let workshop = Workshop::new("filling-joint", edits);
+        let said = summary(&workshop.solve("out", &[]));
+        said["warnings"]
+            .to_string()
+            .contains("[\\\"long_time_steps\\\"]")
+    };
+    let [a, b, c] = coarse;
+    assert!(warned(&[a, b, c, strict]));
+    assert!(!warned(&[a, b, c, silent, strict]));
+    assert!(!warned(&[
+        a,
+        ("[load]", "[solver]\ntime_accuracy = 0.1\n\n[load]")
+    ]));
+}

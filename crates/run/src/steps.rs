@@ -248,7 +248,9 @@ impl Run<'_> {
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
-        let unresolved = unresolved::warning(scene, &self.finished).into_iter();
+        let unresolved = [unresolved::warning, unresolved::warning_of_time]
+            .into_iter()
+            .filter_map(|warning| warning(scene, &self.finished));
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
         self.summary.warnings.extend(unresolved);
         let time = prepared.state.load.time;

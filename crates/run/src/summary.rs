@@ -136,6 +136,9 @@ pub struct StepMeasures {
     pub converged: bool,
     /// What of the path of its loads no division of the step resolves, and where.
     pub unresolved: Option<String>,
+    /// Largest difference of a time step of the flow in one increment and in two, where no division
+    /// of the step brings it to what is allowed.
+    pub time_error: Option<f64>,
 }
 
 impl StepSummary {
@@ -174,6 +177,7 @@ impl StepMeasures {
             closure_error: measure(|last| last.closure_error),
             converged: record.converged(),
             unresolved,
+            time_error: record.time_error,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Parts of a load path that no division resolves, in words.
+//! Parts of a load path, and of a flow in time, that no division resolves, in words.
 
 use kluft_scene::{Doubt, Scene};
 use kluft_solver::{StepRecord, System};
@@ -33,11 +33,7 @@ pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
             .filter(|(_, step)| step.unresolved.is_some())
     };
     let (number, first) = told().next()?;
-    let others = match told().count() - 1 {
-        0 => String::new(),
-        1 => "; so in one step more".to_owned(),
-        more => format!("; so in {more} steps more"),
-    };
+    let others = others(told().count() - 1);
     let text = format!(
         "the path of the loads is not resolved: in step {number}, however short it is divided, \
          {}{others}: walls jump to another place there, and other load steps may lead to another \
@@ -45,4 +41,28 @@ pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
         first.unresolved.as_deref().unwrap_or_default()
     );
     scene.warning(Doubt::UnresolvedPath, &text)
+}
+
+fn others(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => "; so in one step more".to_owned(),
+        more => format!("; so in {more} steps more"),
+    }
+}
+
+/// What the user should know of time steps that are too long: the worst, and how many there are.
+pub fn warning_of_time(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
+    let found = (1..).zip(steps);
+    let found = found.filter_map(|(number, step)| Some((number, step.time_error?)));
+    let found: Vec<(usize, f64)> = found.collect();
+    let (number, error) = *found.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let text = format!(
+        "the flow is not resolved in time: in step {number}, divided as far as it is, one time \
+         step and two differ by {:.2} % in what the fluid fills or in its pressures{}; name more \
+         times there, or allow more by time_accuracy",
+        100.0 * error,
+        others(found.len() - 1)
+    );
+    scene.warning(Doubt::LongTimeSteps, &text)
 }

@@ -25,11 +25,13 @@ pub enum Doubt {
     NotUnique,
     /// A path of the loads that no division of a step resolves.
     UnresolvedPath,
+    /// Time steps of a flow that are too long for the accuracy asked for, however they are divided.
+    LongTimeSteps,
 }
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Values,
         Self::BodySize,
         Self::WideApertures,
@@ -40,6 +42,7 @@ impl Doubt {
         Self::OverlappingWalls,
         Self::NotUnique,
         Self::UnresolvedPath,
+        Self::LongTimeSteps,
     ];
 
     /// Its name under `silence`.
@@ -55,6 +58,7 @@ impl Doubt {
             Self::OverlappingWalls => "overlapping_walls",
             Self::NotUnique => "not_unique",
             Self::UnresolvedPath => "unresolved_path",
+            Self::LongTimeSteps => "long_time_steps",
         }
     }
 }

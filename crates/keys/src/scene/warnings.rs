@@ -3,7 +3,7 @@
 use crate::table::{Key, KeySection, Kind, Need};
 
 /// Names of what a run may warn of.
-pub const WARNINGS: [&str; 10] = [
+pub const WARNINGS: [&str; 11] = [
     "values",
     "body_size",
     "wide_apertures",
@@ -14,6 +14,7 @@ pub const WARNINGS: [&str; 10] = [
     "overlapping_walls",
     "not_unique",
     "unresolved_path",
+    "long_time_steps",
 ];
 
 /// What a run does not warn of.

@@ -135,7 +135,7 @@ class Warnings(Section):
     def __init__(
         self,
         *,
-        silence: Sequence[Literal["values", "body_size", "wide_apertures", "large_displacements", "idle_histories", "initial_stress", "unnamed_surfaces", "overlapping_walls", "not_unique", "unresolved_path"]] | None = None,
+        silence: Sequence[Literal["values", "body_size", "wide_apertures", "large_displacements", "idle_histories", "initial_stress", "unnamed_surfaces", "overlapping_walls", "not_unique", "unresolved_path", "long_time_steps"]] | None = None,
     ) -> None:
         super().__init__(
             silence=silence,

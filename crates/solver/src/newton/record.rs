@@ -69,6 +69,10 @@ pub struct StepRecord {
     pub outcome: StepOutcome,
     /// The part of it, if any, whose path is least resolved.
     pub unresolved: Option<UnresolvedPath>,
+    /// Largest difference of a time step of its flow in one increment and in two that exceeds what
+    /// is allowed, however short the step was divided; see
+    /// [`NewtonSettings::time`](super::NewtonSettings::time).
+    pub time_error: Option<f64>,
     /// Blocks that nothing held when it failed, each with its free motions.
     pub rigid_motions: Vec<Defect>,
     /// The facet point with the largest closure error at the end.
@@ -87,6 +91,7 @@ impl StepRecord {
             substeps: Vec::new(),
             completed: 0.0,
             unresolved: None,
+            time_error: None,
             rigid_motions: Vec::new(),
             outcome: StepOutcome::OutOfIterations,
             worst_facet_point: None,

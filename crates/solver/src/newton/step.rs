@@ -55,6 +55,16 @@ impl<'a> Step<'a> {
         }
     }
 
+    /// Records how far the flow of a part of the step is from resolved in time, if that is the
+    /// worst so far.
+    pub(super) fn leave_time_error(&mut self, error: f64) {
+        let worst = self
+            .record
+            .time_error
+            .map_or(error, |former| former.max(error));
+        self.record.time_error = Some(worst);
+    }
+
     /// Records the blocks that nothing holds in the state where an increment failed, unless they
     /// are known.
     pub(super) fn explain(&mut self, outcome: &StepOutcome, state: &State) {

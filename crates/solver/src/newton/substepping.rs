@@ -146,7 +146,8 @@ impl Newton {
             Err(outcome) => return Solved::failed(outcome, Some(whole)),
         };
         let apart = slides.then(|| difference(step.system, &whole, &halves));
-        let flow = flows.then(|| flows_apart(step.system, &whole, &halves) / self.settings.time);
+        let in_time = flows.then(|| flows_apart(step.system, &whole, &halves));
+        let flow = in_time.map(|apart| apart / self.settings.time);
         let path = apart
             .as_ref()
             .map(|apart| apart.difference / self.settings.path);
@@ -156,6 +157,9 @@ impl Newton {
                 why: None,
                 whole: Some(whole),
             };
+        }
+        if let Some(apart) = in_time.filter(|_| flow.is_some_and(|flow| flow > 1.0)) {
+            step.leave_time_error(apart);
         }
         if let Some(apart) = apart.filter(|_| path.is_some_and(|path| path > 1.0)) {
             step.leave_unresolved(apart);
