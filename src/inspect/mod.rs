@@ -135,8 +135,13 @@ fn look(
     };
     match bind(scene, mesh) {
         Ok(binding) => {
-            let is_steady = scene.is_rigid() || !binding.problem.schedule.is_timed;
-            let pressures = connect(&binding, is_steady, inspection);
+            let is_idle = scene.equivalent_permeability
+                && binding
+                    .flow
+                    .as_ref()
+                    .is_some_and(|flow| flow.conditions.is_empty());
+            let is_timed = binding.problem.schedule.is_timed && !scene.is_rigid();
+            let pressures = connect(&binding, is_timed || is_idle, inspection);
             if !scene.is_rigid() {
                 let pressures = pressures.as_ref().ok().copied().flatten();
                 let flow = workload(scene, &binding, pressures);
@@ -243,7 +248,7 @@ fn weigh(
 /// pressures, if anything flows.
 fn connect(
     binding: &Binding,
-    is_steady: bool,
+    needs_no_drive: bool,
     inspection: &mut Inspection,
 ) -> Result<Option<usize>, Vec<Defect>> {
     let Some(flow) = &binding.flow else {
@@ -252,9 +257,9 @@ fn connect(
     let made = RunFlow::of(&binding.problem, flow).map_err(in_terms_of_scene)?;
     inspection.hydraulics = Some(made.hydraulics());
     // A flow that takes time begins with the pressures that fractures have.
-    let undriven = match is_steady {
-        true => made.system().undriven(),
-        false => Vec::new(),
+    let undriven = match needs_no_drive {
+        true => Vec::new(),
+        false => made.system().undriven(),
     };
     if undriven.is_empty() {
         Ok(Some(made.system().nodes().len()))

@@ -181,3 +181,26 @@ fn time_steps_that_no_division_makes_short_enough_are_told() {
         ("[load]", "[solver]\ntime_accuracy = 0.1\n\n[load]")
     ]));
 }
+
+/// A joint through the whole body conducts as the cube of its aperture, before it is pressed and
+/// after: `x = 0.4240128` by its law.
+#[test]
+fn a_joint_that_closes_conducts_by_the_cube_of_its_aperture() {
+    let asked = (
+        "[boundary.left]",
+        "[fluid]\nviscosity = 1e-3\nequivalent_permeability = true\n\n[boundary.left]",
+    );
+    let workshop = Workshop::new("pressed-joint", &[("h = 0.3", "h = 0.6"), asked]);
+    let said = summary(&workshop.solve("out", &[]));
+    let principal = |tensor: &Value| number(&tensor["principal"][0]["value"]);
+    let found = &said["permeability"];
+    is_close(principal(found), principal(&found["through_going"]), 1e-9);
+    is_close(
+        principal(&found["loaded"]) / principal(found),
+        0.424_012_8_f64.powi(3),
+        1e-6,
+    );
+    let scene = workshop.scene();
+    let run = kluft(&["inspect".as_ref(), scene.as_os_str()]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+}

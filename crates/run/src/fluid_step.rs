@@ -20,7 +20,7 @@ pub fn failed(failure: LinearFailure) -> Interruption {
 
 impl Run<'_> {
     /// The flow of a problem: it follows the walls of its system, or its push on them is added to
-    /// the loads; none without a fluid.
+    /// the loads; none without a fluid, or where nothing but the permeability is asked of it.
     ///
     /// # Errors
     /// Conditions that make no flow, and numbers that are not finite.
@@ -32,6 +32,10 @@ impl Run<'_> {
         let Some(flow) = &binding.flow else {
             return Ok(None);
         };
+        let is_asked = self.request.scene.equivalent_permeability;
+        if is_asked && flow.conditions.is_empty() {
+            return Ok(None);
+        }
         let problem = &binding.problem;
         if flow.follows_walls(problem.schedule.is_timed) {
             let made = self.stage(Stage::Assemble, |_| {

@@ -31,6 +31,9 @@ pub struct PermeabilitySummary {
     /// The tensor.
     #[serde(flatten)]
     pub tensor: TensorSummary,
+    /// That after the last load step, in rock that deforms, unless a fracture has closed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loaded: Option<TensorSummary>,
     /// Snow's tensor: that of the same fractures if each went through the body.
     pub through_going: TensorSummary,
     /// Largest difference between components across the diagonal, as a share of the largest.
@@ -46,7 +49,8 @@ pub struct PermeabilitySummary {
 }
 
 impl TensorSummary {
-    fn of(tensor: &PermeabilityTensor) -> Self {
+    /// That of a tensor.
+    pub(crate) fn of(tensor: &PermeabilityTensor) -> Self {
         let pairs = tensor.principal.iter().zip(tensor.directions);
         let principal = pairs.map(|(&value, direction)| {
             let down = if direction.z > 0.0 {
@@ -88,6 +92,7 @@ impl PermeabilitySummary {
     pub fn of(found: &EquivalentPermeability) -> Self {
         Self {
             tensor: TensorSummary::of(&found.tensor),
+            loaded: None,
             through_going: TensorSummary::of(&found.through_going),
             asymmetry: found.asymmetry,
             mass_error: found.mass_error,

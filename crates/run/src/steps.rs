@@ -7,7 +7,7 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Estimator, FacetResult, Newton, Plan, Problem, Solution, State, StepOutcome, System,
+    Estimator, FacetResult, Flow, Newton, Plan, Problem, Solution, State, StepOutcome, System,
     determinacy, solution,
 };
 
@@ -35,6 +35,8 @@ use crate::unresolved;
 struct Prepared<'s, 'p> {
     system: &'s System<'p>,
     flow: Option<&'s RunFlow<'p>>,
+    /// What could flow, if there is a fluid.
+    fluid: Option<&'p Flow>,
     newton: Newton,
     state: State,
     /// Made with the first results, so that it takes no memory from the first solve.
@@ -57,6 +59,7 @@ impl Run<'_> {
             state: system.initial_state(),
             system: &system,
             flow: None,
+            fluid: None,
             estimator: None,
         };
         for index in 0..problem.schedule.steps.len() {
@@ -84,6 +87,9 @@ impl Run<'_> {
         let mut system = self.assemble(problem)?;
         let flow = self.let_flow(binding, &mut system)?;
         let plan = self.plan(&system, former.as_ref())?;
+        if let Some(flow) = &binding.flow {
+            self.permeability(problem, flow)?;
+        }
         self.decide(binding);
         self.probes.all.clone_from(&binding.probes);
         let unbalanced = doubts::of_initial_stress(self.request.scene, &system);
@@ -94,6 +100,7 @@ impl Run<'_> {
             Some(former) => self.go_on(&system, plan, former.progress)?,
         };
         prepared.flow = flow.as_ref();
+        prepared.fluid = binding.flow.as_ref();
         for index in self.finished.len()..problem.schedule.steps.len() {
             self.go_on_if_asked()?;
             let measures = self.solve_step(&mut prepared, index)?;
@@ -132,6 +139,7 @@ impl Run<'_> {
             state: system.initial_state(),
             system,
             flow: None,
+            fluid: None,
             estimator: None,
         })
     }
@@ -174,6 +182,7 @@ impl Run<'_> {
             newton,
             system,
             flow: None,
+            fluid: None,
             estimator: None,
         })
     }
@@ -244,6 +253,7 @@ impl Run<'_> {
         self.summary.measures = measures(system, &solution, &self.summary.fractures, oracles);
         self.summary.measures.push(energy(accuracy.energy));
         let flow = self.take_flow(system, (&prepared.state, &nodes), prepared.flow)?;
+        self.permeability_after_step(system.problem(), prepared.fluid, &nodes)?;
         let scene = self.request.scene;
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);

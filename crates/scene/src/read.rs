@@ -102,7 +102,7 @@ pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Setting 
         });
     }
     let body = read_body(root, clock);
-    read_flow(root, &body, setting);
+    read_flow(root, &body);
     read_sources(source, root, setting);
     root.section("initial_stress").map(read_initial_stress);
     read_solver(root);
@@ -141,7 +141,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let probes = probes.collect();
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
-    let flowing = read_flow(root, &body, setting);
+    let flowing = read_flow(root, &body);
     Some(Scene {
         oracles,
         probes,
@@ -343,23 +343,18 @@ struct FlowSection {
     equivalent_permeability: bool,
 }
 
-fn read_flow(root: &Section<'_, '_>, body: &BodyEntry, setting: Setting) -> FlowSection {
+fn read_flow(root: &Section<'_, '_>, body: &BodyEntry) -> FlowSection {
     let section = root.section("fluid");
-    let flowing = section.map(|section| read_flow_section(section, body, setting));
+    let flowing = section.map(|section| read_flow_section(section, body));
     flowing.unwrap_or_default()
 }
 
-fn read_flow_section(section: Section<'_, '_>, body: &BodyEntry, setting: Setting) -> FlowSection {
+fn read_flow_section(section: Section<'_, '_>, body: &BodyEntry) -> FlowSection {
     let isolated = match section.choice("isolated") {
         Some("inactive") => Isolated::Inactive,
         _ => Isolated::Refused,
     };
-    let is_asked = section.flag("equivalent_permeability").unwrap_or(false);
-    if is_asked && !setting.is_rigid() {
-        let problem = "the equivalent permeability is computed in rigid rock only";
-        let remedy = "remove equivalent_permeability, or leave out young_modulus everywhere";
-        section.refuse("equivalent_permeability", problem.into(), remedy);
-    }
+    let equivalent_permeability = section.flag("equivalent_permeability").unwrap_or(false);
     let (place, title) = (section.place(), section.title.clone());
     let fluid = read_fluid(section, body.gravity);
     FlowSection {
@@ -369,7 +364,7 @@ fn read_flow_section(section: Section<'_, '_>, body: &BodyEntry, setting: Settin
             value,
         }),
         isolated,
-        equivalent_permeability: is_asked,
+        equivalent_permeability,
     }
 }
 

@@ -72,7 +72,7 @@ pub static FLUID: KeySection = KeySection {
             kind: Kind::Flag,
             need: Need::Default("false"),
             example: "true",
-            says: "Whether the permeability tensor of the whole body is computed, by linear pressures on all of its outer surface; in rigid rock",
+            says: "Whether the permeability tensor of the whole body is computed, by linear pressures on all of its outer surface; in rock that deforms, before the loads and after each load step",
         },
     ],
     also: None,

@@ -402,7 +402,8 @@ class Fluid(Section):
         isolated: Networks of fractures that no pressure and no rate acts on are refused, or left
             out of the flow. Without it "refuse".
         equivalent_permeability: Whether the permeability tensor of the whole body is computed, by
-            linear pressures on all of its outer surface; in rigid rock. Without it false.
+            linear pressures on all of its outer surface; in rock that deforms, before the loads and
+            after each load step. Without it false.
     """
 
     def __init__(
