@@ -176,11 +176,10 @@ impl<'a> Coupling<'a> {
     ) -> f64 {
         let mut volumes = [0.0; 2];
         let mut squares = [0.0; 2];
-        let pressures = [a, b].map(|fluid| self.pressures(fluid, load));
-        for row in 0..self.nodes() {
+        let [first, second] = [a, b].map(|fluid| self.pressures(fluid, load));
+        for (row, (first, second)) in first.iter().zip(second).enumerate() {
             volumes[0] += (a.volumes[row] - b.volumes[row]).abs();
             volumes[1] += (b.volumes[row] - self.initial_volumes[row]).abs();
-            let [first, second] = [pressures[0][row], pressures[1][row]];
             squares[0] += self.areas[row] * (first - second).powi(2);
             squares[1] += self.areas[row] * (second - self.initial(row)).powi(2);
         }
