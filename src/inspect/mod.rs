@@ -140,8 +140,12 @@ fn look(
                     .flow
                     .as_ref()
                     .is_some_and(|flow| flow.conditions.is_empty());
-            let is_timed = binding.problem.schedule.is_timed && !scene.is_rigid();
-            let pressures = connect(&binding, is_timed || is_idle, inspection);
+            let is_timed = binding.problem.schedule.is_timed;
+            let takes_time = match (scene.is_rigid(), &binding.flow) {
+                (true, Some(flow)) => flow.is_stored(is_timed),
+                _ => is_timed,
+            };
+            let pressures = connect(&binding, takes_time || is_idle, inspection);
             if !scene.is_rigid() {
                 let pressures = pressures.as_ref().ok().copied().flatten();
                 let flow = workload(scene, &binding, pressures);

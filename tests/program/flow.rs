@@ -264,3 +264,52 @@ fn an_inspection_tells_what_connects() {
         assert!(run.err.contains(said), "{said}: {}", run.err);
     }
 }
+
+/// In time the star fills, and comes to its steady rates; what has entered and not left is stored.
+#[test]
+fn a_compressible_fluid_takes_its_time_in_rigid_rock() {
+    let timed = [
+        (
+            "viscosity = 1e-3",
+            "viscosity = 1e-3\ncompressibility = 4.5e-10",
+        ),
+        (
+            "[boundary.left]",
+            "[load]\ntimes = [1e-5, 1e-4, 1]\n\n[boundary.left]",
+        ),
+    ];
+    let workshop = Workshop::new("flow-star", &timed);
+    let one = workshop.solve("one", &["--threads", "1"]);
+    let said = summary(&one);
+    let steps = said["steps"].as_array().expect("steps");
+    let number = |step: usize, key: &str| steps[step]["flow"][key].as_f64().expect("a number");
+    for step in 0..3 {
+        assert!(number(step, "mass_error") <= 1e-10, "{}", steps[step]);
+    }
+    assert!(number(0, "stored") > 10.0 * number(2, "inflow"));
+    assert!(number(2, "stored").abs() < 1e-6 * number(2, "inflow"));
+    let rows = sources(&one);
+    for (side, _, rate) in star() {
+        let name = format!("[boundary.{side}]");
+        let row = rows.iter().rfind(|row| row.0 == name).expect("a row");
+        is_close(row.2, rate, 1e-6);
+    }
+    let two = workshop.solve("two", &["--threads", "2"]);
+    assert_eq!(sources(&one), sources(&two));
+    // Without a pressure anywhere it fills, and is inspected as it runs.
+    let closed = [
+        timed[0],
+        timed[1],
+        ("fluid_pressure = 3e5", "fluid_inflow = 1e-9"),
+        ("[boundary.right]\nfluid_pressure = 1e5\n", ""),
+        ("[boundary.front]\nfluid_pressure = 0.0\n", ""),
+        ("[boundary.back]\nfluid_pressure = 2e5", ""),
+    ];
+    let workshop = Workshop::new("flow-star", &closed);
+    let said = summary(&workshop.solve("out", &[]));
+    let last = &said["steps"][2]["flow"];
+    is_close(last["stored"].as_f64().expect("a number"), 1e-9, 1e-9);
+    let scene = workshop.scene();
+    let run = kluft(&["inspect".as_ref(), scene.as_os_str()]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+}

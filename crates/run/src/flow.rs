@@ -6,7 +6,8 @@ use kluft_io::printable::cell;
 use kluft_io::{Field, write_atomically};
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{
-    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, State, System,
+    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, Schedule, State, System,
+    TransientFlow,
 };
 
 use crate::flow_summary::{self, FlowSummary, Hydraulics, StepFlow};
@@ -85,11 +86,20 @@ impl<'p> RunFlow<'p> {
     /// # Errors
     /// As [`FlowSystem::solve`].
     pub fn solve(&self, load: &Load) -> Result<SolvedFlow, LinearFailure> {
-        let state: FlowState = self.system.solve(load)?;
-        Ok(SolvedFlow {
-            step: flow_summary::of_step(self.flow, &state),
-            fields: self.system.fields(&state, &self.apertures),
-        })
+        Ok(self.told(&self.system.solve(load)?))
+    }
+
+    /// The flow in time, from the initial pressure on, to an accuracy of its time steps.
+    pub fn in_time(&self, schedule: &Schedule, accuracy: f64) -> TransientFlow<'_, 'p> {
+        TransientFlow::of(&self.system, &self.apertures, schedule, accuracy)
+    }
+
+    /// The flow in a state.
+    pub fn told(&self, state: &FlowState) -> SolvedFlow {
+        SolvedFlow {
+            step: flow_summary::of_step(self.flow, state),
+            fields: self.system.fields(state, &self.apertures),
+        }
     }
 
     /// The flow that follows the walls of a system in a state; `apertures` (m) are those at the

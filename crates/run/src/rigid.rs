@@ -7,7 +7,7 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_mesh::{Elements, Mesh};
 use kluft_scene::in_terms_of_scene;
-use kluft_solver::{Flow, Problem, Step};
+use kluft_solver::{Flow, LinearFailure, Problem, Step, TransientFlow};
 
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
@@ -17,8 +17,9 @@ use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, integer_field, real_field};
 use crate::history;
 use crate::observer::Stage;
-use crate::stages::{Interruption, Run};
+use crate::stages::{Interruption, Run, newton_settings};
 use crate::summary::StepSummary;
+use crate::unresolved;
 
 impl Run<'_> {
     /// Solves and writes the flow of all load steps, and the permeability of the body if the scene
@@ -35,8 +36,9 @@ impl Run<'_> {
             true => problem.schedule.steps.len(),
             false => 0,
         };
+        let is_stored = flow.is_stored(problem.schedule.is_timed);
         let made = (steps > 0)
-            .then(|| self.flow_system(problem, flow))
+            .then(|| self.flow_system(problem, flow, is_stored))
             .transpose()?;
         self.output.expect_steps(steps)?;
         self.output.remove_former()?;
@@ -45,21 +47,56 @@ impl Run<'_> {
         let Some(mut made) = made else {
             return Ok(());
         };
-        let factor = self.stage(Stage::PrepareSolver, |_| made.factorise());
-        factor.map_err(failed)?;
+        if !is_stored {
+            let factor = self.stage(Stage::PrepareSolver, |_| made.factorise());
+            factor.map_err(failed)?;
+        }
+        let accuracy = newton_settings(&self.request.scene.solver).time;
+        let mut in_time = is_stored.then(|| made.in_time(&problem.schedule, accuracy));
         let mut history = FlowHistory::default();
         for index in 0..steps {
-            self.flow_step(problem, (&made, &mut history), index)?;
+            let solved = self.flow_at(problem, (&made, in_time.as_mut()), index)?;
+            self.flow_step(problem, (&made, &solved, &mut history), index)?;
         }
         Ok(())
+    }
+
+    /// The flow at the end of a load step.
+    fn flow_at(
+        &mut self,
+        problem: &Problem,
+        (made, in_time): (&RunFlow<'_>, Option<&mut TransientFlow<'_, '_>>),
+        index: usize,
+    ) -> Result<SolvedFlow, Interruption> {
+        let load = &problem.schedule.steps[index].load;
+        let start = Instant::now();
+        let solved = self.stage(Stage::Solve, |_| match in_time {
+            Some(flow) => {
+                let step = flow.step(&problem.schedule, load)?;
+                Ok((made.told(&step.state), step.error))
+            }
+            None => Ok::<_, LinearFailure>((made.solve(load)?, None)),
+        });
+        self.summary.seconds.solve += start.elapsed().as_secs_f64();
+        let (solved, error) = solved.map_err(failed)?;
+        if let Some(error) = error {
+            let warning = unresolved::long_time_step(self.request.scene, (index + 1, error), 0);
+            self.summary.warnings.extend(warning);
+        }
+        Ok(solved)
     }
 
     fn flow_system<'p>(
         &mut self,
         problem: &'p Problem,
         flow: &'p Flow,
+        is_stored: bool,
     ) -> Result<RunFlow<'p>, Interruption> {
-        let made = self.stage(Stage::Assemble, |_| RunFlow::driven(problem, flow));
+        let made = self.stage(Stage::Assemble, |_| match is_stored {
+            // It begins with the pressures that fractures have.
+            true => RunFlow::of(problem, flow),
+            false => RunFlow::driven(problem, flow),
+        });
         let made = made.map_err(in_terms_of_scene)?;
         self.summary.unknowns.total = made.system().unknown_count();
         self.note_timed("assembled", &made.words());
@@ -69,14 +106,10 @@ impl Run<'_> {
     fn flow_step(
         &mut self,
         problem: &Problem,
-        (made, history): (&RunFlow<'_>, &mut FlowHistory),
+        (made, solved, history): (&RunFlow<'_>, &SolvedFlow, &mut FlowHistory),
         index: usize,
     ) -> Result<(), Interruption> {
         let step: &Step = &problem.schedule.steps[index];
-        let start = Instant::now();
-        let solved = self.stage(Stage::Solve, |_| made.solve(&step.load));
-        self.summary.seconds.solve += start.elapsed().as_secs_f64();
-        let solved = solved.map_err(failed)?;
         let text = format!(
             "step {} of {}, {}: {}",
             index + 1,
@@ -89,13 +122,13 @@ impl Run<'_> {
             flow: Some(solved.step.clone()),
             ..StepSummary::without_measures(step)
         });
-        let summary = made.summary(&solved);
+        let summary = made.summary(solved);
         self.summary.measures = flow_summary::measures(&solved.step, &summary.fractures);
         history.add(index + 1, step, &solved.step, &summary.fractures);
         self.summary.flow = Some(summary);
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(problem);
-            let fractures = || fracture_grid(&problem.mesh, made, &solved);
+            let fractures = || fracture_grid(&problem.mesh, made, solved);
             run.output.write_step(step.load.time, rock, fractures)?;
             run.write_sources()?;
             let text = history.text().as_bytes();

@@ -56,13 +56,22 @@ pub fn warning_of_time(scene: &Scene, steps: &[StepMeasures]) -> Option<String> 
     let found = (1..).zip(steps);
     let found = found.filter_map(|(number, step)| Some((number, step.time_error?)));
     let found: Vec<(usize, f64)> = found.collect();
-    let (number, error) = *found.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let worst = *found.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    long_time_step(scene, worst, found.len() - 1)
+}
+
+/// The same of a step and its error, and so many others.
+pub fn long_time_step(
+    scene: &Scene,
+    (number, error): (usize, f64),
+    count: usize,
+) -> Option<String> {
     let text = format!(
         "the flow is not resolved in time: in step {number}, divided as far as it is, one time \
          step and two differ by {:.2} % in what the fluid fills or in its pressures{}; name more \
          times there, or allow more by time_accuracy",
         100.0 * error,
-        others(found.len() - 1)
+        others(count)
     );
     scene.warning(Doubt::LongTimeSteps, &text)
 }

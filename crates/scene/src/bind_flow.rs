@@ -114,9 +114,14 @@ fn decided(scene: &Scene, flow: &Flow) -> Vec<String> {
              the walls apart"
         }
     };
-    let when = match is_timed && !scene.is_rigid() {
-        true => "times are given: the flow takes time (s), fractures store what they open for",
-        false => "the flow is steady at the end of every load step: no fluid is stored",
+    let when = match (is_timed, scene.is_rigid()) {
+        (true, false) => {
+            "times are given: the flow takes time (s), fractures store what they open for"
+        }
+        (true, true) if flow.is_stored(is_timed) => {
+            "times are given: the flow takes time (s), fractures store what pressure compresses"
+        }
+        _ => "the flow is steady at the end of every load step: no fluid is stored",
     };
     vec![how.to_owned(), when.to_owned()]
 }

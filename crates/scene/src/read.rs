@@ -85,7 +85,8 @@ pub fn check_conditions(source: &Source<'_>, root: &Section<'_, '_>) -> Setting 
         fluid: fluid_use(root),
     };
     if setting.is_rigid() {
-        refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "solver"]);
+        refuse_in_rigid_rock(root, &["fixed_point", "initial_stress"]);
+        refuse_in_rigid_solver(root);
     }
     root.text("title");
     for (name, section) in root.named_sections("rock") {
@@ -400,12 +401,24 @@ fn refuse_in_rigid_rock(root: &Section<'_, '_>, keys: &[&'static str]) {
     }
 }
 
+/// Of the solver only the accuracy of time steps counts there.
+fn refuse_in_rigid_solver(root: &Section<'_, '_>) {
+    let Some(solver) = root.section("solver") else {
+        return;
+    };
+    for key in ["linear", "memory_limit", "path_accuracy", "facets"] {
+        if solver.has(key) {
+            let problem =
+                format!("`{key}` has no effect in rigid rock: no rock has a young_modulus");
+            solver.refuse(key, problem, "remove it, or add young_modulus to [rock]");
+        }
+    }
+}
+
 /// The same in a scene, and a mesh that is to follow an error which nobody estimates.
 fn refuse_in_rigid_scene(root: &Section<'_, '_>) {
-    refuse_in_rigid_rock(
-        root,
-        &["fixed_point", "initial_stress", "oracle", "probe", "solver"],
-    );
+    refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "oracle", "probe"]);
+    refuse_in_rigid_solver(root);
     if let Some(mesh) = root.section("mesh").filter(|mesh| mesh.has("adapt")) {
         let problem = "no error of a mesh in rigid rock is estimated: no rock has a young_modulus";
         let remedy = "remove adapt, or add young_modulus to [rock]";

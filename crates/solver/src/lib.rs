@@ -46,7 +46,8 @@ pub use assembly::loads::{CaseLoads, Loads};
 pub use estimate::{Estimator, MeanError, StressError, target_sizes};
 pub use flow::{
     ConditionFlow, Coupling, EquivalentPermeability, FlowBalance, FlowFields, FlowNetwork,
-    FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor,
+    FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor, TimeStep,
+    TransientFlow,
 };
 pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
 pub use linear::{

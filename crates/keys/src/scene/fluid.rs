@@ -51,7 +51,7 @@ pub static FLUID: KeySection = KeySection {
             kind: watched(Dimension::PerStress, Range::NotNegative, &COMPRESSIBILITY),
             need: Need::Default("0"),
             example: "4.5e-10",
-            says: "Relative change of density with pressure c; counts where the flow takes time",
+            says: "Relative change of density with pressure c; counts where the flow takes time, which in rigid rock it does only if the fluid is compressible",
         },
         Key {
             name: "initial_pressure",

@@ -396,7 +396,8 @@ class Fluid(Section):
         viscosity: Viscosity mu; a fracture conducts b_h^3 / (12 mu) (Pa s); > 0. Required.
         density: Mass per volume (kg/m3); > 0. Required, unless there is no gravity.
         compressibility: Relative change of density with pressure c; counts where the flow takes
-            time (1/Pa); >= 0. Without it 0.
+            time, which in rigid rock it does only if the fluid is compressible (1/Pa); >= 0.
+            Without it 0.
         initial_pressure: Pressure before any load, in balance with `[initial_stress]`, which is
             total: constant, or linear in the elevation (Pa); -1e12 to 1e12. Without it 0.
         isolated: Networks of fractures that no pressure and no rate acts on are refused, or left

@@ -43,6 +43,7 @@ mod places;
 mod solve;
 mod steady;
 mod topology;
+mod transient;
 mod wall_points;
 mod walls;
 mod wells;
@@ -56,6 +57,7 @@ pub use loaded::FlowState;
 pub use networks::{FlowNetwork, NO_PRESSURE};
 pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTensor};
 pub use steady::FlowSystem;
+pub use transient::{TimeStep, TransientFlow};
 
 #[cfg(test)]
 mod tests;

@@ -100,4 +100,10 @@ impl Flow {
         };
         takes_time || self.conduits.iter().any(of_walls)
     }
+
+    /// Whether fractures whose walls do not move store fluid in a run in time: if pressure
+    /// compresses it.
+    pub fn is_stored(&self, is_timed: bool) -> bool {
+        is_timed && self.fluid.compressibility > 0.0
+    }
 }

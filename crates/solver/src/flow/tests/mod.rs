@@ -5,6 +5,7 @@ mod coupled;
 mod permeability;
 mod push;
 mod refusals;
+mod transient;
 
 use glam::DVec3;
 use kluft_mesh::structured::{Patch, cells_of};
