@@ -22,6 +22,7 @@ mod network;
 mod network_flow;
 mod network_seeds;
 mod one_answer;
+mod places;
 mod pressed_joints;
 mod probes;
 mod read_back;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
-use kluft_solver::{Condition, FixedPoint, Flow, Problem, Varying};
+use kluft_solver::{Condition, FixedPoint, Flow, Problem, Spring, Varying};
 use lie_core::{FractureLaw, Rock};
 
 use crate::bind_fields::bind_fields;
@@ -14,6 +14,7 @@ use crate::doubts::warnings;
 use crate::isolated::leave_out;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
+use crate::placed::name_places;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::rock::RockEntry;
@@ -43,11 +44,12 @@ impl Scene {
     /// # Errors
     /// Every defect of the mesh, and everything in the scene that does not fit it.
     pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
+        let draft = self.in_metres(draft);
         if self.takes_surfaces(&draft) {
             return self.surface_problem(draft);
         }
         let faces = Faces::of(&draft);
-        let joined = join(self, draft, faces)?;
+        let joined = name_places(self, join(self, draft, faces)?)?;
         let inner = joined.faces.inner_surfaces(&joined.draft);
         let Roles {
             of_group,
@@ -126,6 +128,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let mut flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
     let mut problem = Problem {
+        springs: springs(&bound.boundaries, &conditions),
         conditions,
         rocks: rocks(scene),
         rock_of_cell,
@@ -182,6 +185,18 @@ fn bind_boundaries<'a>(
         Some((entry, condition))
     });
     conditions.unzip()
+}
+
+/// The springs of boundaries, which stand beside their conditions.
+fn springs(boundaries: &[&Named<BoundaryEntry>], conditions: &[Condition]) -> Vec<Spring> {
+    let pairs = boundaries.iter().zip(conditions);
+    let springs = pairs.filter_map(|(entry, condition)| {
+        Some(Spring {
+            boundary: condition.boundary,
+            stiffness: entry.value.springs.as_ref()?.stiffness.clone(),
+        })
+    });
+    springs.collect()
 }
 
 fn quarter_points(moved: usize) -> Option<String> {

@@ -161,6 +161,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         rocks,
         fractures,
         boundaries,
+        scale: mesh.scale,
         quarter_points: mesh.quarter_points,
         weld: mesh.weld,
         refine: mesh.refine,
@@ -173,6 +174,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
 /// What a scene says of its mesh.
 struct MeshSection {
     source: Option<MeshSource>,
+    scale: f64,
     quarter_points: bool,
     weld: bool,
     refine: u32,
@@ -186,7 +188,9 @@ fn read_mesh_section(root: &Section<'_, '_>, folder: &Path, setting: Setting) ->
         .as_ref()
         .and_then(|section| section.number("refine"));
     let refine = refine.map_or(0, |times| times as u32);
+    let scale = section.as_ref().and_then(|section| section.number("scale"));
     MeshSection {
+        scale: scale.unwrap_or(1.0),
         quarter_points: flag("quarter_points").unwrap_or(true),
         weld: flag("weld").unwrap_or(false),
         refine,
@@ -226,6 +230,11 @@ fn read_mesh(
     let adapt = section.section("adapt").and_then(read_adapt);
     if adapt.is_some() && refine > 0 {
         refuse_both(&section);
+    }
+    if adapt.is_some() && section.has("scale") {
+        let problem = "`scale` and `adapt` are both given: `adapt` asks gmsh for sizes in metres";
+        let remedy = "write the geometry in metres, or remove adapt";
+        section.refuse("scale", problem.into(), remedy);
     }
     let mesh = match (geometry, file) {
         (Some(geometry), None) => Some(MeshSource::Geometry {

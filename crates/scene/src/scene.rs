@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kluft_mesh::Draft;
 use kluft_solver::LinearMethod;
 use lie_core::FacetQuadrature;
 
@@ -88,6 +89,8 @@ pub struct Scene {
     pub title: String,
     /// Its mesh.
     pub mesh: MeshSource,
+    /// Metres that one unit of the coordinates of the mesh is.
+    pub scale: f64,
     /// Whether second-order cells at crack fronts become quarter-point elements.
     pub quarter_points: bool,
     /// Whether nodes at one place become one node.
@@ -129,6 +132,14 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A mesh as read, its coordinates in metres.
+    pub fn in_metres(&self, mut draft: Draft) -> Draft {
+        if self.scale != 1.0 {
+            draft.scale(self.scale);
+        }
+        draft
+    }
+
     /// The files that values come from, each once, in the order of the scene.
     pub fn value_files(&self) -> Vec<&Path> {
         let fractures = self.fractures.iter().flat_map(|entry| {

@@ -45,6 +45,13 @@ pub static MESH: KeySection = KeySection {
             says: "2 meshes fractures and outer faces without the rock between them, for flow in rigid rock; with `geometry` only",
         },
         Key {
+            name: "scale",
+            kind: number(Dimension::One, Range::Positive),
+            need: Need::Default("1"),
+            example: "1000",
+            says: "Metres that one unit of the coordinates of the mesh is: 1000 for kilometres; not with `adapt`",
+        },
+        Key {
             name: "quarter_points",
             kind: Kind::Flag,
             need: Need::Default("true"),
