@@ -63,6 +63,8 @@ pub fn list(
         draft.group_sizes(&draft.cells),
         draft.group_sizes(&draft.facets),
     );
+    // Lines of the plane are surfaces of its cells.
+    let raised = usize::from(draft.is_extruded);
     let groups = draft.groups.iter().enumerate();
     groups
         .map(|(index, group)| {
@@ -78,7 +80,7 @@ pub fn list(
             };
             GroupFinding {
                 name: group.name.clone(),
-                dimension: group.dimension,
+                dimension: group.dimension - raised.min(group.dimension),
                 tag: group.tag,
                 elements: match group.dimension {
                     3 => Some(cells[index]),

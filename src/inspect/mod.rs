@@ -116,7 +116,8 @@ fn look(
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
     let draft = match scene {
-        Some(scene) => scene.in_metres(draft),
+        Some(scene) => scene.taken(draft),
+        None if draft.is_plane() => draft.extruded(),
         None => draft,
     };
     inspection.warnings.extend(groups::missing(&draft));

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use crate::draft::{Draft, Elements, TaggedElements};
-use crate::geometry::facet_area_vector;
+use crate::geometry::{corners, facet_area_vector};
+use crate::shape::Shape;
 
 /// Nodes off a plane by less than this share of the size of the mesh are on it.
 const ON_PLANE: f64 = 1e-9;
@@ -17,7 +18,10 @@ impl Draft {
         if !self.cells.elements.is_empty() || facets.is_empty() {
             return false;
         }
-        let places = facets.nodes.iter().map(|&node| DVec3::from(self.nodes[node as usize]));
+        let places = facets
+            .nodes
+            .iter()
+            .map(|&node| DVec3::from(self.nodes[node as usize]));
         let (low, high) = places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| {
             (low.min(x), high.max(x))
         });
@@ -31,7 +35,7 @@ impl Draft {
     pub fn extruded(mut self) -> Self {
         let flat = std::mem::take(&mut self.facets);
         let lines = std::mem::take(&mut self.lines);
-        let without_middles = flat.elements.shapes.contains(&crate::shape::Shape::Quad8);
+        let without_middles = flat.elements.shapes.contains(&Shape::Quad8);
         let is_quadratic = flat.elements.has_quadratic();
         let count = self.nodes.len() as u32;
         let layers = |height: i8| match height {
@@ -39,9 +43,9 @@ impl Draft {
             1 => count,
             _ => 2 * count,
         };
+        let places: Vec<DVec3> = self.nodes.iter().copied().map(DVec3::from).collect();
         let is_turned = |element: usize| {
-            let own = &flat.elements;
-            let corners = crate::geometry::corners(own, element, &self.places());
+            let corners = corners(&flat.elements, element, &places);
             facet_area_vector(&corners).z < 0.0
         };
         let turned: Vec<bool> = (0..flat.elements.len()).map(is_turned).collect();
@@ -51,7 +55,8 @@ impl Draft {
             for (element, &is_turned) in turned.iter().enumerate() {
                 let own = elements.elements.nodes_of(element);
                 let shape = elements.elements.shapes[element].extruded(without_middles);
-                let Some((shape, over)) = shape.and_then(|shape| Some((shape, shape.flat()?))) else {
+                let Some((shape, over)) = shape.and_then(|shape| Some((shape, shape.flat()?)))
+                else {
                     continue;
                 };
                 let node = |(&flat, &height): (&u8, &i8)| {
@@ -70,22 +75,21 @@ impl Draft {
         self.cells = raised(&flat, &turned);
         self.facets = raised(&lines, &never);
         self.lines = TaggedElements::new();
-        let heights: &[f64] = match is_quadratic {
-            true => &[0.0, THICKNESS, THICKNESS / 2.0],
-            false => &[0.0, THICKNESS],
+        let heights = match is_quadratic {
+            true => vec![0.0, THICKNESS, THICKNESS / 2.0],
+            false => vec![0.0, THICKNESS],
         };
         let below = std::mem::take(&mut self.nodes);
-        let raise = |height: &f64| below.iter().map(move |[x, y, z]| [*x, *y, z + height]);
-        self.nodes = heights.iter().flat_map(raise).collect();
+        self.nodes = Vec::with_capacity(heights.len() * below.len());
+        for height in &heights {
+            let raised = below.iter().map(|[x, y, z]| [*x, *y, z + height]);
+            self.nodes.extend(raised);
+        }
         self.node_tags = self.node_tags.repeat(heights.len());
         for group in self.groups.iter_mut().filter(|group| group.dimension > 0) {
             group.dimension += 1;
         }
         self.is_extruded = true;
         self
-    }
-
-    fn places(&self) -> Vec<DVec3> {
-        self.nodes.iter().copied().map(DVec3::from).collect()
     }
 }

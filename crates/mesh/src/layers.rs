@@ -4,6 +4,8 @@
 //! with it: cells and facets keep their nodes, and with them their volumes and areas, but unknowns
 //! are those of the layer below.
 
+use glam::DVec3;
+
 use crate::draft::Elements;
 use crate::shape::Shape;
 
@@ -52,8 +54,8 @@ impl Shape {
         let axis = shape.dimension();
         let in_plane = shape.reference_nodes();
         let own = self.reference_nodes();
-        let below = |at: &glam::DVec3| {
-            let is_below = |flat: &glam::DVec3| (0..axis).all(|i| flat[i] == at[i]);
+        let below = |at: &DVec3| {
+            let is_below = |flat: &DVec3| (0..axis).all(|i| flat[i] == at[i]);
             in_plane.iter().position(is_below)
         };
         let node: Option<Vec<u8>> = own.iter().map(|at| below(at).map(|n| n as u8)).collect();
@@ -66,9 +68,12 @@ impl Shape {
 }
 
 /// The node that each node of a plane mesh moves with, itself in the layer below.
-pub(crate) fn originals(cells: &Elements, is_below: impl Fn(u32, u32) -> bool) -> Vec<u32> {
-    let count = cells.nodes.iter().max().map_or(0, |&node| node as usize + 1);
-    let mut original: Vec<u32> = (0..count as u32).collect();
+pub(crate) fn originals(
+    cells: &Elements,
+    node_count: usize,
+    is_below: impl Fn(u32, u32) -> bool,
+) -> Vec<u32> {
+    let mut original: Vec<u32> = (0..node_count as u32).collect();
     for_each_slot(cells, is_below, |slot, below| {
         original[cells.nodes[slot] as usize] = cells.nodes[below];
     });
@@ -112,7 +117,14 @@ mod tests {
 
     #[test]
     fn every_extrusion_knows_what_it_stands_on() {
-        let flat = [Shape::Line2, Shape::Line3, Shape::Tri3, Shape::Tri6, Shape::Quad4, Shape::Quad9];
+        let flat = [
+            Shape::Line2,
+            Shape::Line3,
+            Shape::Tri3,
+            Shape::Tri6,
+            Shape::Quad4,
+            Shape::Quad9,
+        ];
         for shape in flat {
             let extruded = shape.extruded(false).expect("an extrusion");
             let found = extruded.flat().expect("a flat shape");

@@ -26,7 +26,12 @@ impl Draft {
         let outer = OuterFaces::of(&self.cells.elements, &faces.adjacency);
         let chosen = surfaces.iter().map(|surface| {
             let own = outer.faces.iter().enumerate();
-            let own = own.filter(|(index, _)| (surface.holds)(&outer.corners(*index, &nodes)));
+            let own = own.filter(|(index, _)| {
+                let corners = outer.corners(*index, &nodes);
+                // The front and the back of a mesh of the plane are no boundary.
+                let is_end = self.is_extruded && corners.iter().all(|x| x.z == corners[0].z);
+                !is_end && (surface.holds)(&corners)
+            });
             own.map(|(_, &face)| face).collect()
         });
         let chosen: Vec<Vec<u32>> = chosen.collect();

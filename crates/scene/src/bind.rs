@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
-use kluft_solver::{Condition, FixedPoint, Flow, Problem, Spring, Varying};
+use kluft_solver::{Condition, FixedPoint, Flow, Problem, Spring, SpringStiffness, Varying};
 use lie_core::{FractureLaw, Rock};
 
 use crate::bind_fields::bind_fields;
@@ -44,7 +44,7 @@ impl Scene {
     /// # Errors
     /// Every defect of the mesh, and everything in the scene that does not fit it.
     pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
-        let draft = self.in_metres(draft);
+        let draft = self.taken(draft);
         if self.takes_surfaces(&draft) {
             return self.surface_problem(draft);
         }
@@ -62,6 +62,10 @@ impl Scene {
             mut decisions,
         } = refine(self, joined, &of_group).map_err(in_terms_of_scene)?;
         decisions.extend(unused);
+        decisions.extend(draft.is_extruded.then(|| {
+            "a mesh of the plane: plane strain in x and y; areas and forces are those of one metre"
+                .to_owned()
+        }));
         let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
         Ok(bind(self, mesh)?.after(decisions, warnings))
     }
@@ -111,6 +115,13 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     if scene.body.gravity != DVec3::ZERO && !scene.is_rigid() {
         defects.extend(missing_densities(scene));
     }
+    if mesh.is_plane() && scene.body.gravity.z != 0.0 {
+        defects.push(Defect::new(
+            "[body]",
+            "gravity has a part along z, out of the plane of the mesh",
+            "write it along y: gravity = [0, -9.81, 0]",
+        ));
+    }
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
     if !defects.is_empty() {
@@ -128,7 +139,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let mut flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
     let mut problem = Problem {
-        springs: springs(&bound.boundaries, &conditions),
+        springs: springs(&bound.boundaries, &conditions, mesh.is_plane()),
         conditions,
         rocks: rocks(scene),
         rock_of_cell,
@@ -188,12 +199,20 @@ fn bind_boundaries<'a>(
 }
 
 /// The springs of boundaries, which stand beside their conditions.
-fn springs(boundaries: &[&Named<BoundaryEntry>], conditions: &[Condition]) -> Vec<Spring> {
+fn springs(
+    boundaries: &[&Named<BoundaryEntry>],
+    conditions: &[Condition],
+    is_plane: bool,
+) -> Vec<Spring> {
     let pairs = boundaries.iter().zip(conditions);
     let springs = pairs.filter_map(|(entry, condition)| {
+        let mut stiffness = entry.value.springs.as_ref()?.stiffness.clone();
+        if let SpringStiffness::Outside { is_line, .. } = &mut stiffness {
+            *is_line = is_plane;
+        }
         Some(Spring {
             boundary: condition.boundary,
-            stiffness: entry.value.springs.as_ref()?.stiffness.clone(),
+            stiffness,
         })
     });
     springs.collect()
@@ -358,6 +377,10 @@ fn bind_fixed_points<'a>(
         let Some((node, distance, longest_edge)) = nearest_node(mesh, at) else {
             continue;
         };
+        let node = mesh
+            .original
+            .as_ref()
+            .map_or(node, |own| own[node] as usize);
         let x = mesh.nodes[node];
         let tag = mesh.node_tags[node];
         if distance > longest_edge {

@@ -268,6 +268,8 @@ fn read_springs(section: &Section<'_, '_>) -> Option<SpringEntry> {
         return Some(SpringEntry {
             stiffness: SpringStiffness::Outside {
                 centre: centre.into(),
+                // Until the mesh is known.
+                is_line: false,
             },
             fields: Vec::new(),
         });

@@ -117,7 +117,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fluid: fluid_use(root),
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    let mesh = read_mesh_section(root, folder, setting);
+    let mesh = read_mesh_section(root, folder);
     match setting.is_rigid() {
         true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
@@ -180,7 +180,7 @@ struct MeshSection {
     refine: u32,
 }
 
-fn read_mesh_section(root: &Section<'_, '_>, folder: &Path, setting: Setting) -> MeshSection {
+fn read_mesh_section(root: &Section<'_, '_>, folder: &Path) -> MeshSection {
     root.require("mesh");
     let section = root.section("mesh");
     let flag = |key| section.as_ref().and_then(|section| section.flag(key));
@@ -194,7 +194,7 @@ fn read_mesh_section(root: &Section<'_, '_>, folder: &Path, setting: Setting) ->
         quarter_points: flag("quarter_points").unwrap_or(true),
         weld: flag("weld").unwrap_or(false),
         refine,
-        source: section.and_then(|section| read_mesh(section, folder, (refine, setting))),
+        source: section.and_then(|section| read_mesh(section, folder, refine)),
     }
 }
 
@@ -210,11 +210,7 @@ fn entry<'a, 'i, T>(
     value.map(|value| Named { name, place, value })
 }
 
-fn read_mesh(
-    section: Section<'_, '_>,
-    folder: &Path,
-    (refine, setting): (u32, Setting),
-) -> Option<MeshSource> {
+fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<MeshSource> {
     let geometry = read_path(&section, "geometry", folder);
     let file = read_path(&section, "file", folder);
     let parameters = section.free_numbers("parameters");
@@ -226,7 +222,7 @@ fn read_mesh(
             "write order = 1 (linear) or order = 2 (quadratic)",
         );
     }
-    let surfaces_alone = read_dimension(&section, setting);
+    let surfaces_alone = section.number("dimension") == Some(2.0);
     let adapt = section.section("adapt").and_then(read_adapt);
     if adapt.is_some() && refine > 0 {
         refuse_both(&section);
@@ -287,17 +283,6 @@ fn idle_beside_file(
     };
     let all = ["order", "dimension", "adapt", "parameters"];
     all.into_iter().find(is_said)
-}
-
-/// Whether only surfaces are meshed, which serves no rock that deforms.
-fn read_dimension(section: &Section<'_, '_>, setting: Setting) -> bool {
-    let surfaces_alone = section.number("dimension") == Some(2.0);
-    if surfaces_alone && !setting.is_rigid() {
-        let problem = "dimension = 2 meshes no rock, and this rock deforms";
-        let remedy = "remove dimension, or leave out young_modulus for flow in rigid rock";
-        section.refuse("dimension", problem.into(), remedy);
-    }
-    surfaces_alone
 }
 
 /// Refuses to refine what follows the error.

@@ -132,12 +132,26 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A mesh as read, its coordinates in metres.
-    pub fn in_metres(&self, mut draft: Draft) -> Draft {
+    /// A mesh as read, its coordinates in metres, and one cell thick if it is of the plane.
+    pub fn taken(&self, mut draft: Draft) -> Draft {
         if self.scale != 1.0 {
             draft.scale(self.scale);
         }
-        draft
+        match self.is_of_plane(&draft) {
+            true => draft.extruded(),
+            false => draft,
+        }
+    }
+
+    /// Whether a mesh is one of the plane. In rigid rock a flat surface may be a fracture, unless
+    /// fractures are lines.
+    fn is_of_plane(&self, draft: &Draft) -> bool {
+        let is_line = |name: &str| {
+            let mut groups = draft.groups.iter();
+            groups.any(|group| group.dimension == 1 && group.name == name)
+        };
+        let mut fractures = self.fractures.iter();
+        draft.is_plane() && (!self.is_rigid() || fractures.any(|entry| is_line(&entry.name)))
     }
 
     /// The files that values come from, each once, in the order of the scene.

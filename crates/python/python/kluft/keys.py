@@ -776,8 +776,9 @@ class MeshSource(Section):
         parameters: Plain numbers handed to gmsh, `{ h = 0.1 }` as `-setnumber h 0.1`; with
             `geometry` only. Without it {}.
         order: Order of the elements; with `geometry` only; 1 to 2. Without it 1.
-        dimension: 2 meshes fractures and outer faces without the rock between them, for flow in
-            rigid rock; with `geometry` only; 2 to 3. Without it 3.
+        dimension: 2 meshes surfaces alone: those of a plane are a scene in plane strain, whose
+            fractures are lines; others are the fractures and outer faces of rigid rock; with
+            `geometry` only; 2 to 3. Without it 3.
         scale: Metres that one unit of the coordinates of the mesh is: 1000 for kilometres; not with
             `adapt`; > 0. Without it 1.
         quarter_points: Whether cells of order 2 at crack fronts follow the square root of the

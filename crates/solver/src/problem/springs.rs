@@ -30,6 +30,9 @@ pub enum SpringStiffness {
     Outside {
         /// The centre (m).
         centre: DVec3,
+        /// Whether it is a line along z, in plane strain: as around a cylinder, all displacements
+        /// meet `2 G / r`.
+        is_line: bool,
     },
 }
 
@@ -42,14 +45,20 @@ impl SpringStiffness {
                 normal: across,
                 shear,
             } => axial(normal, across.at(position, 0.0), shear.at(position, 0.0)),
-            Self::Outside { centre } => {
-                let arm = position - *centre;
+            Self::Outside { centre, is_line } => {
+                let mut arm = position - *centre;
+                if *is_line {
+                    arm.z = 0.0;
+                }
                 let radius = arm.length();
                 let direction = arm / radius;
                 // Area of the sphere for that of the surface in one cone.
                 let share = direction.dot(normal).max(0.0);
                 let unit = share * shear_modulus / radius;
-                axial(direction, 4.0 * unit, 3.0 * unit)
+                match is_line {
+                    true => axial(direction, 2.0 * unit, 2.0 * unit),
+                    false => axial(direction, 4.0 * unit, 3.0 * unit),
+                }
             }
         }
     }
@@ -70,7 +79,8 @@ mod tests {
     #[test]
     fn rock_outside_a_sphere_resists_as_it_does() {
         let centre = DVec3::new(1.0, -2.0, 0.5);
-        let outside = SpringStiffness::Outside { centre };
+        let is_line = false;
+        let outside = SpringStiffness::Outside { centre, is_line };
         let normal = DVec3::new(2.0, 1.0, -2.0) / 3.0;
         let modulus = 7.0;
         let stiffness = outside.at(centre + 2.5 * normal, normal, modulus);
