@@ -12,7 +12,7 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// The plane whose normal runs down along a line: its trend clockwise from north, and its plunge
+    /// The plane whose normal runs down along a line: its trend clockwise from north, its plunge
     /// below the horizontal (degrees).
     pub fn of_trend_and_plunge(trend: f64, plunge: f64) -> Self {
         Self {

@@ -265,8 +265,7 @@ impl Run<'_> {
         self.summary.warnings.extend(unresolved);
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
-            let mesh = &problem.mesh;
-            let rock = || in_plane(mesh, rock_grid(system, &solution, Some(&accuracy)));
+            let rock = || in_plane(&problem.mesh, rock_grid(system, &solution, Some(&accuracy)));
             let fractures = || {
                 let mut grid = fracture_grid(system, &nodes, Some(&accuracy));
                 let field = facets.as_deref().map(undetermined::field);
@@ -274,7 +273,7 @@ impl Run<'_> {
                 if let Some(flow) = &flow {
                     fluid_step::add_to(&mut grid, flow, &nodes);
                 }
-                in_plane(mesh, grid)
+                in_plane(&problem.mesh, grid)
             };
             if !run.request.keep_results {
                 return run.output.write_step(time, rock, fractures);

@@ -112,16 +112,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     }
     let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
     let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
-    if scene.body.gravity != DVec3::ZERO && !scene.is_rigid() {
-        defects.extend(missing_densities(scene));
-    }
-    if mesh.is_plane() && scene.body.gravity.z != 0.0 {
-        defects.push(Defect::new(
-            "[body]",
-            "gravity has a part along z, out of the plane of the mesh",
-            "write it along y: gravity = [0, -9.81, 0]",
-        ));
-    }
+    defects.extend(wrong_gravity(scene, &mesh));
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
     if !defects.is_empty() {
@@ -351,18 +342,28 @@ fn bind_fractures<'a>(
     entries
 }
 
-fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
-    let without = scene
-        .rocks
-        .iter()
-        .filter(|entry| entry.value.rock.density == 0.0);
-    without.map(|entry| {
+/// Rocks without a density where gravity acts, and gravity out of a plane.
+fn wrong_gravity(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
+    let gravity = scene.body.gravity;
+    let acts = gravity != DVec3::ZERO && !scene.is_rigid();
+    let rocks = scene.rocks.iter();
+    let without = rocks.filter(|entry| acts && entry.value.rock.density == 0.0);
+    let without = without.map(|entry| {
         Defect::new(
             &entry.place,
             "gravity acts, but this rock has no density",
             "add `density = 2700` (kg/m^3)",
         )
-    })
+    });
+    let leaves = mesh.is_plane() && gravity.z != 0.0;
+    let out_of_plane = leaves.then(|| {
+        Defect::new(
+            "[body]",
+            "gravity has a part along z, out of the plane of the mesh",
+            "write it along y: gravity = [0, -9.81, 0]",
+        )
+    });
+    without.chain(out_of_plane).collect()
 }
 
 fn bind_fixed_points<'a>(

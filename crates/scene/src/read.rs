@@ -138,13 +138,12 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     // Of `kluft study`, which reads it.
     root.section("study");
     let probes = named("probe").filter_map(|(name, s)| entry(source, name, s, read_probe));
-    let probes = probes.collect();
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
     let flowing = read_flow(root, &body);
     Some(Scene {
         oracles,
-        probes,
+        probes: probes.collect(),
         fluid: flowing.fluid,
         isolated: flowing.isolated,
         equivalent_permeability: flowing.equivalent_permeability,

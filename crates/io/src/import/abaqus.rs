@@ -1,4 +1,4 @@
-//! Reads Abaqus input files: nodes, elements, sets and surfaces, and cohesive elements as fractures.
+//! Reads Abaqus input files: nodes, elements, sets, surfaces, and cohesive elements as fractures.
 //!
 //! Keywords begin with `*`, comments with `**`; the lines behind a keyword are its data. What is
 //! neither mesh nor set is passed over and named.

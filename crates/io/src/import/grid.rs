@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use kluft_mesh::{Defect, Draft, Group, Shape, TaggedElements};
+use kluft_mesh::{Defect, Draft, Group, Shape, TaggedElements, sample};
 use memchr::memmem;
 use vtkio::model::{Attribute, DataSet, UnstructuredGridPiece, VertexNumbers, Vtk};
 
@@ -144,29 +144,11 @@ impl Cells {
             .iter()
             .map(|kind| shape_of_vtk_cell(*kind))
             .collect();
-        // Vertices lie on nodes that others have.
-        let odd = self.types.iter().zip(&shapes);
-        let mut odd: Vec<u64> = odd
-            .filter(|(kind, shape)| shape.is_none() && **kind > 2)
-            .map(|(kind, _)| u64::from(*kind))
-            .collect();
-        odd.sort_unstable();
-        odd.dedup();
-        if !odd.is_empty() {
-            let problem = format!(
-                "cells of VTK's types {} cannot be used",
-                kluft_mesh::sample(&odd)
-            );
-            let remedy = "mesh with tetrahedra, hexahedra, wedges or pyramids of first or second \
-                          order, or triangles and quadrangles in the plane";
-            return Err(vec![Defect::new(source, problem, remedy)]);
+        if let Some(defect) = self.unusable(&source, &shapes) {
+            return Err(vec![defect]);
         }
-        let highest = shapes
-            .iter()
-            .flatten()
-            .map(|shape| shape.dimension())
-            .max()
-            .unwrap_or(0);
+        let dimensions = shapes.iter().flatten().map(|shape| shape.dimension());
+        let highest = dimensions.max().unwrap_or(0);
         let mut draft = Draft {
             source,
             node_tags: (1..=self.points.len() as u64).collect(),
@@ -175,36 +157,10 @@ impl Cells {
             lines: TaggedElements::new(),
             ..Draft::default()
         };
-        let mut start = 0;
-        for (cell, shape) in shapes.iter().enumerate() {
-            let end = self.ends[cell] as usize;
-            let own = &self.nodes[start..end];
-            start = end;
-            let Some(shape) = *shape else {
-                continue;
-            };
-            if own.len() != shape.node_count() {
-                let problem = format!("cell {cell} has {} nodes", own.len());
-                return Err(vec![Defect::new(
-                    draft.source,
-                    problem,
-                    "write the grid again",
-                )]);
+        for (cell, shape) in shapes.into_iter().enumerate() {
+            if let Some(shape) = shape {
+                self.add(&mut draft, (cell, shape), highest);
             }
-            let nodes: Vec<u32> = own.iter().map(|&node| node as u32).collect();
-            let material = self
-                .materials
-                .as_ref()
-                .map_or(0, |(_, values)| values[cell]);
-            let set = group(&mut draft, shape.dimension(), (material, highest));
-            let target = match shape.dimension() {
-                3 => &mut draft.cells,
-                2 => &mut draft.facets,
-                _ => &mut draft.lines,
-            };
-            target.elements.push(shape, &from_vtk(shape, &nodes));
-            target.tags.push(cell as u64 + 1);
-            target.group_set.push(set);
         }
         draft.nodes = self.points;
         let mut notes = vec![match &self.materials {
@@ -218,6 +174,52 @@ impl Cells {
             ));
         }
         Ok(Imported { draft, notes })
+    }
+
+    fn nodes_of(&self, cell: usize) -> &[u64] {
+        let start = cell.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.nodes[start as usize..self.ends[cell] as usize]
+    }
+
+    /// Cells of no shape that serves, or with another number of nodes. Vertices lie on nodes that
+    /// others have.
+    fn unusable(&self, source: &str, shapes: &[Option<Shape>]) -> Option<Defect> {
+        let odd = self.types.iter().zip(shapes);
+        let odd = odd.filter(|(kind, shape)| shape.is_none() && **kind > 2);
+        let mut odd: Vec<u64> = odd.map(|(kind, _)| u64::from(*kind)).collect();
+        odd.sort_unstable();
+        odd.dedup();
+        if !odd.is_empty() {
+            return Some(Defect::new(
+                source,
+                format!("cells of VTK's types {} cannot be used", sample(&odd)),
+                "mesh with tetrahedra, hexahedra, wedges or pyramids of first or second order, or \
+                 triangles and quadrangles in the plane",
+            ));
+        }
+        let broken = |cell: &usize| {
+            shapes[*cell].is_some_and(|shape| self.nodes_of(*cell).len() != shape.node_count())
+        };
+        let cell = (0..shapes.len()).find(broken)?;
+        let problem = format!("cell {cell} has {} nodes", self.nodes_of(cell).len());
+        Some(Defect::new(source, problem, "write the grid again"))
+    }
+
+    /// Adds a cell; `highest` is the dimension of the rock.
+    fn add(&self, draft: &mut Draft, (cell, shape): (usize, Shape), highest: usize) {
+        let nodes = self.nodes_of(cell).iter();
+        let nodes: Vec<u32> = nodes.map(|&node| node as u32).collect();
+        let materials = self.materials.as_ref();
+        let material = materials.map_or(0, |(_, values)| values[cell]);
+        let set = group(draft, shape.dimension(), (material, highest));
+        let target = match shape.dimension() {
+            3 => &mut draft.cells,
+            2 => &mut draft.facets,
+            _ => &mut draft.lines,
+        };
+        target.elements.push(shape, &from_vtk(shape, &nodes));
+        target.tags.push(cell as u64 + 1);
+        target.group_set.push(set);
     }
 }
 
