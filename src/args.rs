@@ -9,6 +9,7 @@ use kluft_network::{Domain, Grouping};
 use crate::gmsh::GmshArgs;
 #[cfg(target_os = "linux")]
 use crate::gmsh::START;
+use crate::import::ImportOptions;
 use crate::inspect::InspectOptions;
 use crate::network::NetworkOptions;
 use crate::printing::WIDTH;
@@ -40,6 +41,8 @@ pub enum Command {
     /// Make a geometry and a scene from a list or random sets of fractures
     #[command(after_help = include_str!("help/network.txt").trim_end())]
     Network(NetworkArgs),
+    /// Make a gmsh mesh and a scene of a mesh of another program
+    Import(ImportArgs),
     /// Report on a scene or a mesh without solving
     #[command(after_help = include_str!("help/inspect.txt").trim_end())]
     Inspect(InspectArgs),
@@ -235,6 +238,22 @@ fn verbosity(quiet: bool, verbose: bool) -> Verbosity {
     }
 }
 
+/// Arguments of `kluft import`.
+#[derive(Args)]
+pub struct ImportArgs {
+    /// The mesh: an Abaqus input file (.inp), or a grid of VTK with numbers of materials (.vtu)
+    pub input: PathBuf,
+    /// Folder for mesh and scene
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print the report even when the output is not a terminal
+    #[arg(long, short)]
+    verbose: bool,
+}
+
 /// Arguments of `kluft inspect`.
 #[derive(Args)]
 pub struct InspectArgs {
@@ -291,6 +310,15 @@ impl From<StudyArgs> for StudyOptions {
             threads: args.threads.map(usize::from),
             verbosity: verbosity(args.quiet, args.verbose),
             gmsh: args.gmsh,
+        }
+    }
+}
+
+impl From<ImportArgs> for ImportOptions {
+    fn from(args: ImportArgs) -> Self {
+        Self {
+            out: args.out,
+            verbosity: verbosity(args.quiet, args.verbose),
         }
     }
 }

@@ -7,6 +7,7 @@ mod defects;
 mod explain;
 mod failure;
 mod gmsh;
+mod import;
 mod input;
 mod inspect;
 mod network;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
     let done = match arguments().command {
         Command::Run(args) => run::run(&args.scene.clone(), &args.into()),
         Command::Network(args) => network::make_network(&args.input.clone(), &args.into()),
+        Command::Import(args) => import::import(&args.input.clone(), &args.into()),
         Command::Inspect(args) => inspect::inspect(&args.input.clone(), &args.into()),
         Command::Study(args) => study::study(&args.scene.clone(), &args.into()),
         Command::Explain { key } => explain::explain(key.as_deref()),

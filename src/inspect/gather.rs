@@ -215,6 +215,9 @@ pub fn held_and_loaded(problem: &Problem, inspection: &mut Inspection) {
             .collect()
     };
     let supports = names(&|condition| condition.support.is_some());
+    let springs = problem.springs.iter();
+    let springs = springs.map(|spring| mesh.boundaries[spring.boundary].name.as_str());
+    let supports: Vec<&str> = supports.into_iter().chain(springs).collect();
     let loads = names(&|condition| condition.load.is_some());
     for (block, fixed) in inspection.blocks.iter_mut().zip(holds_fixed) {
         let on = |chosen: &[&str]| {

@@ -1,11 +1,11 @@
 //! Physical groups: how many elements they hold and what the scene makes of them.
 
 use kluft_keys::section_head;
-use kluft_mesh::{Draft, SurfaceRole};
-use kluft_solver::{Support, SurfaceLoad};
+use kluft_mesh::{Draft, SurfaceRole, sample};
+use kluft_solver::{SpringStiffness, Support, SurfaceLoad};
 
 use super::findings::GroupFinding;
-use kluft_scene::{BoundaryEntry, LoadEntry, Scene};
+use kluft_scene::{BoundaryEntry, LoadEntry, Scene, repeated_name};
 
 /// What is said of a mesh that names no volumes or no surfaces, and how names are made.
 pub fn missing(draft: &Draft) -> Option<String> {
@@ -29,6 +29,29 @@ pub fn missing(draft: &Draft) -> Option<String> {
     }
 }
 
+/// What is said of names that several groups of one dimension have.
+pub fn repeated(draft: &Draft) -> Vec<String> {
+    let mut told = Vec::new();
+    for group in draft.groups.iter().filter(|group| group.dimension >= 2) {
+        let kind = match group.dimension {
+            2 => "surfaces",
+            _ => "volumes",
+        };
+        let tags = repeated_name(&draft.groups, &group.name, group.dimension);
+        let text = tags.map(|tags| {
+            format!(
+                "{} physical {kind} are called `{}`, with the numbers {}: a scene cannot name one of \
+                 them; let one group hold the elements of all, or give each a name of its own",
+                tags.len(),
+                group.name,
+                sample(&tags)
+            )
+        });
+        told.extend(text.filter(|text| !told.contains(text)));
+    }
+    told
+}
+
 /// All groups; without roles (the scene names groups that are not there) the surfaces' are unknown.
 pub fn list(
     draft: &Draft,
@@ -40,6 +63,8 @@ pub fn list(
         draft.group_sizes(&draft.cells),
         draft.group_sizes(&draft.facets),
     );
+    // Lines of the plane are surfaces of its cells.
+    let raised = usize::from(draft.is_extruded);
     let groups = draft.groups.iter().enumerate();
     groups
         .map(|(index, group)| {
@@ -55,7 +80,7 @@ pub fn list(
             };
             GroupFinding {
                 name: group.name.clone(),
-                dimension: group.dimension,
+                dimension: group.dimension - raised.min(group.dimension),
                 tag: group.tag,
                 elements: match group.dimension {
                     3 => Some(cells[index]),
@@ -134,9 +159,20 @@ fn what_acts(entry: &BoundaryEntry) -> String {
             format!("displacement {} m", parts.collect::<Vec<_>>().join(", "))
         }
     });
+    let springs = entry.springs.as_ref().map(|springs| {
+        let fields = springs.fields.iter();
+        let fields: Vec<String> = fields
+            .map(|field| format!("{} by {}", field.key, field.origin))
+            .collect();
+        match (&springs.stiffness, fields.is_empty()) {
+            (SpringStiffness::Outside { .. }, _) => "springs of unbounded rock".to_owned(),
+            (_, true) => "springs".to_owned(),
+            (_, false) => fields.join(", "),
+        }
+    });
     let points = entry.history.as_ref().map(|history| history.points.len());
     let history = points.map(|count| format!("history of {count} points"));
-    [load, support, history]
+    [load, support, springs, history]
         .into_iter()
         .flatten()
         .collect::<Vec<_>>()

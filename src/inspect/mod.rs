@@ -26,8 +26,8 @@ use kluft_run::{
     MESH, Output, RunFlow, folder_for, inputs, mesh_file, pool, read_mesh, thread_count,
 };
 use kluft_scene::{
-    Binding, JoinedDraft, MeshSource, Scene, SurfaceMesh, bind, in_terms_of_scene, join, refine,
-    roles, surface_mesh,
+    Binding, JoinedDraft, MeshSource, Scene, SurfaceMesh, bind, in_terms_of_scene, join,
+    name_places, refine, roles, surface_mesh,
 };
 
 use findings::{Inspection, MeshCounts};
@@ -115,7 +115,13 @@ fn look(
     output: &Output,
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
+    let draft = match scene {
+        Some(scene) => scene.taken(draft),
+        None if draft.is_plane() => draft.extruded(),
+        None => draft,
+    };
     inspection.warnings.extend(groups::missing(&draft));
+    inspection.warnings.extend(groups::repeated(&draft));
     let faces = Faces::of(&draft);
     inspection.groups = groups::list(&draft, &faces.inner_surfaces(&draft), None, scene);
     let mesh = match mesh(draft, faces, scene, inspection) {
@@ -215,7 +221,7 @@ fn joined(
             faces: faces.let_touch(),
             decisions: Vec::new(),
         }),
-        Some(scene) => join(scene, draft, faces),
+        Some(scene) => name_places(scene, join(scene, draft, faces)?),
     }
 }
 

@@ -6,7 +6,8 @@ use glam::DVec3;
 use kluft_keys::Document;
 use kluft_mesh::Defect;
 use kluft_network::{
-    CellSizes, Domain, InputFracture, Outline, Polygon, check_name, read_list, repeated_names,
+    CellSizes, Domain, InputFracture, Outline, Polygon, check_name, read_foreign_list, read_list,
+    repeated_names,
 };
 
 use super::keys::{read_orientation, read_seed, read_sides, read_text};
@@ -47,7 +48,7 @@ impl Input {
             "give the path of a list (.csv) or a description (.toml)",
         )?;
         match file.extension().and_then(|ending| ending.to_str()) {
-            Some("csv") => Self::from_list(&text, &name, overrides),
+            Some("csv" | "dat") => Self::from_list(&text, &name, overrides),
             Some("toml") if overrides.hydraulic_aperture.is_some() => Err(vec![Defect::new(
                 name,
                 "--hydraulic-aperture is for lists, and this is a description",
@@ -56,17 +57,26 @@ impl Input {
             Some("toml") => Self::from_description(&text, &name, file, overrides),
             _ => Err(vec![Defect::new(
                 name,
-                "the name ends neither in .csv nor in .toml",
+                "the name ends neither in .csv or .dat nor in .toml",
                 "give a list of fractures as FILE.csv, or a description as FILE.toml",
             )]),
         }
     }
 
     fn from_list(text: &str, name: &str, overrides: &Overrides) -> Result<Self, Vec<Defect>> {
-        let given = read_list(text, name, "fractures", false)?;
+        const SET: &str = "fractures";
         let mut assumptions = Vec::new();
+        let (given, own) = match read_foreign_list(text, name, SET) {
+            None => (read_list(text, name, SET, false)?, None),
+            Some(list) => {
+                let list = list?;
+                assumptions.push(format!("a list of {}", list.program));
+                (list.fractures, list.domain)
+            }
+        };
         let domain = overrides
             .domain
+            .or(own)
             .or_else(|| around(&given, &mut assumptions))
             .ok_or_else(|| {
                 vec![Defect::new(

@@ -11,7 +11,7 @@ const SET_UP: &str = "these tests read results with VTK: run `sh scripts/setup` 
                       KLUFT_PYTHON name a Python with the packages vtk==9.7.2 and numpy";
 
 /// The Python that has VTK.
-fn python() -> PathBuf {
+pub fn python() -> PathBuf {
     let named = std::env::var_os("KLUFT_PYTHON").filter(|python| !python.is_empty());
     let python = named.map_or_else(|| root().join("target/venv/bin/python"), PathBuf::from);
     let has_vtk = Command::new(&python)

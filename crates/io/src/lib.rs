@@ -4,6 +4,7 @@ mod atomic;
 mod claimed_folder;
 mod fingerprint;
 pub mod gmsh;
+pub mod import;
 mod load;
 pub mod msh;
 pub mod printable;
@@ -18,6 +19,6 @@ pub use gmsh::{
     Dimension, GmshOptions, MeshCache, Meshed, Meshing, mesh_geometry, write_size_field,
 };
 pub use load::{arrange_large, load_msh};
-pub use msh::{parse_msh, read_msh, shape_of_gmsh_element};
+pub use msh::{parse_msh, read_msh, shape_of_gmsh_element, write_msh};
 pub use pvd::write_pvd;
 pub use vtu::{Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu};

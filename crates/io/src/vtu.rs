@@ -215,7 +215,8 @@ fn write_arrays<'a>(
 
 /// The shape of a VTK cell (`vtkCellType.h`) that can be solved on.
 pub fn shape_of_vtk_cell(number: u8) -> Option<Shape> {
-    let mut shapes = Shape::CELLS.into_iter().chain(Shape::FACETS);
+    let lines = [Shape::Line2, Shape::Line3];
+    let mut shapes = Shape::CELLS.into_iter().chain(Shape::FACETS).chain(lines);
     shapes.find(|&shape| vtk_cell(shape).0 == number)
 }
 
@@ -224,6 +225,8 @@ pub fn shape_of_vtk_cell(number: u8) -> Option<Shape> {
 /// leaves the middle of the base out.
 pub fn vtk_cell(shape: Shape) -> (u8, &'static [u8]) {
     match shape {
+        Shape::Line2 => (3, &[]),
+        Shape::Line3 => (21, &[]),
         Shape::Tri3 => (5, &[]),
         Shape::Tri6 => (22, &[]),
         Shape::Quad4 => (9, &[]),

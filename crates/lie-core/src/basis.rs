@@ -119,6 +119,8 @@ fn monomials(shape: Shape) -> Vec<Monomial> {
         list
     };
     match shape {
+        Shape::Line2 => vec![[0; 4], [1, 0, 0, 0]],
+        Shape::Line3 => vec![[0; 4], [1, 0, 0, 0], [2, 0, 0, 0]],
         Shape::Tri3 => complete(1, false),
         Shape::Tri6 => complete(2, false),
         Shape::Quad4 => square(1),

@@ -13,6 +13,10 @@ pub(crate) type Weighted = (DVec3, f64);
 /// Rule for the stiffness of a cell, or for integrals over a facet.
 pub(crate) fn points(shape: Shape) -> Vec<Weighted> {
     match shape {
+        Shape::Line2 | Shape::Line3 => {
+            let points = gauss(3).into_iter();
+            points.map(|(x, weight)| (x * DVec3::X, weight)).collect()
+        }
         Shape::Tri3 | Shape::Tri6 => triangle_degree_4(),
         Shape::Quad4 | Shape::Quad8 | Shape::Quad9 => layers(&square(3), &[(0.0, 1.0)]),
         Shape::Tet4 => vec![(DVec3::splat(0.25), 1.0 / 6.0)],
@@ -35,6 +39,7 @@ fn degree(shape: Shape) -> i32 {
         Shape::Hex8 | Shape::Pyramid5 => 3,
         Shape::Tri3 | Shape::Tri6 | Shape::Prism15 | Shape::Prism18 => 4,
         Shape::Pyramid13 | Shape::Pyramid14 => 5,
+        Shape::Line2 | Shape::Line3 => 5,
         Shape::Quad4 | Shape::Quad8 | Shape::Quad9 | Shape::Hex20 | Shape::Hex27 => 5,
     }
 }

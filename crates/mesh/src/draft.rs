@@ -187,6 +187,10 @@ pub struct Draft {
     pub cells: TaggedElements,
     /// Elements of dimension 2.
     pub facets: TaggedElements,
+    /// Elements of dimension 1, of meshes without cells.
+    pub lines: TaggedElements,
+    /// Whether its cells are those of a mesh of the plane, see [`Draft::extruded`].
+    pub is_extruded: bool,
 }
 
 impl Draft {

@@ -151,7 +151,7 @@ impl Draft {
     }
 
     /// Appends a physical surface of these faces.
-    fn add_surface(&mut self, name: &str, adjacency: &Adjacency, faces: &[u32]) {
+    pub(crate) fn add_surface(&mut self, name: &str, adjacency: &Adjacency, faces: &[u32]) {
         let surfaces = self.groups.iter().filter(|group| group.dimension == 2);
         let tag = surfaces.map(|group| group.tag).max().unwrap_or(0) + 1;
         let set = self.group_sets.len() as u32;

@@ -11,7 +11,7 @@ use crate::facets::{self, Boundary, Facets};
 use crate::roles::{Faces, SurfaceRole};
 use crate::sectors::{self, Sectors};
 use crate::surfaces::Surfaces;
-use crate::{blocks, check};
+use crate::{blocks, check, layers};
 use kluft_defect::Defect;
 
 /// A checked, fractured mesh; see the crate documentation for what it promises.
@@ -63,6 +63,9 @@ pub struct MeshData {
     pub block: Vec<u32>,
     /// Number of blocks.
     pub block_count: usize,
+    /// For each node of a mesh of the plane the node that it moves with, itself in the layer below;
+    /// none of other meshes.
+    pub original: Option<Vec<u32>>,
     /// Whether cells at crack fronts are quarter-point elements, see
     /// [`Mesh::move_to_quarter_points`].
     pub has_quarter_points: bool,
@@ -138,12 +141,23 @@ impl Mesh {
         if !defects.is_empty() {
             return Err(defects);
         }
+        let mut sectors = sectors;
+        let original = draft.is_extruded.then(|| {
+            let is_below = |low: u32, high: u32| nodes[low as usize].z < nodes[high as usize].z;
+            let cells = &draft.cells.elements;
+            // The cells around a node and around its copies are the same.
+            layers::for_each_slot(cells, is_below, |slot, below| {
+                sectors.of_cell_node[slot] = sectors.of_cell_node[below];
+            });
+            layers::originals(cells, nodes.len(), is_below)
+        });
         let shared = surfaces.shared.iter();
         let shared_facets = shared.map(|(&(left, kept), &count)| (left, kept, count));
         let shared_facets = shared_facets.collect();
         let fractures = surfaces.fractures.iter();
         let data = MeshData {
             fractures: fractures.map(|&g| draft.groups[g].name.clone()).collect(),
+            original,
             nodes,
             shared_facets,
             facets,
@@ -166,6 +180,17 @@ impl Mesh {
     /// A mesh of data whose promises have been checked.
     pub(crate) fn new(data: MeshData) -> Self {
         Self { data }
+    }
+
+    /// Whether it is a mesh of the plane, one cell thick.
+    pub fn is_plane(&self) -> bool {
+        self.original.is_some()
+    }
+
+    /// Whether a node moves by itself: in a mesh of the plane, that it is in the layer below.
+    pub fn is_own(&self, node: u32) -> bool {
+        let original = self.original.as_ref();
+        original.is_none_or(|original| original[node as usize] == node)
     }
 
     /// Multiplies all coordinates by a factor, as another unit of length does.

@@ -34,7 +34,8 @@ impl Mesh {
                 // The edge at a quarter of its reference length, which follows a curve.
                 let quarter = 0.375 * place(front) - 0.125 * place(other) + 0.75 * place(middle);
                 let by = quarter - place(middle);
-                if moves[middle as usize].replace(by).is_none() {
+                let moved = moves[middle as usize].replace(by);
+                if moved.is_none() && self.is_own(middle) {
                     count += 1;
                 }
             }

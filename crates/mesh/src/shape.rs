@@ -38,11 +38,15 @@ pub enum Shape {
     Pyramid13,
     /// Quadratic pyramid.
     Pyramid14,
+    /// Linear line, in meshes of the plane.
+    Line2,
+    /// Quadratic line.
+    Line3,
 }
 
 use Shape::{
-    Hex8, Hex20, Hex27, Prism6, Prism15, Prism18, Pyramid5, Pyramid13, Pyramid14, Quad4, Quad8,
-    Quad9, Tet4, Tet10, Tri3, Tri6,
+    Hex8, Hex20, Hex27, Line2, Line3, Prism6, Prism15, Prism18, Pyramid5, Pyramid13, Pyramid14,
+    Quad4, Quad8, Quad9, Tet4, Tet10, Tri3, Tri6,
 };
 
 /// One face of a cell: its shape and the cell's local nodes, seen from outside counter-clockwise.
@@ -69,14 +73,20 @@ impl Shape {
     /// All shapes of facets.
     pub const FACETS: [Shape; 5] = [Tri3, Tri6, Quad4, Quad8, Quad9];
 
-    /// Space dimension of the shape: 3 for cells, 2 for facets.
+    /// Space dimension of the shape: 3 for cells, 2 for facets, 1 for lines.
     pub fn dimension(self) -> usize {
-        if Shape::FACETS.contains(&self) { 2 } else { 3 }
+        match self {
+            Line2 | Line3 => 1,
+            _ if Shape::FACETS.contains(&self) => 2,
+            _ => 3,
+        }
     }
 
     /// Number of nodes.
     pub fn node_count(self) -> usize {
         match self {
+            Line2 => 2,
+            Line3 => 3,
             Tri3 => 3,
             Tri6 => 6,
             Quad4 => 4,
@@ -99,6 +109,7 @@ impl Shape {
     /// Number of corner nodes; corners come first in the node order.
     pub fn corner_count(self) -> usize {
         match self {
+            Line2 | Line3 => 2,
             Tri3 | Tri6 => 3,
             Quad4 | Quad8 | Quad9 | Tet4 | Tet10 => 4,
             Pyramid5 | Pyramid13 | Pyramid14 => 5,
@@ -116,6 +127,7 @@ impl Shape {
     /// shapes follow the corners.
     pub fn edges(self) -> &'static [[u8; 2]] {
         match self.corner_count() {
+            2 => &[[0, 1]],
             3 => &[[0, 1], [1, 2], [2, 0]],
             4 if self.dimension() == 2 => &[[0, 1], [1, 2], [2, 3], [3, 0]],
             4 => &[[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]],
@@ -147,6 +159,7 @@ impl Shape {
     /// hexahedra; its node order continues that of the others.
     pub(crate) fn complete(self) -> Self {
         match self {
+            Line2 | Line3 => Line3,
             Tri3 | Tri6 => Tri6,
             Quad4 | Quad8 | Quad9 => Quad9,
             Tet4 | Tet10 => Tet10,
@@ -156,9 +169,9 @@ impl Shape {
         }
     }
 
-    /// Reference coordinates of the nodes. Triangles and tetrahedra: unit corners; quadrangles and
-    /// hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids: `[-1, 1]^2` below the
-    /// apex at `z = 1`. All other nodes lie in the middle of corners.
+    /// Reference coordinates of the nodes. Lines: `[-1, 1]`; triangles and tetrahedra: unit corners;
+    /// quadrangles and hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids:
+    /// `[-1, 1]^2` below the apex at `z = 1`. All other nodes lie in the middle of corners.
     pub fn reference_nodes(self) -> Vec<DVec3> {
         let corners = self.reference_corners();
         let middle = |local: usize| {
@@ -176,6 +189,7 @@ impl Shape {
         let triangle =
             |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, z));
         match self.corner_count() {
+            2 => vec![-DVec3::X, DVec3::X],
             3 => triangle(0.0).to_vec(),
             4 if self.dimension() == 2 => square(0.0).to_vec(),
             4 => vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
@@ -185,10 +199,10 @@ impl Shape {
         }
     }
 
-    /// The faces of a cell; empty for a facet.
+    /// The faces of a cell; empty for others.
     pub fn faces(self) -> &'static [Face] {
         match self {
-            Tri3 | Tri6 | Quad4 | Quad8 | Quad9 => &[],
+            Line2 | Line3 | Tri3 | Tri6 | Quad4 | Quad8 | Quad9 => &[],
             Tet4 => &TET4_FACES,
             Tet10 => &TET10_FACES,
             Hex8 => &HEX8_FACES,

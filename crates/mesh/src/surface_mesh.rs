@@ -60,6 +60,7 @@ impl Mesh {
             nodes,
             block: Vec::new(),
             block_count: 0,
+            original: None,
             has_quarter_points: false,
             source: draft.source,
             node_tags: draft.node_tags,

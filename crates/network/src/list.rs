@@ -9,7 +9,7 @@ use crate::fracture::InputFracture;
 use crate::list_row::{Decimals, Row, place_of, polygon, suggestion};
 use crate::polygon::check_name;
 
-const COLUMNS: [&str; 17] = [
+const COLUMNS: [&str; 22] = [
     "name",
     "set",
     "shape",
@@ -18,6 +18,11 @@ const COLUMNS: [&str; 17] = [
     "z",
     "dip",
     "dip_direction",
+    "trend",
+    "plunge",
+    "normal_x",
+    "normal_y",
+    "normal_z",
     "radius",
     "semi_major",
     "semi_minor",

@@ -9,6 +9,9 @@ use kluft_defect::{Defect, nearest};
 use crate::orientation::Orientation;
 use crate::polygon::{Outline, Polygon};
 
+/// Columns that say how a plane lies, beside dip and dip direction.
+const ORIENTATIONS: [&str; 5] = ["trend", "plunge", "normal_x", "normal_y", "normal_z"];
+const NORMAL: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
 const SHAPES: [&str; 4] = ["disc", "ellipse", "rectangle", "polygon"];
 
 /// Corners of a disc or an ellipse unless the input says otherwise.
@@ -147,6 +150,11 @@ impl<'a> Row<'a> {
             "z",
             "dip",
             "dip_direction",
+            "trend",
+            "plunge",
+            "normal_x",
+            "normal_y",
+            "normal_z",
             "radius",
             "semi_major",
             "semi_minor",
@@ -159,6 +167,7 @@ impl<'a> Row<'a> {
         for column in of_shapes
             .into_iter()
             .filter(|column| !used.contains(column))
+            .filter(|column| !used.contains(&"dip") || !ORIENTATIONS.contains(column))
         {
             if self.text(column).is_some() {
                 let problem = format!("a {shape} has no `{column}`");
@@ -195,26 +204,56 @@ pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
     };
     let mut coordinate = |column| row.number(column, |_| true, "a coordinate in metres");
     let (x, y, z) = (coordinate("x"), coordinate("y"), coordinate("z"));
-    let dip = row.number(
-        "dip",
-        |dip| (0.0..=90.0).contains(&dip),
-        "an angle from 0 to 90 degrees",
-    );
-    let turn = |angle: f64| (-360.0..=360.0).contains(&angle);
-    let dip_direction = row.number(
-        "dip_direction",
-        turn,
-        "an angle in degrees, clockwise from north",
-    );
-    let orientation = Orientation {
-        dip: dip?,
-        dip_direction: dip_direction?,
-    };
+    let orientation = orientation(row);
     Some(Polygon::placed(
         outline?,
         DVec3::new(x?, y?, z?),
-        orientation,
+        orientation?,
     ))
+}
+
+/// How the plane of a line lies: by dip and dip direction, by trend and plunge of its normal, or by
+/// its normal.
+fn orientation(row: &mut Row<'_>) -> Option<Orientation> {
+    let ways = [&["dip", "dip_direction"][..], &["trend", "plunge"], &NORMAL];
+    let mut given = ways
+        .iter()
+        .filter(|way| way.iter().any(|c| row.text(c).is_some()));
+    let (way, second) = (given.next(), given.next());
+    if let Some(second) = second {
+        let problem = "the orientation is given in two ways";
+        let remedy = "keep dip and dip_direction, trend and plunge, or the normal";
+        row.refuse(second[0], problem, remedy);
+        return None;
+    }
+    let steep = |angle: f64| (0.0..=90.0).contains(&angle);
+    let turn = |angle: f64| (-360.0..=360.0).contains(&angle);
+    let clockwise = "an angle in degrees, clockwise from north";
+    match way {
+        Some(&["trend", ..]) => {
+            let trend = row.number("trend", turn, clockwise);
+            let plunge = row.number("plunge", steep, "an angle from 0 to 90 degrees");
+            Some(Orientation::of_trend_and_plunge(trend?, plunge?))
+        }
+        Some(&["normal_x", ..]) => {
+            let mut part = |column| row.number(column, |_| true, "a part of a normal");
+            let parts = NORMAL.map(&mut part);
+            let normal = DVec3::new(parts[0]?, parts[1]?, parts[2]?);
+            if normal == DVec3::ZERO {
+                row.refuse("normal_x", "the normal has no length", "write one that has");
+                return None;
+            }
+            Some(Orientation::of_normal(normal))
+        }
+        _ => {
+            let dip = row.number("dip", steep, "an angle from 0 to 90 degrees");
+            let dip_direction = row.number("dip_direction", turn, clockwise);
+            Some(Orientation {
+                dip: dip?,
+                dip_direction: dip_direction?,
+            })
+        }
+    }
 }
 
 fn disc(row: &mut Row<'_>) -> Option<Outline> {

@@ -12,6 +12,15 @@ pub struct Orientation {
 }
 
 impl Orientation {
+    /// The plane whose normal runs down along a line: its trend clockwise from north, its plunge
+    /// below the horizontal (degrees).
+    pub fn of_trend_and_plunge(trend: f64, plunge: f64) -> Self {
+        Self {
+            dip: 90.0 - plunge,
+            dip_direction: trend + 180.0,
+        }
+    }
+
     /// The normal that points up.
     pub fn pole(self) -> DVec3 {
         let (sin, cos) = libm::sincos(self.dip.to_radians());
@@ -45,6 +54,14 @@ mod tests {
 
     fn close(a: DVec3, b: DVec3) {
         assert!(a.distance(b) < 1e-14, "{a} against {b}");
+    }
+
+    #[test]
+    fn trend_and_plunge_are_those_of_the_normal_downwards() {
+        let found = Orientation::of_trend_and_plunge(45.0, 35.0).pole();
+        let (level, down) = (35_f64.to_radians().cos(), 35_f64.to_radians().sin());
+        let line = DVec3::new(level * 0.5_f64.sqrt(), level * 0.5_f64.sqrt(), -down);
+        close(found, -line);
     }
 
     #[test]

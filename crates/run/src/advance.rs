@@ -16,7 +16,7 @@ use lie_core::FractureLaw;
 use crate::cases::{ActingCases, separate};
 use crate::failures;
 use crate::fractures::fractures;
-use crate::grids::{facet_grid, fracture_grid, rock_grid};
+use crate::grids::{facet_grid, fracture_grid, in_plane, rock_grid};
 use crate::history::{Entry, Parts};
 use crate::observer::{Observer, Stage, StepStart};
 use crate::outcome::StepResult;
@@ -276,6 +276,7 @@ impl PreparedRock<'_, '_, '_> {
         let interface = system.discretisation().interface();
         let nodes = solution.facet_nodes(system.problem(), interface);
         let mut fractures = fractures(system.problem(), interface, &solution, &nodes);
+        let mesh = &system.problem().mesh;
         let mut grid = fracture_grid(system, &nodes, None);
         if let Some(facets) = determinacy(system, &self.state) {
             undetermined::note_in(&mut fractures, system, &facets);
@@ -296,13 +297,13 @@ impl PreparedRock<'_, '_, '_> {
             summary,
             fractures,
             rock: match with_rock {
-                true => rock_grid(system, &solution, None),
+                true => in_plane(mesh, rock_grid(system, &solution, None)),
                 false => Grid {
                     offsets: vec![0],
                     ..Grid::default()
                 },
             },
-            fracture_grid: grid,
+            fracture_grid: in_plane(mesh, grid),
         }
     }
 }

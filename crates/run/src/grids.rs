@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use kluft_io::{Field, Grid, Values};
-use kluft_mesh::Mesh;
+use kluft_mesh::{Flat, Mesh};
 use kluft_solver::{FacetResult, Solution, System};
 
 use crate::accuracy::Accuracy;
@@ -98,6 +98,66 @@ pub fn facet_grid(mesh: &Mesh, point_fields: Vec<Field>) -> Grid {
                 mesh.facets.fracture.iter().map(|&fracture| fracture as i32),
             ),
         ],
+    }
+}
+
+/// What of a grid on the cells or facets of a mesh lies in its plane, if it is one of the plane.
+pub fn in_plane(mesh: &Mesh, grid: Grid) -> Grid {
+    if !mesh.is_plane() {
+        return grid;
+    }
+    let bottom = mesh.bounds().0.z;
+    let is_kept = |point: u32| grid.points[point as usize][2] == bottom;
+    let mut flat = Grid {
+        offsets: vec![0],
+        ..Grid::default()
+    };
+    for (cell, shape) in grid.shapes.iter().enumerate() {
+        let own = &grid.nodes[grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize];
+        let Some(Flat { shape, node, .. }) = shape.flat() else {
+            continue;
+        };
+        let at = |wanted: u8| {
+            let mut pairs = own.iter().zip(&node);
+            let found = pairs.find(|(point, flat)| **flat == wanted && is_kept(**point));
+            found.map(|(point, _)| *point)
+        };
+        flat.shapes.push(shape);
+        flat.nodes
+            .extend((0..shape.node_count() as u8).filter_map(at));
+        flat.offsets.push(flat.nodes.len() as u32);
+    }
+    let mut kept = flat.nodes.clone();
+    kept.sort_unstable();
+    kept.dedup();
+    let number = |point: &u32| kept.partition_point(|other| other < point) as u32;
+    flat.nodes = flat.nodes.iter().map(number).collect();
+    flat.points = kept.iter().map(|&p| grid.points[p as usize]).collect();
+    flat.point_fields = grid
+        .point_fields
+        .into_iter()
+        .map(|f| taken(f, &kept))
+        .collect();
+    flat.cell_fields = grid.cell_fields;
+    flat
+}
+
+/// A field at some of its points.
+fn taken(field: Field, points: &[u32]) -> Field {
+    fn chosen<T: Copy>(values: &[T], width: usize, points: &[u32]) -> Vec<T> {
+        let rows = points.iter().flat_map(|&point| {
+            let first = point as usize * width;
+            &values[first..first + width]
+        });
+        rows.copied().collect()
+    }
+    let width = field.components as usize;
+    Field {
+        values: match &field.values {
+            Values::Real(values) => Values::Real(chosen(values, width, points)),
+            Values::Integer(values) => Values::Integer(chosen(values, width, points)),
+        },
+        ..field
     }
 }
 

@@ -14,7 +14,7 @@ use crate::flow::{RunFlow, SolvedFlow};
 use crate::flow_history::FlowHistory;
 use crate::flow_summary;
 use crate::fluid_step::{failed, told};
-use crate::grids::{facet_grid, integer_field, real_field};
+use crate::grids::{facet_grid, in_plane, integer_field, real_field};
 use crate::history;
 use crate::observer::Stage;
 use crate::stages::{Interruption, Run, newton_settings};
@@ -127,8 +127,9 @@ impl Run<'_> {
         history.add(index + 1, step, &solved.step, &summary.fractures);
         self.summary.flow = Some(summary);
         self.stage(Stage::Write, |run| {
-            let rock = || rock_grid(problem);
-            let fractures = || fracture_grid(&problem.mesh, made, solved);
+            let mesh = &problem.mesh;
+            let rock = || in_plane(mesh, rock_grid(problem));
+            let fractures = || in_plane(mesh, fracture_grid(mesh, made, solved));
             run.output.write_step(step.load.time, rock, fractures)?;
             run.write_sources()?;
             let text = history.text().as_bytes();

@@ -234,10 +234,11 @@ impl<'a> Run<'a> {
         self.summary.warnings.clone_from(&self.doubts);
         let mesh = &binding.problem.mesh;
         let counts = mesh.sectors.count.iter();
+        let own = (0..mesh.nodes.len()).filter(|&node| mesh.is_own(node as u32));
         self.summary.mesh = MeshSummary {
             nodes: match mesh.cells.is_empty() {
                 true => mesh.nodes.len(),
-                false => counts.clone().filter(|&&count| count > 0).count(),
+                false => own.filter(|&node| mesh.sectors.count[node] > 0).count(),
             },
             cells: mesh.cells.len(),
             fracture_facets: mesh.facets.elements.len(),

@@ -19,7 +19,7 @@ use crate::failures;
 use crate::flow::RunFlow;
 use crate::fluid_step;
 use crate::fractures::fractures;
-use crate::grids::{fracture_grid, rock_grid};
+use crate::grids::{fracture_grid, in_plane, rock_grid};
 use crate::history::{self, Entry, History, Parts};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
@@ -265,7 +265,7 @@ impl Run<'_> {
         self.summary.warnings.extend(unresolved);
         let time = prepared.state.load.time;
         self.stage(Stage::Write, |run| {
-            let rock = || rock_grid(system, &solution, Some(&accuracy));
+            let rock = || in_plane(&problem.mesh, rock_grid(system, &solution, Some(&accuracy)));
             let fractures = || {
                 let mut grid = fracture_grid(system, &nodes, Some(&accuracy));
                 let field = facets.as_deref().map(undetermined::field);
@@ -273,7 +273,7 @@ impl Run<'_> {
                 if let Some(flow) = &flow {
                     fluid_step::add_to(&mut grid, flow, &nodes);
                 }
-                grid
+                in_plane(&problem.mesh, grid)
             };
             if !run.request.keep_results {
                 return run.output.write_step(time, rock, fractures);

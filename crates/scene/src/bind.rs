@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
-use kluft_solver::{Condition, FixedPoint, Flow, Problem, Varying};
+use kluft_solver::{Condition, FixedPoint, Flow, Problem, Spring, SpringStiffness, Varying};
 use lie_core::{FractureLaw, Rock};
 
 use crate::bind_fields::bind_fields;
@@ -14,6 +14,7 @@ use crate::doubts::warnings;
 use crate::isolated::leave_out;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
+use crate::placed::name_places;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::rock::RockEntry;
@@ -43,11 +44,12 @@ impl Scene {
     /// # Errors
     /// Every defect of the mesh, and everything in the scene that does not fit it.
     pub fn problem(&self, draft: Draft) -> Result<Binding, Vec<Defect>> {
+        let draft = self.taken(draft);
         if self.takes_surfaces(&draft) {
             return self.surface_problem(draft);
         }
         let faces = Faces::of(&draft);
-        let joined = join(self, draft, faces)?;
+        let joined = name_places(self, join(self, draft, faces)?)?;
         let inner = joined.faces.inner_surfaces(&joined.draft);
         let Roles {
             of_group,
@@ -60,6 +62,10 @@ impl Scene {
             mut decisions,
         } = refine(self, joined, &of_group).map_err(in_terms_of_scene)?;
         decisions.extend(unused);
+        decisions.extend(draft.is_extruded.then(|| {
+            "a mesh of the plane: plane strain in x and y; areas and forces are those of one metre"
+                .to_owned()
+        }));
         let mesh = Mesh::build_on(draft, faces, &of_group).map_err(in_terms_of_scene)?;
         Ok(bind(self, mesh)?.after(decisions, warnings))
     }
@@ -106,9 +112,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     }
     let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
     let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
-    if scene.body.gravity != DVec3::ZERO && !scene.is_rigid() {
-        defects.extend(missing_densities(scene));
-    }
+    defects.extend(wrong_gravity(scene, &mesh));
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
     if !defects.is_empty() {
@@ -126,6 +130,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let mut flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
     let mut problem = Problem {
+        springs: springs(&bound.boundaries, &conditions, mesh.is_plane()),
         conditions,
         rocks: rocks(scene),
         rock_of_cell,
@@ -182,6 +187,26 @@ fn bind_boundaries<'a>(
         Some((entry, condition))
     });
     conditions.unzip()
+}
+
+/// The springs of boundaries, which stand beside their conditions.
+fn springs(
+    boundaries: &[&Named<BoundaryEntry>],
+    conditions: &[Condition],
+    is_plane: bool,
+) -> Vec<Spring> {
+    let pairs = boundaries.iter().zip(conditions);
+    let springs = pairs.filter_map(|(entry, condition)| {
+        let mut stiffness = entry.value.springs.as_ref()?.stiffness.clone();
+        if let SpringStiffness::Outside { is_line, .. } = &mut stiffness {
+            *is_line = is_plane;
+        }
+        Some(Spring {
+            boundary: condition.boundary,
+            stiffness,
+        })
+    });
+    springs.collect()
 }
 
 fn quarter_points(moved: usize) -> Option<String> {
@@ -317,18 +342,28 @@ fn bind_fractures<'a>(
     entries
 }
 
-fn missing_densities(scene: &Scene) -> impl Iterator<Item = Defect> + '_ {
-    let without = scene
-        .rocks
-        .iter()
-        .filter(|entry| entry.value.rock.density == 0.0);
-    without.map(|entry| {
+/// Rocks without a density where gravity acts, and gravity out of a plane.
+fn wrong_gravity(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
+    let gravity = scene.body.gravity;
+    let acts = gravity != DVec3::ZERO && !scene.is_rigid();
+    let rocks = scene.rocks.iter();
+    let without = rocks.filter(|entry| acts && entry.value.rock.density == 0.0);
+    let without = without.map(|entry| {
         Defect::new(
             &entry.place,
             "gravity acts, but this rock has no density",
             "add `density = 2700` (kg/m^3)",
         )
-    })
+    });
+    let leaves = mesh.is_plane() && gravity.z != 0.0;
+    let out_of_plane = leaves.then(|| {
+        Defect::new(
+            "[body]",
+            "gravity has a part along z, out of the plane of the mesh",
+            "write it along y: gravity = [0, -9.81, 0]",
+        )
+    });
+    without.chain(out_of_plane).collect()
 }
 
 fn bind_fixed_points<'a>(
@@ -343,6 +378,10 @@ fn bind_fixed_points<'a>(
         let Some((node, distance, longest_edge)) = nearest_node(mesh, at) else {
             continue;
         };
+        let node = mesh
+            .original
+            .as_ref()
+            .map_or(node, |own| own[node] as usize);
         let x = mesh.nodes[node];
         let tag = mesh.node_tags[node];
         if distance > longest_edge {

@@ -37,6 +37,7 @@ pub(crate) fn bind_fields(
     }
     let mut conditions = bound.boundaries.iter().enumerate();
     conditions.try_for_each(|(index, _)| bind_load(problem, bound, index, &mut look));
+    look_at_springs(problem, bound, &mut look);
     bind_rocks(problem, &mut look);
     bind_initial_stress(problem, &mut look);
     match look.defects.is_empty() {
@@ -354,6 +355,19 @@ fn bind_load(
     let loads = cases.into_iter().map(of_case);
     problem.varying.loads.extend(loads);
     Some(())
+}
+
+fn look_at_springs(problem: &Problem, bound: &Bound<'_>, look: &mut Look<'_>) {
+    for (entry, condition) in bound.boundaries.iter().zip(&problem.conditions) {
+        let fields = entry.value.spring_fields();
+        if fields.is_empty() {
+            continue;
+        }
+        let places = places_of_boundary(&problem.mesh, condition.boundary);
+        for field in fields {
+            look.at(field, &places, &[0.0]);
+        }
+    }
 }
 
 /// Positions at which a load of a part of the outer surface is asked for (m).

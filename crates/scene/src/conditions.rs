@@ -2,27 +2,42 @@
 
 use glam::DVec3;
 use kluft_solver::{
-    Conduit, Field, FlowDrive, Fracture, LawParameter, LoadField, Support, SurfaceLoad,
+    Conduit, Field, FlowDrive, Fracture, LawParameter, LoadField, SpringStiffness, Support,
+    SurfaceLoad,
 };
 
 use crate::field::{self, FieldEntry, InTime, Value, read_value};
 use crate::fluid::read_boundary_fluid;
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
+use crate::place::SurfacePlace;
 use crate::reader::Section;
 use crate::setting::Setting;
 
 /// What acts on a part of the outer surface.
 #[derive(Debug, Clone)]
 pub struct BoundaryEntry {
+    /// Where its faces lie; none if it is a physical surface of the mesh.
+    pub place: Option<SurfacePlace>,
     /// Its load.
     pub load: Option<LoadEntry>,
     /// Its support.
     pub support: Option<Support>,
+    /// Its springs.
+    pub springs: Option<SpringEntry>,
     /// What drives the fluid there.
     pub fluid: Option<FlowDrive>,
     /// How all change with time.
     pub history: Option<LoadHistory>,
+}
+
+/// Springs on a part of the outer surface.
+#[derive(Debug, Clone)]
+pub struct SpringEntry {
+    /// How stiff they are.
+    pub stiffness: SpringStiffness,
+    /// What is asked of values that vary.
+    pub fields: Vec<FieldEntry>,
 }
 
 /// A load on a part of the outer surface.
@@ -60,9 +75,15 @@ impl BoundaryEntry {
         }
     }
 
-    /// Values of its load that vary.
-    pub(crate) fn fields(&self) -> &[FieldEntry] {
-        self.varying_load().map_or(&[], |load| &load.fields)
+    /// Values of its load and its springs that vary.
+    pub(crate) fn fields(&self) -> impl Iterator<Item = &FieldEntry> {
+        let load = self.varying_load().map_or(&[][..], |load| &load.fields);
+        load.iter().chain(self.spring_fields())
+    }
+
+    /// Values of its springs that vary.
+    pub(crate) fn spring_fields(&self) -> &[FieldEntry] {
+        self.springs.as_ref().map_or(&[], |springs| &springs.fields)
     }
 }
 
@@ -108,20 +129,35 @@ pub struct FixedPointEntry {
 /// Reads what acts on a part of the outer surface; rigid rock has no use for loads and supports.
 pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Option<BoundaryEntry> {
     let fluid = read_boundary_fluid(section, setting);
-    let (load, support) = match setting.is_rigid() {
-        true => (None, None),
-        false => (read_load(section, setting), read_support(section)),
+    let (load, support, springs) = match setting.is_rigid() {
+        true => (None, None, None),
+        false => (
+            read_load(section, setting),
+            read_support(section),
+            read_springs(section),
+        ),
     };
-    let names = ["traction", "pressure", "symmetry", "displacement"];
+    let names = [
+        "traction",
+        "pressure",
+        "symmetry",
+        "displacement",
+        "spring",
+        "far_field",
+    ];
     let says_nothing = match setting.is_rigid() {
-        true => section.table().iter().next().is_none(),
+        true => !section
+            .table()
+            .iter()
+            .any(|(key, _)| key.get_ref() != "where"),
         false => fluid.is_none() && !names.into_iter().any(|name| section.has(name)),
     };
     if says_nothing {
         section.refuse(
             "traction",
             format!("{} says nothing", section.title),
-            "add traction, pressure, displacement, symmetry or fluid_pressure, or remove the section",
+            "add traction, pressure, displacement, symmetry, spring, far_field or fluid_pressure, or \
+             remove the section",
         );
     }
     let moves = matches!(support, Some(Support::Displacement(components)) if is_moved(&components));
@@ -130,11 +166,23 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
         what: "a traction, a pressure, a displacement other than 0 or a fluid_pressure",
     };
     Some(BoundaryEntry {
+        place: read_place(section),
         load,
         support,
+        springs,
         fluid,
         history: read_history(section, setting.clock, scaled),
     })
+}
+
+fn read_place(section: &Section<'_, '_>) -> Option<SurfacePlace> {
+    match SurfacePlace::read(section.text("where")?) {
+        Ok(place) => Some(place),
+        Err([problem, remedy]) => {
+            section.refuse("where", problem, remedy);
+            None
+        }
+    }
 }
 
 fn read_load(section: &Section<'_, '_>, setting: Setting) -> Option<LoadEntry> {
@@ -171,13 +219,10 @@ fn traction_of(components: [Value; 3]) -> LoadEntry {
         return LoadEntry::Uniform(SurfaceLoad::Traction(DVec3::new(x, y, z)));
     }
     let mut entries = Vec::new();
-    let fields = components.map(|component| match component {
-        Value::Number(number) => Field::constant(number),
-        Value::Varying(entry) => {
-            let field = entry.field.clone();
-            entries.push(*entry);
-            field
-        }
+    let fields = components.map(|component| {
+        let (field, entry) = field_of(component);
+        entries.extend(entry);
+        field
     });
     LoadEntry::Varying(Box::new(VaryingLoadEntry {
         load: LoadField::Traction(Box::new(fields)),
@@ -200,6 +245,52 @@ fn read_support(section: &Section<'_, '_>) -> Option<Support> {
             None
         }
         (_, components) => components.map(Support::Displacement),
+    }
+}
+
+fn read_springs(section: &Section<'_, '_>) -> Option<SpringEntry> {
+    let normal = read_value(section, "spring", InTime::Never);
+    let shear = read_value(section, "shear_spring", InTime::Never);
+    let centre = section.vector("far_field");
+    let refuse = |key, problem: &str, remedy| section.refuse(key, problem.into(), remedy);
+    if section.has("shear_spring") && !section.has("spring") {
+        refuse(
+            "shear_spring",
+            "`shear_spring` stands without `spring`",
+            "add spring = 0 for springs along the surface alone",
+        );
+    }
+    if section.has("spring") && section.has("far_field") {
+        let remedy = "keep one: far_field chooses the stiffness of the springs by the rock";
+        refuse("far_field", "both spring and far_field are given", remedy);
+    }
+    if let Some(centre) = centre {
+        return Some(SpringEntry {
+            stiffness: SpringStiffness::Outside {
+                centre: centre.into(),
+                // Until the mesh is known.
+                is_line: false,
+            },
+            fields: Vec::new(),
+        });
+    }
+    let normal = normal?;
+    let [normal, shear] = [normal.clone(), shear.unwrap_or(normal)].map(field_of);
+    let entries = [&normal, &shear].into_iter();
+    Some(SpringEntry {
+        fields: entries.filter_map(|(_, entry)| entry.clone()).collect(),
+        stiffness: SpringStiffness::Bed {
+            normal: normal.0,
+            shear: shear.0,
+        },
+    })
+}
+
+/// The field of a value, and what is asked of it if it varies.
+fn field_of(value: Value) -> (Field, Option<FieldEntry>) {
+    match value {
+        Value::Number(number) => (Field::constant(number), None),
+        Value::Varying(entry) => (entry.field.clone(), Some(*entry)),
     }
 }
 

@@ -36,15 +36,16 @@ fn body_size(problem: &Problem) -> Option<String> {
     if !is_small && !is_large {
         return None;
     }
-    let (unit, metres) = match is_small {
-        true => ("km", 1e3 * longest),
-        false => ("mm", 1e-3 * longest),
+    let (unit, scale) = match is_small {
+        true => ("km", 1e3),
+        false => ("mm", 1e-3),
     };
+    let metres = scale * longest;
     let is_usual = metres >= least && metres < LARGEST_BODY && (widest == 0.0 || metres < most);
     let meant = match is_usual {
         true => format!(
             "; the mesh looks like {unit}: {longest:.4e} {unit} = {metres:.4e} m; coordinates are in metres \
-             (Mesh.ScalingFactor of gmsh changes them)"
+             (`scale = {scale}` under [mesh] converts them)"
         ),
         false => String::new(),
     };

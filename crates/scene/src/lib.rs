@@ -20,6 +20,8 @@ mod isolated;
 mod join;
 mod load;
 mod oracle;
+mod place;
+mod placed;
 mod probe;
 mod profile;
 mod read;
@@ -37,7 +39,8 @@ mod warning;
 pub use bind::{Binding, bind};
 pub use bind_probes::{Hit, Probe, ProbePoint};
 pub use conditions::{
-    BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, VaryingLoadEntry,
+    BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, SpringEntry,
+    VaryingLoadEntry,
 };
 pub use field::FieldEntry;
 pub use fluid::{FluidEntry, SourceEntry, SourcePlace};
@@ -47,12 +50,14 @@ pub use initial_stress::InitialStressEntry;
 pub use join::{JoinedDraft, join};
 pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};
+pub use place::SurfacePlace;
+pub use placed::name_places;
 pub use probe::ProbeEntry;
 pub use read::check_conditions;
 pub use refine::refine;
 pub use remedies::in_terms_of_scene;
 pub use rock::RockEntry;
-pub use roles::{Roles, roles};
+pub use roles::{Roles, repeated_name, roles};
 pub use scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 pub use setting::{FluidUse, Setting};
 pub use surfaces::{SurfaceMesh, surface_mesh};

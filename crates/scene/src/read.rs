@@ -118,7 +118,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fluid: fluid_use(root),
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    let mesh = read_mesh_section(root, folder, setting);
+    let mesh = read_mesh_section(root, folder);
     match setting.is_rigid() {
         true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
@@ -139,13 +139,12 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     // Of `kluft study`, which reads it.
     root.section("study");
     let probes = named("probe").filter_map(|(name, s)| entry(source, name, s, read_probe));
-    let probes = probes.collect();
     let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
     let oracles = oracles.collect();
     let flowing = read_flow(root, &body);
     Some(Scene {
         oracles,
-        probes,
+        probes: probes.collect(),
         fluid: flowing.fluid,
         isolated: flowing.isolated,
         equivalent_permeability: flowing.equivalent_permeability,
@@ -162,6 +161,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         rocks,
         fractures,
         boundaries,
+        scale: mesh.scale,
         quarter_points: mesh.quarter_points,
         weld: mesh.weld,
         refine: mesh.refine,
@@ -174,12 +174,13 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
 /// What a scene says of its mesh.
 struct MeshSection {
     source: Option<MeshSource>,
+    scale: f64,
     quarter_points: bool,
     weld: bool,
     refine: u32,
 }
 
-fn read_mesh_section(root: &Section<'_, '_>, folder: &Path, setting: Setting) -> MeshSection {
+fn read_mesh_section(root: &Section<'_, '_>, folder: &Path) -> MeshSection {
     root.require("mesh");
     let section = root.section("mesh");
     let flag = |key| section.as_ref().and_then(|section| section.flag(key));
@@ -187,11 +188,13 @@ fn read_mesh_section(root: &Section<'_, '_>, folder: &Path, setting: Setting) ->
         .as_ref()
         .and_then(|section| section.number("refine"));
     let refine = refine.map_or(0, |times| times as u32);
+    let scale = section.as_ref().and_then(|section| section.number("scale"));
     MeshSection {
+        scale: scale.unwrap_or(1.0),
         quarter_points: flag("quarter_points").unwrap_or(true),
         weld: flag("weld").unwrap_or(false),
         refine,
-        source: section.and_then(|section| read_mesh(section, folder, (refine, setting))),
+        source: section.and_then(|section| read_mesh(section, folder, refine)),
     }
 }
 
@@ -207,11 +210,7 @@ fn entry<'a, 'i, T>(
     value.map(|value| Named { name, place, value })
 }
 
-fn read_mesh(
-    section: Section<'_, '_>,
-    folder: &Path,
-    (refine, setting): (u32, Setting),
-) -> Option<MeshSource> {
+fn read_mesh(section: Section<'_, '_>, folder: &Path, refine: u32) -> Option<MeshSource> {
     let geometry = read_path(&section, "geometry", folder);
     let file = read_path(&section, "file", folder);
     let parameters = section.free_numbers("parameters");
@@ -223,10 +222,15 @@ fn read_mesh(
             "write order = 1 (linear) or order = 2 (quadratic)",
         );
     }
-    let surfaces_alone = read_dimension(&section, setting);
+    let surfaces_alone = section.number("dimension") == Some(2.0);
     let adapt = section.section("adapt").and_then(read_adapt);
     if adapt.is_some() && refine > 0 {
         refuse_both(&section);
+    }
+    if adapt.is_some() && section.has("scale") {
+        let problem = "`scale` and `adapt` are both given: `adapt` asks gmsh for sizes in metres";
+        let remedy = "write the geometry in metres, or remove adapt";
+        section.refuse("scale", problem.into(), remedy);
     }
     let mesh = match (geometry, file) {
         (Some(geometry), None) => Some(MeshSource::Geometry {
@@ -279,17 +283,6 @@ fn idle_beside_file(
     };
     let all = ["order", "dimension", "adapt", "parameters"];
     all.into_iter().find(is_said)
-}
-
-/// Whether only surfaces are meshed, which serves no rock that deforms.
-fn read_dimension(section: &Section<'_, '_>, setting: Setting) -> bool {
-    let surfaces_alone = section.number("dimension") == Some(2.0);
-    if surfaces_alone && !setting.is_rigid() {
-        let problem = "dimension = 2 meshes no rock, and this rock deforms";
-        let remedy = "remove dimension, or leave out young_modulus for flow in rigid rock";
-        section.refuse("dimension", problem.into(), remedy);
-    }
-    surfaces_alone
 }
 
 /// Refuses to refine what follows the error.

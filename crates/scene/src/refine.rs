@@ -3,7 +3,7 @@
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Shape, SurfaceRole};
 
 use crate::join::JoinedDraft;
-use crate::scene::Scene;
+use crate::scene::{MeshSource, Scene};
 
 /// Divides what has been joined. The mesh as given is checked before, so that defects name its own
 /// cells and not their parts.
@@ -15,8 +15,15 @@ pub fn refine(
     joined: JoinedDraft,
     roles: &[SurfaceRole],
 ) -> Result<JoinedDraft, Vec<Defect>> {
+    let adapts = matches!(scene.mesh, MeshSource::Geometry { adapt: Some(_), .. });
+    if adapts && joined.draft.is_extruded {
+        return Err(vec![of_plane(&joined.draft, "adapt")]);
+    }
     if scene.refine == 0 {
         return Ok(joined);
+    }
+    if joined.draft.is_extruded {
+        return Err(vec![of_plane(&joined.draft, "refine")]);
     }
     let JoinedDraft {
         mut draft,
@@ -36,6 +43,17 @@ pub fn refine(
         draft,
         decisions,
     })
+}
+
+/// Why a key has no use for a mesh of the plane.
+fn of_plane(draft: &Draft, key: &str) -> Defect {
+    Defect::new(
+        &draft.source,
+        format!(
+            "`{key}` is for meshes in space, and this one is of the plane, one cell through its thickness"
+        ),
+        "mesh it finer: parameters = { h = ... } with a geometry",
+    )
 }
 
 fn is_pyramid(shape: Shape) -> bool {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use kluft_keys::section_head;
-use kluft_mesh::{Defect, Draft, Group, SurfaceRole, nearest};
+use kluft_mesh::{Defect, Draft, Group, SurfaceRole, nearest, sample};
 
 use crate::scene::Scene;
 use crate::warning::Doubt;
@@ -151,6 +151,9 @@ fn surface_roles(
         for (group, role) in roles.iter_mut().enumerate() {
             let unnamed = *role == SurfaceRole::Unused && draft.groups[group].dimension == 2;
             if unnamed && is_served(group) {
+                let place = "[fracture.default]";
+                let own = twice(&draft.groups, &draft.groups[group].name, 2, place);
+                defects.extend(own.filter(|defect| !defects.contains(defect)));
                 *role = SurfaceRole::Fracture;
             }
         }
@@ -184,6 +187,9 @@ pub(crate) fn find_group(
     place: &str,
 ) -> Result<usize, Defect> {
     let fits = |group: &Group| group.dimension == dimension;
+    if let Some(defect) = twice(groups, name, dimension, place) {
+        return Err(defect);
+    }
     if let Some(found) = groups
         .iter()
         .position(|group| fits(group) && group.name == name)
@@ -218,6 +224,33 @@ pub(crate) fn find_group(
         format!("the mesh has no physical {wanted} `{name}`"),
         remedy,
     ))
+}
+
+/// What is wrong if several groups of a dimension have one name: none of them is meant more than
+/// the others.
+fn twice(groups: &[Group], name: &str, dimension: usize, place: &str) -> Option<Defect> {
+    let tags = repeated_name(groups, name, dimension)?;
+    let kind = kind(dimension);
+    Some(Defect::new(
+        place,
+        format!(
+            "{} physical {kind}s are called `{name}`, with the numbers {}",
+            tags.len(),
+            sample(&tags)
+        ),
+        format!("let one physical {kind} hold the elements of all, or give each a name of its own"),
+    ))
+}
+
+/// The numbers of the groups of a dimension and a name, if there are several.
+pub fn repeated_name(groups: &[Group], name: &str, dimension: usize) -> Option<Vec<u64>> {
+    let own = groups
+        .iter()
+        .filter(|g| g.dimension == dimension && g.name == name);
+    let tags: Vec<u64> = own
+        .map(|group| u64::from(group.tag.unsigned_abs()))
+        .collect();
+    (tags.len() > 1).then_some(tags)
 }
 
 fn capital(word: &str) -> String {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kluft_mesh::Draft;
 use kluft_solver::LinearMethod;
 use lie_core::FacetQuadrature;
 
@@ -88,6 +89,8 @@ pub struct Scene {
     pub title: String,
     /// Its mesh.
     pub mesh: MeshSource,
+    /// Metres that one unit of the coordinates of the mesh is.
+    pub scale: f64,
     /// Whether second-order cells at crack fronts become quarter-point elements.
     pub quarter_points: bool,
     /// Whether nodes at one place become one node.
@@ -129,6 +132,28 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A mesh as read, its coordinates in metres, and one cell thick if it is of the plane.
+    pub fn taken(&self, mut draft: Draft) -> Draft {
+        if self.scale != 1.0 {
+            draft.scale(self.scale);
+        }
+        match self.is_of_plane(&draft) {
+            true => draft.extruded(),
+            false => draft,
+        }
+    }
+
+    /// Whether a mesh is one of the plane. In rigid rock a flat surface may be a fracture, unless
+    /// fractures are lines.
+    fn is_of_plane(&self, draft: &Draft) -> bool {
+        let is_line = |name: &str| {
+            let mut groups = draft.groups.iter();
+            groups.any(|group| group.dimension == 1 && group.name == name)
+        };
+        let mut fractures = self.fractures.iter();
+        draft.is_plane() && (!self.is_rigid() || fractures.any(|entry| is_line(&entry.name)))
+    }
+
     /// The files that values come from, each once, in the order of the scene.
     pub fn value_files(&self) -> Vec<&Path> {
         let fractures = self.fractures.iter().flat_map(|entry| {

@@ -82,6 +82,13 @@ fn unfit(scene: &Scene, draft: &Draft) -> Vec<Defect> {
     if scene.weld {
         refuse(&draft.source, "`weld` of [mesh]");
     }
+    for entry in scene
+        .boundaries
+        .iter()
+        .filter(|entry| entry.value.place.is_some())
+    {
+        refuse(&entry.place, "`where`");
+    }
     for entry in &scene.fractures {
         if entry.value.between.is_some() {
             refuse(&entry.place, "`between`");

@@ -62,7 +62,8 @@ pub use newton::{
 pub use problem::{
     Cases, Condition, Conduit, Field, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
     Fracture, InitialStress, LawParameter, Load, LoadField, Problem, Profile, RockParameter,
-    Schedule, Step, Support, SurfaceLoad, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
+    Schedule, Spring, SpringStiffness, Step, Support, SurfaceLoad, Varying, VaryingLaw,
+    VaryingLoad, VaryingPressure,
 };
 pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
 pub use sample::{InCell, RockSample, locate, principal, sample};

@@ -7,6 +7,7 @@ use lie_core::kernel::{self, MAX_NODES};
 use lie_core::load_areas;
 use rayon::prelude::*;
 
+use crate::assembly::springs;
 use crate::problem::{Condition, Problem, Support, SurfaceLoad, VaryingLoad};
 use crate::space::cell::Cell;
 use crate::system::{State, System};
@@ -50,7 +51,8 @@ pub fn surface_resultants(
     displacements: &[DVec3],
 ) -> Vec<SurfaceResultant> {
     let problem = system.problem();
-    let surfaces = surfaces(problem, state);
+    let mut surfaces = surfaces(problem, state);
+    add_springs(system, displacements, &mut surfaces);
     let nodes = problem.mesh.nodes.len();
     let mut excess = node_forces(system, state, displacements);
     let mut holds = vec![DMat3::ZERO; nodes];
@@ -95,7 +97,7 @@ struct Corner {
     node: usize,
     /// `int N dA` (m^2).
     area: f64,
-    /// What the loads of the surface put on it (N).
+    /// What the loads and springs of the surface put on it (N).
     load: DVec3,
     /// `A_s P_s` (m^2), with an equal share of the area of the facet: `int N dA` is zero at the
     /// corners of facets of second order.
@@ -175,6 +177,20 @@ fn surfaces(problem: &Problem, state: &State) -> Vec<Vec<Corner>> {
         (0..elements.len()).flat_map(corners).collect()
     })
     .collect()
+}
+
+/// Adds the forces of springs to the loads of their surfaces.
+fn add_springs(system: &System<'_>, displacements: &[DVec3], surfaces: &mut [Vec<Corner>]) {
+    let problem = system.problem();
+    let points = system.discretisation().points();
+    for spring in &problem.springs {
+        let count = problem.mesh.boundaries[spring.boundary].elements.len();
+        let facets = (0..count).map(|facet| springs::of_facet(problem, points, spring, facet));
+        let forces = facets.flat_map(|facet| facet.forces(|point| displacements[point as usize]));
+        for (corner, force) in surfaces[spring.boundary].iter_mut().zip(forces) {
+            corner.load += force;
+        }
+    }
 }
 
 /// Projector on what a support holds of a facet with a unit normal.

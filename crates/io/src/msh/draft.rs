@@ -19,6 +19,8 @@ use super::{mshio_calls, nodes};
 /// The shapes that can be solved on.
 fn shape_of(kind: ElementType) -> Option<Shape> {
     match kind {
+        ElementType::Lin2 => Some(Shape::Line2),
+        ElementType::Lin3 => Some(Shape::Line3),
         ElementType::Tri3 => Some(Shape::Tri3),
         ElementType::Tri6 => Some(Shape::Tri6),
         ElementType::Qua4 => Some(Shape::Quad4),
@@ -55,6 +57,7 @@ pub(super) fn build(survey: FileSurvey) -> Result<Draft, Vec<Defect>> {
         source: survey.source.name.to_owned(),
         cells: TaggedElements::new(),
         facets: TaggedElements::new(),
+        lines: TaggedElements::new(),
         ..Draft::default()
     };
     let (nodes, elements) = rayon::join(
@@ -102,29 +105,51 @@ fn fill_elements(survey: &FileSurvey, mut groups: Groups, draft: &mut Draft) -> 
 
 /// Shapes and groups of all elements; nodes and tags remain 0.
 fn make_room(survey: &FileSurvey, groups: &mut Groups, draft: &mut Draft) {
-    let (mut cells, mut facets) = (Vec::new(), Vec::new());
+    let (mut cells, mut facets, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for block in &survey.blocks {
-        let cells = (&mut cells, &mut draft.cells.group_set);
-        let facets = (&mut facets, &mut draft.facets.group_set);
-        if let Some(((blocks, sets), shape)) = target_of(block, cells, facets) {
+        let targets = Targets {
+            cells: (&mut cells, &mut draft.cells.group_set),
+            facets: (&mut facets, &mut draft.facets.group_set),
+            lines: (!has_cells(survey)).then_some((&mut lines, &mut draft.lines.group_set)),
+        };
+        if let Some(((blocks, sets), shape)) = target_of(block, targets) {
             let set = groups.set_of(block.entity, &survey.entities);
             blocks.push((shape, block.count));
             sets.resize(sets.len() + block.count, set);
         }
     }
-    for (elements, blocks) in [(&mut draft.cells, cells), (&mut draft.facets, facets)] {
+    for (elements, blocks) in [
+        (&mut draft.cells, cells),
+        (&mut draft.facets, facets),
+        (&mut draft.lines, lines),
+    ] {
         elements.elements = Elements::blank(&blocks);
         elements.tags = vec![0; elements.elements.len()];
     }
 }
 
+/// Where elements belong.
+struct Targets<T> {
+    cells: T,
+    facets: T,
+    /// None where there are cells: their lines mean nothing.
+    lines: Option<T>,
+}
+
+fn has_cells(survey: &FileSurvey) -> bool {
+    survey.blocks.iter().any(|block| block.entity.0 == 3)
+}
+
 /// Where the elements of a block belong, if anywhere, and their shape.
-fn target_of<T>(block: &Block, cells: T, facets: T) -> Option<(T, Shape)> {
-    match (block.entity.0, shape_of(block.kind)) {
-        (3, Some(shape)) => Some((cells, shape)),
-        (2, Some(shape)) => Some((facets, shape)),
+fn target_of<T>(block: &Block, targets: Targets<T>) -> Option<(T, Shape)> {
+    let shape = shape_of(block.kind)?;
+    let target = match block.entity.0 {
+        3 => Some(targets.cells),
+        2 => Some(targets.facets),
+        1 => targets.lines,
         _ => None,
-    }
+    };
+    target.map(|target| (target, shape))
 }
 
 /// A range of a block, and where its elements go.
@@ -139,9 +164,15 @@ struct Reading<'a> {
 fn readings<'a>(survey: &'a FileSurvey, draft: &'a mut Draft) -> Vec<Reading<'a>> {
     let room = |of: &'a mut TaggedElements| (&mut of.tags[..], &mut of.elements.nodes[..]);
     let (mut cells, mut facets) = (room(&mut draft.cells), room(&mut draft.facets));
+    let mut lines = room(&mut draft.lines);
     let mut readings = Vec::new();
     for block in &survey.blocks {
-        let Some((rest, shape)) = target_of(block, &mut cells, &mut facets) else {
+        let targets = Targets {
+            cells: &mut cells,
+            facets: &mut facets,
+            lines: (!has_cells(survey)).then_some(&mut lines),
+        };
+        let Some((rest, shape)) = target_of(block, targets) else {
             continue;
         };
         for range in &block.ranges {

@@ -13,6 +13,7 @@ mod nodes;
 mod sections;
 mod source;
 mod tags;
+mod write;
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -25,6 +26,7 @@ use rayon::prelude::*;
 pub use draft::shape_of_gmsh_element;
 use header::Format;
 use source::MshSource;
+pub use write::write_msh;
 
 /// Reads an MSH 4.1 file, text or binary; coordinates are taken as metres.
 ///

@@ -41,6 +41,26 @@ pub static LIST: KeySection = KeySection {
             need: NOT_OF_A_POLYGON,
             ..DIP_DIRECTION
         },
+        Key {
+            name: "trend",
+            kind: number(Dimension::Angle, Range::Within(-360.0, 360.0)),
+            need: Need::Without("dip and dip direction"),
+            example: "45",
+            says: "Where the normal runs to, clockwise from north; with `plunge` instead of the dip",
+        },
+        Key {
+            name: "plunge",
+            kind: number(Dimension::Angle, Range::Within(0.0, 90.0)),
+            need: Need::Without("dip and dip direction"),
+            example: "35",
+            says: "How far the normal runs below the horizontal",
+        },
+        part(
+            "normal_x",
+            "Part of the normal towards the east, instead of the dip",
+        ),
+        part("normal_y", "Part of the normal towards the north"),
+        part("normal_z", "Part of the normal upwards"),
         RADIUS,
         SEMI_MAJOR,
         SEMI_MINOR,
@@ -65,6 +85,16 @@ pub static LIST: KeySection = KeySection {
     ],
     also: None,
 };
+
+const fn part(name: &'static str, says: &'static str) -> Key {
+    Key {
+        name,
+        kind: number(Dimension::One, Range::Finite),
+        need: Need::Without("dip and dip direction"),
+        example: "0.6",
+        says,
+    }
+}
 
 const fn coordinate(name: &'static str, says: &'static str) -> Key {
     Key {

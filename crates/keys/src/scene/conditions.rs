@@ -18,8 +18,15 @@ static GRAVITY: Plausible = Plausible {
 /// A part of the outer surface.
 pub static BOUNDARY: KeySection = KeySection {
     pattern: "[boundary.NAME]",
-    says: "The physical surface NAME; a load, a support and a fluid may act together",
+    says: "Surface NAME, or outer faces at a place; load, support, fluid may act together",
     keys: &[
+        Key {
+            name: "where",
+            kind: Kind::Text,
+            need: Need::Without("the physical surface of that name"),
+            example: "\"z = max\"",
+            says: "Where its faces lie, for meshes whose outer faces have no names: comparisons of expressions in x, y, z, all of which hold, such as `x > 1, x < 3, z = max`",
+        },
         Key {
             name: "traction",
             kind: Kind::VectorOr(quantity(Dimension::Stress, Range::Finite), &FIELD),
@@ -47,6 +54,27 @@ pub static BOUNDARY: KeySection = KeySection {
             need: Need::Default("false"),
             example: "true",
             says: "No displacement along the normal, a roller on any plane; instead of `displacement`",
+        },
+        Key {
+            name: "spring",
+            kind: varied(Dimension::StressPerLength, Range::NotNegative),
+            need: Need::Without("none"),
+            example: "1e9",
+            says: "Stiffness of springs against displacement of the surface, an elastic bed",
+        },
+        Key {
+            name: "shear_spring",
+            kind: varied(Dimension::StressPerLength, Range::NotNegative),
+            need: Need::Without("that of `spring`"),
+            example: "5e8",
+            says: "Stiffness of the springs along the surface; `spring` is that along its normal then",
+        },
+        Key {
+            name: "far_field",
+            kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
+            need: Need::Without("none"),
+            example: "[0.0, 0.0, 0.0]",
+            says: "Springs as stiff as unbounded rock outside, going by the distance from this centre of what happens inside; instead of `spring`",
         },
         BOUNDARY_PRESSURE,
         BOUNDARY_INFLOW,

@@ -42,7 +42,14 @@ pub static MESH: KeySection = KeySection {
             kind: Kind::Whole(Range::Within(2.0, 3.0)),
             need: Need::Default("3"),
             example: "2",
-            says: "2 meshes fractures and outer faces without the rock between them, for flow in rigid rock; with `geometry` only",
+            says: "2 meshes surfaces alone: those of a plane are a scene in plane strain, whose fractures are lines; others are the fractures and outer faces of rigid rock; with `geometry` only",
+        },
+        Key {
+            name: "scale",
+            kind: number(Dimension::One, Range::Positive),
+            need: Need::Default("1"),
+            example: "1000",
+            says: "Metres that one unit of the coordinates of the mesh is: 1000 for kilometres; not with `adapt`",
         },
         Key {
             name: "quarter_points",

@@ -519,15 +519,24 @@ class Displacement(Section):
 
 
 class Boundary(Section):
-    """The physical surface NAME; a load, a support and a fluid may act together.
+    """Surface NAME, or outer faces at a place; load, support, fluid may act together.
 
     Args:
+        where: Where its faces lie, for meshes whose outer faces have no names: comparisons of
+            expressions in x, y, z, all of which hold, such as `x > 1, x < 3, z = max`. Without it:
+            the physical surface of that name.
         traction: Force per area in global axes (Pa). Without it: none.
         pressure: Force per area along the inward normal, instead of `traction` (Pa). Without it:
             none.
         displacement: Prescribed components; those not named are free. Without it: free.
         symmetry: No displacement along the normal, a roller on any plane; instead of
             `displacement`. Without it false.
+        spring: Stiffness of springs against displacement of the surface, an elastic bed (Pa/m); >=
+            0. Without it: none.
+        shear_spring: Stiffness of the springs along the surface; `spring` is that along its normal
+            then (Pa/m); >= 0. Without it: that of `spring`.
+        far_field: Springs as stiff as unbounded rock outside, going by the distance from this
+            centre of what happens inside; instead of `spring` (m). Without it: none.
         fluid_pressure: Pressure of the fluid where fractures meet the surface: constant, or linear
             in the elevation (Pa); -1e12 to 1e12. Without it: closed to the fluid.
         fluid_inflow: What flows into the fractures that meet the surface, in all, shared by length
@@ -540,19 +549,27 @@ class Boundary(Section):
     def __init__(
         self,
         *,
+        where: str | None = None,
         traction: Sequence[Quantity | Varying | Mapping[str, Any]] | None = None,
         pressure: Quantity | Varying | Mapping[str, Any] | None = None,
         displacement: Displacement | Mapping[str, Any] | None = None,
         symmetry: bool | None = None,
+        spring: Quantity | Varying | Mapping[str, Any] | None = None,
+        shear_spring: Quantity | Varying | Mapping[str, Any] | None = None,
+        far_field: Sequence[Quantity] | None = None,
         fluid_pressure: Quantity | FluidPressure | Mapping[str, Any] | None = None,
         fluid_inflow: Quantity | None = None,
         history: Sequence[Sequence[float]] | None = None,
     ) -> None:
         super().__init__(
+            where=where,
             traction=traction,
             pressure=pressure,
             displacement=displacement,
             symmetry=symmetry,
+            spring=spring,
+            shear_spring=shear_spring,
+            far_field=far_field,
             fluid_pressure=fluid_pressure,
             fluid_inflow=fluid_inflow,
             history=history,
@@ -760,8 +777,11 @@ class MeshSource(Section):
         parameters: Plain numbers handed to gmsh, `{ h = 0.1 }` as `-setnumber h 0.1`; with
             `geometry` only. Without it {}.
         order: Order of the elements; with `geometry` only; 1 to 2. Without it 1.
-        dimension: 2 meshes fractures and outer faces without the rock between them, for flow in
-            rigid rock; with `geometry` only; 2 to 3. Without it 3.
+        dimension: 2 meshes surfaces alone: those of a plane are a scene in plane strain, whose
+            fractures are lines; others are the fractures and outer faces of rigid rock; with
+            `geometry` only; 2 to 3. Without it 3.
+        scale: Metres that one unit of the coordinates of the mesh is: 1000 for kilometres; not with
+            `adapt`; > 0. Without it 1.
         quarter_points: Whether cells of order 2 at crack fronts follow the square root of the
             distance. Without it true.
         weld: Whether nodes at one place become one node; without it rock that touches without
@@ -780,6 +800,7 @@ class MeshSource(Section):
         parameters: Mapping[str, float] | None = None,
         order: int | None = None,
         dimension: int | None = None,
+        scale: Quantity | None = None,
         quarter_points: bool | None = None,
         weld: bool | None = None,
         refine: int | None = None,
@@ -791,6 +812,7 @@ class MeshSource(Section):
             parameters=parameters,
             order=order,
             dimension=dimension,
+            scale=scale,
             quarter_points=quarter_points,
             weld=weld,
             refine=refine,

@@ -7,7 +7,7 @@ const TIMED: &str = include_str!("../../../../tests/program/timed.toml");
 /// Keys that exclude those of the others.
 const REST: &str = "
 load = { times = [1.0] }
-mesh = { file = 'a.msh' }
+mesh = { file = 'a.msh', scale = 1e3 }
 [rock.default]
 [fracture.a]
 aperture = { table = [[0, 1e-4]], over = 'depth', ground = 3, beyond = 'nearest', unit = 'mm' }
@@ -205,7 +205,7 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
             "0.2 mm",
         ],
         [
-            "scene.toml:65: `gravity` = 981 in [body]",
+            "scene.toml:69: `gravity` = 981 in [body]",
             "981 cm/s2 = 9.81 m/s2",
         ],
     ]) {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::assembly::cell_forces;
 use crate::assembly::interface::Interface;
+use crate::assembly::springs;
 use crate::space::Space;
 
 /// Forces of one load case on all unknowns at load factor 1 (N).
@@ -58,7 +59,7 @@ impl Loads {
     pub(crate) fn of(space: Space<'_>, interface: &Interface) -> Self {
         let of_case = |case| CaseLoads {
             applied: applied(space, interface, case),
-            prescribed: negative(space, cell_forces::prescribed(space, case)),
+            prescribed: negative(space, prescribed(space, case)),
         };
         let cases = 0..space.problem.schedule.case_count();
         Self::new(
@@ -86,6 +87,14 @@ impl Loads {
     pub(crate) fn initial_size(&self) -> f64 {
         self.initial_size
     }
+}
+
+/// Forces (N) by which rock and springs resist the prescribed displacements of a load case, if
+/// there are any.
+fn prescribed(space: Space<'_>, case: usize) -> Option<Vec<DVec3>> {
+    let mut forces = cell_forces::prescribed(space, case)?;
+    springs::add_prescribed(space, case, &mut forces);
+    Some(forces)
 }
 
 /// Surface loads, gravity and fluid pressure of a load case.

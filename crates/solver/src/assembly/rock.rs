@@ -251,7 +251,6 @@ impl<'a> CellMatrices<'a> {
         let Space {
             points, supports, ..
         } = self.space;
-        let cells = &self.space.problem.mesh.cells;
         let mut tetrahedron = [DMat3::ZERO; 4];
         for (&slot, visit) in slots.iter().zip(visits) {
             let blocks = self.row(visit, &mut tetrahedron);
@@ -263,7 +262,7 @@ impl<'a> CellMatrices<'a> {
             };
             for (block, other_slot) in blocks.iter().zip((slot - visit.local) as usize..) {
                 let other = points.of_cell_node[other_slot] as usize;
-                let start = place[cells.nodes[other_slot] as usize] as usize;
+                let start = place[points.node[other] as usize] as usize;
                 let block = supports.project_block(point, other, *block);
                 target.scatter(other, block, start, rows);
             }

@@ -5,6 +5,7 @@ mod field_place;
 mod flow;
 mod initial_stress;
 mod schedule;
+mod springs;
 mod varying;
 
 use glam::DVec3;
@@ -18,6 +19,7 @@ pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid};
 pub use initial_stress::InitialStress;
 pub use kluft_field::{Field, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};
+pub use springs::{Spring, SpringStiffness};
 pub use varying::{
     LawParameter, LoadField, RockParameter, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
 };
@@ -45,6 +47,8 @@ pub struct Problem {
     pub fractures: Vec<Fracture>,
     /// Conditions on the outer surface.
     pub conditions: Vec<Condition>,
+    /// Springs on the outer surface.
+    pub springs: Vec<Spring>,
     /// Nodes held by themselves.
     pub fixed_points: Vec<FixedPoint>,
     /// Acceleration of gravity (m/s^2).
@@ -68,6 +72,7 @@ impl Problem {
             rock_of_cell: vec![0; mesh.cells.len()],
             fractures: Vec::new(),
             conditions: Vec::new(),
+            springs: Vec::new(),
             fixed_points: Vec::new(),
             gravity: DVec3::ZERO,
             initial_stress: None,

@@ -71,9 +71,10 @@ pub struct Pattern {
 impl Pattern {
     /// Pattern of a mesh.
     pub fn of(mesh: &Mesh, points: &SectorNodes) -> Self {
-        let slots = Lists::occurrences(&mesh.cells.nodes, mesh.nodes.len());
+        let nodes = points.moving_nodes(mesh);
+        let slots = Lists::occurrences(&nodes, mesh.nodes.len());
         let cell_of_slot = CellOfSlot::of(&mesh.cells);
-        let neighbours = neighbours(&mesh.cells, &slots, &cell_of_slot);
+        let neighbours = neighbours((&mesh.cells, &nodes), &slots, &cell_of_slot);
         let blocks = block_pattern(&neighbours, points);
         Self {
             slots,
@@ -84,16 +85,20 @@ impl Pattern {
     }
 }
 
-/// For each node the nodes it shares a cell with.
-fn neighbours(cells: &Elements, slots: &Lists, cell_of_slot: &CellOfSlot) -> Lists {
+/// For each node the nodes it shares a cell with; `nodes` are those of the cells.
+fn neighbours(
+    (cells, nodes): (&Elements, &[u32]),
+    slots: &Lists,
+    cell_of_slot: &CellOfSlot,
+) -> Lists {
     let node_count = slots.count();
     let tasks: Vec<usize> = (0..node_count).step_by(NODES_PER_TASK).collect();
     let around = tasks.into_par_iter().map_init(
         || (Near::default(), vec![u32::MAX; node_count]),
         |(near, last_seen), start| {
-            let nodes = start..(start + NODES_PER_TASK).min(node_count);
-            near.gather(nodes.clone(), cells, slots, cell_of_slot);
-            near.distinct(nodes, slots, last_seen)
+            let own = start..(start + NODES_PER_TASK).min(node_count);
+            near.gather(own.clone(), (cells, nodes), slots, cell_of_slot);
+            near.distinct(own, slots, last_seen)
         },
     );
     Lists::join(&around.collect::<Vec<_>>())
@@ -110,12 +115,18 @@ struct Near {
 impl Near {
     /// Apart from [`Near::distinct`], because the cells lie anywhere in memory: here nothing waits
     /// for them.
-    fn gather(&mut self, nodes: Range<usize>, cells: &Elements, slots: &Lists, of: &CellOfSlot) {
+    fn gather(
+        &mut self,
+        own: Range<usize>,
+        (cells, nodes): (&Elements, &[u32]),
+        slots: &Lists,
+        of: &CellOfSlot,
+    ) {
         self.nodes.clear();
         self.ends.clear();
-        for &slot in &slots.entries[slots.offset[nodes.start]..slots.offset[nodes.end]] {
+        for &slot in &slots.entries[slots.offset[own.start]..slots.offset[own.end]] {
             let (_, own) = of.locate(slot, cells);
-            self.nodes.extend_from_slice(&cells.nodes[own]);
+            self.nodes.extend_from_slice(&nodes[own]);
             self.ends.push(self.nodes.len() as u32);
         }
     }

@@ -8,10 +8,11 @@ use glam::DVec3;
 use kluft_mesh::{Defect, Mesh, facet_area_vector};
 use lie_core::FractureLaw;
 
-use crate::problem::Problem;
+use crate::problem::{Problem, Spring};
 use crate::space::sector_nodes::SectorNodes;
 use crate::space::supports::Supports;
 use kluft_algebra::dense_kernels::apart;
+use kluft_algebra::trace;
 
 /// Below this share of the largest eigenvalue a motion counts as unresisted; the others are far
 /// above it, because all lengths are in units of the body.
@@ -226,10 +227,35 @@ impl Constraints<'_> {
                 }
             }
         }
+        for spring in &self.problem.springs {
+            self.add_spring(spring, &mut sum);
+        }
         for facet in 0..self.problem.mesh.facets.elements.len() {
             self.add_facet(facet, &mut sum);
         }
         sum
+    }
+
+    /// Springs resist as a facet does on whose other side nothing moves.
+    fn add_spring(&self, spring: &Spring, sum: &mut Mat<f64>) {
+        let boundary = &self.problem.mesh.boundaries[spring.boundary];
+        for facet in 0..boundary.elements.len() {
+            let corners = self.problem.mesh.corners(&boundary.elements, facet);
+            let normal = facet_area_vector(&corners).normalize();
+            let block = self.problem.mesh.block[boundary.cell[facet] as usize];
+            let body = self.body_of_block[block as usize] as usize;
+            for at in corners {
+                let stiffness = spring.stiffness.at(at, normal, 1.0);
+                let size = trace(stiffness);
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z]
+                    .into_iter()
+                    .filter(|_| size > 0.0)
+                {
+                    let resisted = stiffness * axis / size;
+                    add(sum, &[(body, self.motion(at, resisted))]);
+                }
+            }
+        }
     }
 
     /// A facet resists relative motion of the bodies on its sides at each of its corners.

@@ -5,6 +5,8 @@
 //! continuous displacement (`k = 0`) or a jump of that node. [`SectorNodes::displacements`] and
 //! [`SectorNodes::gather`] are the enrichment table and its transpose, applied to all nodes.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 use kluft_mesh::Mesh;
 use lie_core::enrichment::coefficient;
@@ -29,17 +31,38 @@ impl SectorNodes {
         let mut node = Vec::new();
         offset.push(0);
         for (index, &sectors) in mesh.sectors.count.iter().enumerate() {
+            let sectors = match &mesh.original {
+                // A copy moves with its original.
+                Some(original) if original[index] != index as u32 => 0,
+                _ => sectors,
+            };
             node.extend(std::iter::repeat_n(index as u32, sectors as usize));
             offset.push(node.len() as u32);
         }
         let slots = mesh.cells.nodes.par_iter().zip(&mesh.sectors.of_cell_node);
-        let of_cell_node = slots
-            .map(|(&node, &sector)| offset[node as usize] + sector)
-            .collect();
+        let of_cell_node = match &mesh.original {
+            None => slots
+                .map(|(&node, &sector)| offset[node as usize] + sector)
+                .collect(),
+            Some(original) => slots
+                .map(|(&node, &sector)| offset[original[node as usize] as usize] + sector)
+                .collect(),
+        };
         Self {
             offset,
             node,
             of_cell_node,
+        }
+    }
+
+    /// Node that moves each cell node, in the order of the cells' flat node list.
+    pub fn moving_nodes<'a>(&self, mesh: &'a Mesh) -> Cow<'a, [u32]> {
+        match mesh.is_plane() {
+            false => Cow::Borrowed(&mesh.cells.nodes),
+            true => {
+                let points = self.of_cell_node.iter();
+                Cow::Owned(points.map(|&point| self.node[point as usize]).collect())
+            }
         }
     }
 

@@ -51,6 +51,8 @@ struct Demand<'a> {
     source: &'a str,
 }
 
+/// Who holds the points of a mesh of the plane.
+const PLANE: &str = "plane strain";
 const UNHELD: u32 = u32::MAX;
 
 impl Supports {
@@ -62,6 +64,15 @@ impl Supports {
     pub fn of(problem: &Problem, points: &SectorNodes) -> Result<Self, Vec<Defect>> {
         let mesh = &problem.mesh;
         let mut demands: BTreeMap<u32, Vec<Demand<'_>>> = BTreeMap::new();
+        if mesh.is_plane() {
+            let wanted = Wanted {
+                values: [None, None, Some(0.0)],
+                case: 0,
+            };
+            for point in 0..points.len() as u32 {
+                demands.insert(point, components(wanted, PLANE).collect());
+            }
+        }
         let cases = &problem.schedule.cases;
         for (index, condition) in problem.conditions.iter().enumerate() {
             match condition.support {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::interface::Interface;
 use crate::assembly::loads::Loads;
-use crate::assembly::rock;
+use crate::assembly::{rock, springs};
 use crate::flow::{Coupling, FlowSystem};
 use crate::problem::{Conduit, Flow, Load, Problem};
 
@@ -27,7 +27,7 @@ pub struct System<'a> {
     pub(crate) problem: &'a Problem,
     /// Numbering and topology, and the laws.
     pub(crate) discretisation: Discretisation,
-    /// Stiffness of the rock over all unknowns; it never changes.
+    /// Stiffness of rock and springs over all unknowns; it never changes.
     rock: BlockMatrix,
     /// Forces.
     loads: Loads,
@@ -44,7 +44,8 @@ impl<'a> System<'a> {
     /// Assembles rock and loads.
     pub fn assemble(problem: &'a Problem, discretisation: Discretisation) -> Self {
         let space = discretisation.space(problem);
-        let rock = rock::rock_stiffness(space);
+        let mut rock = rock::rock_stiffness(space);
+        springs::add(space, &mut rock);
         let loads = Loads::of(space, &discretisation.interface);
         Self {
             problem,

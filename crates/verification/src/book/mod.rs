@@ -10,6 +10,7 @@ mod parts;
 mod patch_test;
 mod paths;
 mod permeability;
+mod plane_cracks;
 mod scene;
 mod steady_flow;
 
@@ -37,6 +38,7 @@ pub fn report() -> Report {
             patch_test::PAGE,
             joint_sets::PAGE,
             oscillation::PAGE,
+            plane_cracks::PAGE,
             paths::PAGE,
             estimate::PAGE,
             steady_flow::PAGE,

@@ -70,6 +70,26 @@ impl Outcome {
         self.summary["unknowns"]["total"].as_u64().expect("a count") as usize
     }
 
+    /// A value of a probe of one point.
+    pub fn probed(&self, probe: &str, column: &str) -> f64 {
+        let file = self.folder.path().join("out/probes.csv");
+        let text = fs::read_to_string(file).expect("probes");
+        let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let head = rows.next().unwrap_or_default();
+        let place = |name: &str| head.iter().position(|own| *own == name).expect("a column");
+        let of = place("probe");
+        let row = rows.find(|row| row[of] == probe);
+        let row = row.unwrap_or_else(|| panic!("no probe {probe}"));
+        row[place(column)].parse().unwrap_or(f64::NAN)
+    }
+
+    /// A number of a fracture.
+    pub fn of(&self, fracture: &str, path: &[&str]) -> f64 {
+        let start = &self.summary["fractures"][fracture];
+        let found = path.iter().fold(start, |value, key| &value[key]);
+        found.as_f64().unwrap_or(f64::NAN)
+    }
+
     /// A number of the only fracture.
     pub fn of_fracture(&self, path: &[&str]) -> Option<f64> {
         let fractures = self.summary["fractures"].as_object()?;

@@ -1,0 +1,246 @@
+//! Reads unstructured grids of VTK (.vtu) with numbers of materials on their cells, as OpenGeoSys
+//! and GEOS write them.
+
+use std::path::Path;
+
+use kluft_mesh::{Defect, Draft, Group, Shape, TaggedElements, sample};
+use memchr::memmem;
+use vtkio::model::{Attribute, DataSet, UnstructuredGridPiece, VertexNumbers, Vtk};
+
+use super::imported::Imported;
+use super::vtk_order::from_vtk;
+use crate::msh::bytes_of;
+use crate::vtu::shape_of_vtk_cell;
+
+/// Names under which programs keep the material of a cell, the first that is there counts.
+const MATERIALS: [&str; 6] = [
+    "MaterialIDs",
+    "attribute",
+    "Attribute",
+    "gmsh:physical",
+    "region",
+    "CellEntityIds",
+];
+
+/// Reads a grid. Cells of one material are a group; those of a lower dimension than the highest are
+/// surfaces, or lines in the plane.
+///
+/// # Errors
+/// If the file cannot be read, holds no unstructured grid, or cells that cannot be used.
+pub fn read_grid(path: &Path) -> Result<Imported, Vec<Defect>> {
+    let place = path.display().to_string();
+    let unread = |problem: String| {
+        let remedy = "write it as an XML file of one unstructured grid, uncompressed or with zlib \
+                      (ParaView: Save Data, .vtu)";
+        vec![Defect::new(&place, problem, remedy)]
+    };
+    let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
+    if !is_plain(&bytes) {
+        return Err(unread("its tags are none of a grid's".to_owned()));
+    }
+    // What is damaged may be more than the reader checks.
+    let read = std::panic::catch_unwind(|| Vtk::import(path));
+    let read = read.map_err(|_| unread("cannot be read: it is damaged".to_owned()))?;
+    let read = read.map_err(|error| unread(format!("cannot be read: {error}")))?;
+    let DataSet::UnstructuredGrid { pieces, .. } = read.data else {
+        return Err(unread("it holds no unstructured grid".to_owned()));
+    };
+    let mut pieces = pieces.into_iter();
+    let (Some(piece), None) = (pieces.next(), pieces.next()) else {
+        return Err(unread("it holds several pieces, or none".to_owned()));
+    };
+    let piece = piece.into_loaded_piece_data(Some(path));
+    let piece = piece.map_err(|error| unread(format!("cannot be read: {error}")))?;
+    let cells =
+        Cells::of(&piece).ok_or_else(|| unread("its arrays do not fit together".to_owned()))?;
+    cells.imported(place)
+}
+
+/// Whether no tag has more attributes than those of a grid have, or name spaces: the reader takes
+/// long over many.
+fn is_plain(bytes: &[u8]) -> bool {
+    const MOST: usize = 40;
+    let tags = match memmem::find(bytes, b"<AppendedData") {
+        // Behind it raw bytes may follow.
+        Some(end) => &bytes[..end],
+        None => bytes,
+    };
+    let mut tags = tags.split(|byte| *byte == b'<');
+    tags.all(|tag| {
+        let tag = tag.split(|byte| *byte == b'>').next().unwrap_or_default();
+        let attributes = memchr::memchr_iter(b'=', tag).take(MOST + 1).count();
+        attributes <= MOST && memmem::find(tag, b"xmlns").is_none()
+    })
+}
+
+/// The arrays of a grid.
+struct Cells {
+    points: Vec<[f64; 3]>,
+    types: Vec<u8>,
+    nodes: Vec<u64>,
+    ends: Vec<u64>,
+    /// The array of materials and its values.
+    materials: Option<(String, Vec<i64>)>,
+    /// Names of the other arrays.
+    others: Vec<String>,
+}
+
+impl Cells {
+    fn of(piece: &UnstructuredGridPiece) -> Option<Self> {
+        let points: Vec<f64> = piece.points.cast_into()?;
+        let VertexNumbers::XML {
+            connectivity,
+            offsets,
+        } = &piece.cells.cell_verts
+        else {
+            return None;
+        };
+        let (mut materials, mut others) = (None, Vec::new());
+        let mut best = MATERIALS.len();
+        for attribute in &piece.data.cell {
+            let Attribute::DataArray(array) = attribute else {
+                continue;
+            };
+            let rank = MATERIALS.iter().position(|name| *name == array.name);
+            match (rank, array.data.cast_into::<i64>()) {
+                (Some(rank), Some(values)) if rank < best => {
+                    best = rank;
+                    materials = Some((array.name.clone(), values));
+                }
+                _ => others.push(array.name.clone()),
+            }
+        }
+        let (places, rest) = points.as_chunks();
+        let cells = Self {
+            points: places.to_vec(),
+            types: piece.cells.types.iter().map(|kind| *kind as u8).collect(),
+            nodes: connectivity.clone(),
+            ends: offsets.clone(),
+            materials,
+            others,
+        };
+        let count = cells.types.len();
+        let is_whole = rest.is_empty()
+            && cells.ends.len() == count
+            && cells.ends.is_sorted()
+            && cells
+                .ends
+                .last()
+                .is_none_or(|end| *end == cells.nodes.len() as u64)
+            && cells
+                .nodes
+                .iter()
+                .all(|node| (*node as usize) < cells.points.len())
+            && cells
+                .materials
+                .as_ref()
+                .is_none_or(|(_, values)| values.len() == count);
+        is_whole.then_some(cells)
+    }
+
+    fn imported(self, source: String) -> Result<Imported, Vec<Defect>> {
+        let shapes: Vec<Option<Shape>> = self
+            .types
+            .iter()
+            .map(|kind| shape_of_vtk_cell(*kind))
+            .collect();
+        if let Some(defect) = self.unusable(&source, &shapes) {
+            return Err(vec![defect]);
+        }
+        let dimensions = shapes.iter().flatten().map(|shape| shape.dimension());
+        let highest = dimensions.max().unwrap_or(0);
+        let mut draft = Draft {
+            source,
+            node_tags: (1..=self.points.len() as u64).collect(),
+            cells: TaggedElements::new(),
+            facets: TaggedElements::new(),
+            lines: TaggedElements::new(),
+            ..Draft::default()
+        };
+        for (cell, shape) in shapes.into_iter().enumerate() {
+            if let Some(shape) = shape {
+                self.add(&mut draft, (cell, shape), highest);
+            }
+        }
+        draft.nodes = self.points;
+        let mut notes = vec![match &self.materials {
+            Some((name, _)) => format!("groups by the values of `{name}`"),
+            None => "no array of materials: one group for each dimension".to_owned(),
+        }];
+        if !self.others.is_empty() {
+            notes.push(format!(
+                "not taken over: the arrays {}",
+                self.others.join(", ")
+            ));
+        }
+        Ok(Imported { draft, notes })
+    }
+
+    fn nodes_of(&self, cell: usize) -> &[u64] {
+        let start = cell.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.nodes[start as usize..self.ends[cell] as usize]
+    }
+
+    /// Cells of no shape that serves, or with another number of nodes. Vertices lie on nodes that
+    /// others have.
+    fn unusable(&self, source: &str, shapes: &[Option<Shape>]) -> Option<Defect> {
+        let odd = self.types.iter().zip(shapes);
+        let odd = odd.filter(|(kind, shape)| shape.is_none() && **kind > 2);
+        let mut odd: Vec<u64> = odd.map(|(kind, _)| u64::from(*kind)).collect();
+        odd.sort_unstable();
+        odd.dedup();
+        if !odd.is_empty() {
+            return Some(Defect::new(
+                source,
+                format!("cells of VTK's types {} cannot be used", sample(&odd)),
+                "mesh with tetrahedra, hexahedra, wedges or pyramids of first or second order, or \
+                 triangles and quadrangles in the plane",
+            ));
+        }
+        let broken = |cell: &usize| {
+            shapes[*cell].is_some_and(|shape| self.nodes_of(*cell).len() != shape.node_count())
+        };
+        let cell = (0..shapes.len()).find(broken)?;
+        let problem = format!("cell {cell} has {} nodes", self.nodes_of(cell).len());
+        Some(Defect::new(source, problem, "write the grid again"))
+    }
+
+    /// Adds a cell; `highest` is the dimension of the rock.
+    fn add(&self, draft: &mut Draft, (cell, shape): (usize, Shape), highest: usize) {
+        let nodes = self.nodes_of(cell).iter();
+        let nodes: Vec<u32> = nodes.map(|&node| node as u32).collect();
+        let materials = self.materials.as_ref();
+        let material = materials.map_or(0, |(_, values)| values[cell]);
+        let set = group(draft, shape.dimension(), (material, highest));
+        let target = match shape.dimension() {
+            3 => &mut draft.cells,
+            2 => &mut draft.facets,
+            _ => &mut draft.lines,
+        };
+        target.elements.push(shape, &from_vtk(shape, &nodes));
+        target.tags.push(cell as u64 + 1);
+        target.group_set.push(set);
+    }
+}
+
+/// The set of the group of a material; `highest` is the dimension of the rock.
+fn group(draft: &mut Draft, dimension: usize, (material, highest): (i64, usize)) -> u32 {
+    let kind = match dimension == highest {
+        true => "material",
+        false => "surface",
+    };
+    let name = format!("{kind}-{material}");
+    let known = draft
+        .groups
+        .iter()
+        .position(|g| g.dimension == dimension && g.name == name);
+    known.unwrap_or_else(|| {
+        draft.groups.push(Group {
+            dimension,
+            tag: draft.groups.len() as i32 + 1,
+            name,
+        });
+        draft.group_sets.push(vec![draft.groups.len() - 1]);
+        draft.groups.len() - 1
+    }) as u32
+}

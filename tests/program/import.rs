@@ -1,0 +1,157 @@
+//! Meshes of other programs, imported, inspected and solved.
+
+use std::fs;
+
+use crate::harness::{Run, Workshop, kluft, summary};
+
+/// Two cubes on one another with a cohesive element between.
+const CUBES: &str = "\
+*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+5, 0, 0, 1
+6, 1, 0, 1
+7, 1, 1, 1
+8, 0, 1, 1
+15, 0, 0, 1
+16, 1, 0, 1
+17, 1, 1, 1
+18, 0, 1, 1
+21, 0, 0, 2
+22, 1, 0, 2
+23, 1, 1, 2
+24, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=rock
+1, 1, 2, 3, 4, 5, 6, 7, 8
+2, 15, 16, 17, 18, 21, 22, 23, 24
+*ELEMENT, TYPE=COH3D8, ELSET=joint
+3, 5, 6, 7, 8, 15, 16, 17, 18
+*SURFACE, NAME=lid
+2, S2
+*STEP
+";
+
+/// Squares below and above a line, numbered as materials 0 and 1, the line 7.
+const GRID: &str = r#"<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="6" NumberOfCells="3">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+0 0 0 1 0 0 1 1 0 0 1 0 1 2 0 0 2 0
+</DataArray></Points>
+<Cells>
+<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 3 2 4 5 3 2</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4 8 10</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">9 9 3</DataArray>
+</Cells>
+<CellData>
+<DataArray type="Int32" Name="MaterialIDs" format="ascii">0 1 7</DataArray>
+<DataArray type="Float64" Name="porosity" format="ascii">0.1 0.1 0.1</DataArray>
+</CellData>
+</Piece></UnstructuredGrid>
+</VTKFile>
+"#;
+
+fn imported(name: &str, text: &str) -> (Workshop, Run) {
+    let workshop = Workshop::of("");
+    fs::remove_file(workshop.scene()).expect("removed");
+    let input = workshop.path(name);
+    fs::write(&input, text).expect("written");
+    let out = workshop.path("made");
+    let flags = ["-v".as_ref(), "-o".as_ref(), out.as_os_str()];
+    let run = kluft(&[&["import".as_ref(), input.as_os_str()], &flags[..]].concat());
+    (workshop, run)
+}
+
+/// Under 10 MPa from above the joint carries 10 MPa: with `x = b/b0`, `(1 + ln^2 x)(1 - x)` is 0.5.
+fn joint_carries_the_load(name: &str, text: &str, fracture: &str) {
+    let (workshop, run) = imported(name, text);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let scene = workshop.path("made/scene.toml");
+    let solved = kluft(&["run".as_ref(), scene.as_os_str()]);
+    assert_eq!(solved.code, Some(0), "{}", solved.err);
+    let found = summary(&workshop.path("made/out"));
+    let joint = &found["fractures"][fracture];
+    let traction = joint["normal_traction"]["mean"]
+        .as_f64()
+        .expect("a traction");
+    assert!((traction / -1e7 - 1.0).abs() < 1e-9, "{traction}");
+    let aperture = joint["aperture"]["mean"].as_f64().expect("an aperture");
+    assert!(
+        (aperture / 6.022_627_52e-4 - 1.0).abs() < 1e-8,
+        "{aperture:e}"
+    );
+}
+
+#[test]
+fn an_abaqus_file_with_cohesive_elements_runs() {
+    joint_carries_the_load("cubes.inp", CUBES, "joint");
+}
+
+#[test]
+fn a_grid_of_the_plane_with_materials_runs() {
+    joint_carries_the_load("grid.vtu", GRID, "surface-7");
+}
+
+#[test]
+fn what_is_not_taken_over_is_named_and_what_cannot_be_read_is_refused() {
+    let (_, run) = imported("cubes.inp", CUBES);
+    assert!(
+        run.out.contains("STEP") && run.out.contains("cohesive"),
+        "{}",
+        run.out
+    );
+    let (_, run) = imported("grid.vtu", GRID);
+    assert!(run.out.contains("porosity"), "{}", run.out);
+    for (name, text, says) in [
+        ("mesh.e", "", "meshio convert"),
+        ("grid.vtu", "<VTKFile", "cannot be read"),
+        ("grid.vtu", &GRID.replace("9 9 3", "9 9 7"), "types 7"),
+        ("a.inp", "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "not there"),
+    ] {
+        let (_, run) = imported(name, text);
+        assert_eq!(run.code, Some(2), "{}", run.err);
+        let said = run.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains(says), "{says}: {said}");
+    }
+}
+
+/// The first fractures of the network of small features in PorePy's benchmarks, and a polygon as
+/// dfnWorks writes it: the domain is that of the list.
+#[test]
+fn lists_of_other_programs_become_networks() {
+    let porepy = "0,0,0,1,2.25,1\n\
+        0.05,0.25,0.5,0.95,0.25,0.5,0.95,2,0.5,0.05,2,0.5\n\
+        0.5,0.05,0.95,0.5,0.05,0.05,0.5,0.3,0.05,0.5,0.3,0.95\n";
+    let dfnworks = "nPolygons: 1\n4 {0, 0, 1} {2, 0, 1} {2, 1, 1} {0, 1, 1} \n";
+    for (name, text, areas) in [
+        ("network.csv", porepy, &[0.9 * 1.75, 0.25 * 0.9][..]),
+        ("polygons.dat", dfnworks, &[2.0]),
+    ] {
+        let workshop = Workshop::of("");
+        let (input, out) = (workshop.path(name), workshop.path("made"));
+        fs::write(&input, text).expect("written");
+        let run = kluft(&[
+            "network".as_ref(),
+            input.as_os_str(),
+            "-v".as_ref(),
+            "--keep-small".as_ref(),
+            "-o".as_ref(),
+            out.as_os_str(),
+        ]);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert!(run.out.contains("a list of"), "{}", run.out);
+        let record = fs::read_to_string(out.join("network.json")).expect("a record");
+        let record: serde_json::Value = serde_json::from_str(&record).expect("JSON");
+        let fractures = record["fractures"].as_array().expect("fractures");
+        let found: Vec<f64> = fractures
+            .iter()
+            .map(|fracture| fracture["area"].as_f64().expect("an area"))
+            .collect();
+        assert_eq!(found.len(), areas.len());
+        for (found, area) in found.iter().zip(areas) {
+            assert!((found / area - 1.0).abs() < 1e-9, "{found} {area}");
+        }
+    }
+}
