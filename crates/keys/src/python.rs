@@ -188,7 +188,7 @@ fn annotation(kind: &Kind) -> String {
         Kind::Path => "str | os.PathLike[str]".to_owned(),
         Kind::Choice(_, words) => literal(words),
         Kind::Choices(words) => format!("Sequence[{}]", literal(words)),
-        Kind::Pair => "Sequence[str]".to_owned(),
+        Kind::Pair | Kind::Texts => "Sequence[str]".to_owned(),
         Kind::Flags => "Sequence[bool]".to_owned(),
         Kind::Numbers(quantity) | Kind::Vector(quantity) => {
             format!("Sequence[{}]", number(quantity.dimension))

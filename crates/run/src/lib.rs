@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `sequence` | one body after the other, where phases remove and add volumes |
 //! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
 //! | `permeability`, `flow_history` | the equivalent permeability; the history in rigid rock |
@@ -65,6 +66,7 @@ mod resume;
 mod rigid;
 mod run;
 mod save;
+mod sequence;
 mod spread;
 mod stages;
 mod steps;

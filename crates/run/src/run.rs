@@ -90,6 +90,9 @@ fn solve(
     if !mesh_is_kept {
         adapt::search(run)?;
     }
+    if run.request.scene.has_stages() {
+        return run.solve_stages(former);
+    }
     let binding = run.prepare(former.as_ref())?;
     match &binding.flow {
         Some(flow) if run.request.scene.is_rigid() => run.solve_flow(&binding.problem, flow),

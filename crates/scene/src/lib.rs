@@ -31,6 +31,7 @@ mod roles;
 mod scene;
 mod setting;
 mod sources;
+mod stages;
 mod surfaces;
 mod warning;
 
@@ -42,7 +43,7 @@ pub use conditions::{
 pub use field::FieldEntry;
 pub use fluid::{FluidEntry, SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
-pub use history::{LoadHistory, StepEnd, Timetable};
+pub use history::{LoadHistory, PhaseEntry, StepEnd, Timetable};
 pub use initial_stress::InitialStressEntry;
 pub use join::{JoinedDraft, join};
 pub use load::Clock;
@@ -55,5 +56,6 @@ pub use rock::RockEntry;
 pub use roles::{Roles, roles};
 pub use scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 pub use setting::{FluidUse, Setting};
+pub use stages::{StageBinding, Staged};
 pub use surfaces::{SurfaceMesh, surface_mesh};
 pub use warning::Doubt;

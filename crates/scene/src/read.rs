@@ -117,7 +117,12 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fluid: fluid_use(root),
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    let mesh = read_mesh_section(root, folder, setting);
+    let mut mesh = read_mesh_section(root, folder, setting);
+    if timetable.has_stages() {
+        refuse_beside_stages(root);
+        // Crack fronts come and go with volumes, and nodes stay where they are.
+        mesh.quarter_points = false;
+    }
     match setting.is_rigid() {
         true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
@@ -168,6 +173,27 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         // After everything has been read.
         warnings: source.take_warnings(),
     })
+}
+
+/// Refuses what does not know that volumes come and go.
+fn refuse_beside_stages(root: &Section<'_, '_>) {
+    for key in ["fluid", "oracle"] {
+        if root.has(key) {
+            let problem = format!("[{key}] knows nothing of volumes that phases remove or add");
+            root.refuse(key, problem, format!("remove [{key}], or `remove` and `add`"));
+        }
+    }
+    let Some(mesh) = root.section("mesh") else {
+        return;
+    };
+    if mesh.has("adapt") {
+        let problem = "a mesh is adapted to one body, and phases remove or add volumes".into();
+        mesh.refuse("adapt", problem, "remove [mesh.adapt], and give sizes in the geometry");
+    }
+    if mesh.flag("quarter_points") == Some(true) {
+        let problem = "crack fronts move with volumes that phases remove or add".into();
+        mesh.refuse("quarter_points", problem, "remove it");
+    }
 }
 
 /// What a scene says of its mesh.

@@ -7,7 +7,7 @@ use lie_core::FacetQuadrature;
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::fluid::{FluidEntry, SourceEntry};
-use crate::history::Timetable;
+use crate::history::{PhaseEntry, Timetable};
 use crate::initial_stress::InitialStressEntry;
 use crate::oracle::Oracle;
 use crate::probe::ProbeEntry;
@@ -154,6 +154,16 @@ impl Scene {
             }
         }
         files
+    }
+
+    /// The phases, if the load steps have any.
+    pub fn phases(&self) -> &[PhaseEntry] {
+        self.timetable.phases()
+    }
+
+    /// Whether phases remove or add volumes.
+    pub fn has_stages(&self) -> bool {
+        self.timetable.has_stages()
     }
 
     /// Whether the rock is rigid, and flow is all that happens.

@@ -461,7 +461,10 @@ fn initial_walls(
     pressure: f64,
 ) -> JointState {
     let (at, normal) = (point.position, point.normal);
-    let stress = problem.initial_stress.as_ref();
+    let facets = &problem.mesh.facets;
+    let sides = [facets.minus[point.facet as usize], facets.plus[point.facet as usize]];
+    let [one, other] = sides.map(|cell| problem.initial_stress_in(cell as usize));
+    let stress = one.and(other);
     let traction = stress.map_or(DVec3::ZERO, |stress| {
         let place = problem.field_place(point.facet as usize, at);
         stress.at_place(at, &place) * normal
