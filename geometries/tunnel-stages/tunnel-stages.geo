@@ -117,18 +117,19 @@ For i In {0 : 2 * #rock() - 1}
   rocks() += made(i);
 EndFor
 
-// The joints by where they lie: the corners of the box around a piece are on the line of its joint.
+// The joints by where they lie: drawn out along y, and the corners of the box around a piece on the line of its joint.
 steep_joints() = {};
 flat_joints() = {};
 cross_joint() = {};
 faces() = Surface{:};
 For i In {0 : #faces() - 1}
   bb() = BoundingBox Surface{faces(i)};
+  is_drawn = bb(4) - bb(1) > mid - eps;
   For j In {0 : 1}
-    If (Abs(bb(0) - x_steep(j) - bb(5) / steep) < eps && Abs(bb(3) - x_steep(j) - bb(2) / steep) < eps)
+    If (is_drawn && Abs(bb(0) - x_steep(j) - bb(5) / steep) < eps && Abs(bb(3) - x_steep(j) - bb(2) / steep) < eps)
       steep_joints() += faces(i);
     EndIf
-    If (Abs(bb(0) - x_flat(j) - bb(2) / flat) < eps && Abs(bb(3) - x_flat(j) - bb(5) / flat) < eps)
+    If (is_drawn && Abs(bb(0) - x_flat(j) - bb(2) / flat) < eps && Abs(bb(3) - x_flat(j) - bb(5) / flat) < eps)
       flat_joints() += faces(i);
     EndIf
   EndFor

@@ -133,7 +133,12 @@ impl Whole {
     /// of groups, lower first.
     pub fn inner_boundaries(&self) -> BTreeMap<usize, Vec<[u32; 2]>> {
         let mut found: BTreeMap<usize, Vec<[u32; 2]>> = BTreeMap::new();
-        for (place, &set) in self.adjacency.facets.iter().zip(&self.draft.facets.group_set) {
+        for (place, &set) in self
+            .adjacency
+            .facets
+            .iter()
+            .zip(&self.draft.facets.group_set)
+        {
             if place.faces.contains(&NONE) {
                 continue;
             }

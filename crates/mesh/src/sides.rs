@@ -24,9 +24,10 @@ impl Sides {
     /// The same for a part that has these cells, ascending, under numbers from 0.
     pub(crate) fn in_part(&self, cells: &[u32]) -> Self {
         let number = |cell: u32| cells.binary_search(&cell).ok().map(|place| place as u32);
-        let pairs = self.minus.iter().filter_map(|([a, b], &minus)| {
-            Some(([number(*a)?, number(*b)?], number(minus)?))
-        });
+        let pairs = self
+            .minus
+            .iter()
+            .filter_map(|([a, b], &minus)| Some(([number(*a)?, number(*b)?], number(minus)?)));
         Self {
             minus: pairs.collect(),
         }

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `strength` | the factor of safety, by strength reduction |
 //! | `sequence` | one body after the other, where phases remove and add volumes |
 //! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
@@ -70,6 +71,7 @@ mod sequence;
 mod spread;
 mod stages;
 mod steps;
+mod strength;
 mod summary;
 mod threads;
 mod undetermined;
@@ -93,5 +95,6 @@ pub use run::run;
 pub use save::Saving;
 pub use spread::Spread;
 pub use stages::Interruption;
+pub use strength::{MotionSummary, StrengthSummary, Trial};
 pub use summary::{FractureSummary, StepMeasures, StepSummary, Summary, Undetermined};
 pub use threads::{ThreadCount, pool, thread_count};

@@ -225,6 +225,8 @@ fn mean(rows: &[Row]) -> Option<Row> {
     (!rows.is_empty()).then(|| Row {
         position: rows.iter().map(|row| row.position).sum::<DVec3>() / count,
         rock: first.and_then(|row| row.rock).map(|_| of(rock, shared)),
-        fracture: first.and_then(|row| row.fracture).map(|_| of(fracture, shared)),
+        fracture: first
+            .and_then(|row| row.fracture)
+            .map(|_| of(fracture, shared)),
     })
 }

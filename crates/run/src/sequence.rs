@@ -10,6 +10,7 @@ use crate::doubts;
 use crate::observer::Stage;
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run};
+use crate::steps::Prepared;
 
 impl Run<'_> {
     /// From the mesh to the results of all load steps that are left, body by body.
@@ -21,7 +22,9 @@ impl Run<'_> {
         let staged = self.read_mesh(former.as_ref(), |_, draft| scene.staged(draft))?;
         self.summary.decisions.extend_from_slice(&staged.decisions);
         self.doubts.clone_from(&staged.warnings);
-        let done = former.as_ref().map_or(0, |former| former.progress.steps.len());
+        let done = former
+            .as_ref()
+            .map_or(0, |former| former.progress.steps.len());
         let mut stages = 0..staged.count();
         let first = stages.rfind(|&stage| done > staged.steps(stage).start);
         let mut end = former
@@ -29,7 +32,10 @@ impl Run<'_> {
             .and_then(|former| former.progress.stage.take())
             .map(Cow::into_owned);
         for stage in first.unwrap_or(0)..staged.count() {
-            let began = end.take();
+            let mut began = end.take();
+            if let Some(before) = &mut began {
+                staged.renew(stage, before);
+            }
             end = Some(self.solve_stage(&staged, (stage, began.as_ref()), former.take())?);
         }
         Ok(())
@@ -50,7 +56,9 @@ impl Run<'_> {
         self.count_mesh(&binding.problem.mesh);
         self.note_mesh();
         let warnings = std::mem::take(&mut binding.warnings);
-        let new = warnings.into_iter().filter(|text| !self.doubts.contains(text));
+        let new = warnings
+            .into_iter()
+            .filter(|text| !self.doubts.contains(text));
         let new: Vec<String> = new.collect();
         self.doubts.extend(new);
         let assembled = self.assemble(&binding.problem);
@@ -83,6 +91,13 @@ impl Run<'_> {
         };
         prepared.stage = before;
         self.solve_until(&mut prepared, steps.end)?;
-        Ok(system.leave(&prepared.state, &cells))
+        let end = system.leave(&prepared.state, &cells);
+        if stage + 1 == staged.count() {
+            let Prepared {
+                mut newton, state, ..
+            } = prepared;
+            self.reduce_strength(&mut system, &mut newton, state)?;
+        }
+        Ok(end)
     }
 }

@@ -36,7 +36,7 @@ use crate::unresolved;
 pub(crate) struct Prepared<'s, 'p> {
     system: &'s System<'p>,
     flow: Option<&'s RunFlow<'p>>,
-    newton: Newton,
+    pub(crate) newton: Newton,
     pub(crate) state: State,
     /// Made with the first results, so that it takes no memory from the first solve.
     estimator: Option<Estimator>,
@@ -98,7 +98,11 @@ impl Run<'_> {
             Some(former) => self.go_on(&system, plan, former.progress)?,
         };
         prepared.flow = flow.as_ref();
-        self.solve_until(&mut prepared, problem.schedule.steps.len())
+        self.solve_until(&mut prepared, problem.schedule.steps.len())?;
+        let Prepared {
+            mut newton, state, ..
+        } = prepared;
+        self.reduce_strength(&mut system, &mut newton, state)
     }
 
     /// Solves the load steps that are left up to one.
@@ -382,7 +386,8 @@ impl Run<'_> {
             return Ok(());
         }
         let start = Instant::now();
-        let is_left = self.finished.len() < problem.schedule.steps.len();
+        let is_left = self.finished.len() < problem.schedule.steps.len()
+            || self.request.scene.strength_reduction.is_some();
         let Prepared {
             newton,
             state,

@@ -51,11 +51,16 @@ fn draft(counts: [usize; 3], volume: Volume, planes: &[(&'static str, usize, f64
         let first = draft.group_sets.len() - names.len();
         draft.cells.group_set[cell] = (first + index) as u32;
     }
-    // The sets of later volumes have moved nothing: sets are appended in the order of the names.
     draft
 }
 
 fn outcome(text: &str, draft: Draft) -> Outcome {
+    let done = ended(text, draft);
+    assert_eq!(done.ending, Ending::Solved, "{:?}", done.ending);
+    done
+}
+
+fn ended(text: &str, draft: Draft) -> Outcome {
     let folder = std::path::Path::new(".");
     let head = "title = \"stages\"\n[mesh]\nfile = \"in memory.msh\"\n";
     let scene = Scene::parse(&format!("{head}{text}"), "a scene in memory", folder);
@@ -64,14 +69,16 @@ fn outcome(text: &str, draft: Draft) -> Outcome {
     let pool = pool.expect("threads");
     let mesh = MeshInput::Draft(Box::new(draft));
     let done = run(Request::in_memory(&scene, mesh, &pool), &mut ());
-    let done = done.unwrap_or_else(|defects| panic!("{defects:?}"));
-    assert_eq!(done.ending, Ending::Solved, "{:?}", done.ending);
-    done
+    done.unwrap_or_else(|defects| panic!("{defects:?}"))
 }
 
 fn field<'a>(grid: &'a Grid, name: &str) -> &'a [f64] {
     let mut fields = grid.point_fields.iter().chain(&grid.cell_fields);
-    match &fields.find(|field| field.name == name).expect("a field").values {
+    match &fields
+        .find(|field| field.name == name)
+        .expect("a field")
+        .values
+    {
         Values::Real(values) => values,
         Values::Integer(_) => panic!("{name} are numbers"),
     }
@@ -89,7 +96,10 @@ fn assert_all(values: &[f64], expected: f64, tolerance: f64) {
     assert!(!values.is_empty(), "nothing there");
     for value in values {
         let off = (value - expected).abs();
-        assert!(off <= tolerance * expected.abs(), "{value:e} instead of {expected:e}");
+        assert!(
+            off <= tolerance * expected.abs(),
+            "{value:e} instead of {expected:e}"
+        );
     }
 }
 
@@ -126,7 +136,10 @@ fn a_cut_lets_go_as_much_as_it_is_asked_to() {
     assert!(last.rock.points.iter().all(|x| x[2] <= 0.5 || x[2] > 0.5));
     assert_eq!(last.rock.shapes.len() * 2, done.steps[0].rock.shapes.len());
     let stress = field(&last.rock, "stress").chunks(6);
-    assert!(stress.map(|s| s[2].abs()).fold(0.0, f64::max) < 1e-3, "free of stress");
+    assert!(
+        stress.map(|s| s[2].abs()).fold(0.0, f64::max) < 1e-3,
+        "free of stress"
+    );
 }
 
 /// A bar is stretched; a second one is put beside it, and both are stretched on: the second knows
@@ -158,7 +171,10 @@ fn what_is_added_starts_free_of_stress() {
     assert_all(&in_bar(&done.steps[1], false), 1e-4 * YOUNG, 1e-10);
     let beside = in_bar(&done.steps[1], true);
     let largest = beside.iter().fold(0.0, |most, s: &f64| s.abs().max(most));
-    assert!(largest < 1e-9 * 1e-4 * YOUNG, "{largest:e} Pa in what was just added");
+    assert!(
+        largest < 1e-9 * 1e-4 * YOUNG,
+        "{largest:e} Pa in what was just added"
+    );
     assert_all(&in_bar(&done.steps[2], false), 2.5e-4 * YOUNG, 1e-10);
     assert_all(&in_bar(&done.steps[2], true), 1.5e-4 * YOUNG, 1e-9);
     // The second bar has moved with the first since it came: the ends are in one plane.
@@ -194,14 +210,23 @@ fn elastic_rock_forgets_the_order_of_cuts() {
         let text = format!("{rock}{}", phases(lists));
         let done = outcome(&text, draft([4; 3], volume, &planes));
         let last = done.steps.last().expect("steps").clone();
-        (field(&last.rock, "displacement").to_vec(), field(&last.rock, "stress").to_vec())
+        (
+            field(&last.rock, "displacement").to_vec(),
+            field(&last.rock, "stress").to_vec(),
+        )
     };
     let at_once = of(&["\"corner\", \"edge\", \"foot\""]);
     let staged = of(&["\"corner\"", "\"foot\"", "\"edge\""]);
     for (one, other) in [(&at_once.0, &staged.0), (&at_once.1, &staged.1)] {
         assert_eq!(one.len(), other.len());
-        let size = one.iter().fold(0.0, |most: f64, value| value.abs().max(most));
-        let apart = one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let size = one
+            .iter()
+            .fold(0.0, |most: f64, value| value.abs().max(most));
+        let apart = one
+            .iter()
+            .zip(other)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         assert!(size > 0.0 && apart < 1e-9 * size, "{apart:e} of {size:e}");
     }
 }
@@ -247,7 +272,11 @@ fn joints_keep_their_state_when_the_body_changes() {
         assert_all(field(&step.fracture_grid, "opening"), aperture - 1e-4, 1e-8);
     }
     let facets = |step: usize| done.steps[step].fracture_grid.shapes.len();
-    assert_eq!(facets(0), 2 * facets(1), "facets go with the rock on one side of them");
+    assert_eq!(
+        facets(0),
+        2 * facets(1),
+        "facets go with the rock on one side of them"
+    );
 }
 
 /// Where two walls that have moved apart are bridged, they stay where they are.
@@ -269,19 +298,33 @@ fn a_bridge_over_an_open_crack_holds_it_where_it_is() {
     );
     let mut made = draft([4, 2, 4], volume, &planes);
     // The crack is in the rock alone.
-    let crack = made.groups.iter().position(|g| g.name == "crack").expect("a crack");
-    let set = made.group_sets.iter().position(|s| s[..] == [crack]).expect("its set") as u32;
+    let crack = made
+        .groups
+        .iter()
+        .position(|g| g.name == "crack")
+        .expect("a crack");
+    let set = made
+        .group_sets
+        .iter()
+        .position(|s| s[..] == [crack])
+        .expect("its set") as u32;
     let facets = &made.facets;
     let kept: Vec<usize> = (0..facets.elements.len())
         .filter(|&facet| {
             let nodes = facets.elements.nodes_of(facet);
-            let top = nodes.iter().map(|&n| made.nodes[n as usize][2]).fold(0.0, f64::max);
+            let top = nodes
+                .iter()
+                .map(|&n| made.nodes[n as usize][2])
+                .fold(0.0, f64::max);
             facets.group_set[facet] != set || top <= 0.5
         })
         .collect();
     let mut elements = kluft_mesh::Elements::new();
     for &facet in &kept {
-        elements.push(facets.elements.shapes[facet], facets.elements.nodes_of(facet));
+        elements.push(
+            facets.elements.shapes[facet],
+            facets.elements.nodes_of(facet),
+        );
     }
     made.facets = kluft_mesh::TaggedElements {
         tags: kept.iter().map(|&f| made.facets.tags[f]).collect(),
@@ -297,10 +340,55 @@ fn a_bridge_over_an_open_crack_holds_it_where_it_is() {
     let of_rock = YOUNG * 1e-4 / 11.0;
     for found in stress {
         let off = found.abs().min((found - of_rock).abs());
-        assert!(off < 1e-8 * of_rock, "{found:e} Pa is neither none nor {of_rock:e}");
+        assert!(
+            off < 1e-8 * of_rock,
+            "{found:e} Pa is neither none nor {of_rock:e}"
+        );
     }
 }
 
 fn opening_of(step: &StepResult) -> Vec<f64> {
     field(&step.fracture_grid, "opening").to_vec()
+}
+
+/// A block leans on a wall by friction, pressed against it, and loses what it stands on. By statics
+/// the joint carries its weight then, if friction can; else it falls, and is named.
+#[test]
+fn friction_on_a_joint_takes_the_weight_of_what_is_cut_under_it() {
+    let volume = |x: [f64; 3]| match [x[0] > 0.5, x[2] > 0.5] {
+        [false, _] => "wall",
+        [true, true] => "block",
+        [true, false] => "support",
+    };
+    let planes = [
+        plane("joint", 0, 0.5),
+        plane("left", 0, 0.0),
+        plane("right", 0, 1.0),
+        plane("bottom", 2, 0.0),
+    ];
+    let text = |pressure: f64| {
+        format!(
+            "{ROCK}[body]\ngravity = [0, 0, -9.81]\n\
+             [fracture.joint]\naperture = 1e-4\nnormal_stiffness = 1e11\nshear_stiffness = 1e10\n\
+             closure = \"logarithmic\"\nfriction_angle = 30\n\
+             [boundary.left]\ndisplacement = {{ x = 0.0, y = 0.0, z = 0.0 }}\n\
+             [boundary.bottom]\ndisplacement = {{ x = 0.0, y = 0.0, z = 0.0 }}\n\
+             [boundary.right]\npressure = {pressure}\n\
+             [[load.phase]]\nname = \"stands\"\nuntil = 1\n\
+             [[load.phase]]\nname = \"cut\"\nuntil = 2\nsteps = 2\nremove = [\"support\"]\n"
+        )
+    };
+    let weight = 2500.0 * 9.81 * 0.25;
+    let done = outcome(&text(2e5), draft([4, 4, 4], volume, &planes));
+    let last = done.steps.last().expect("steps");
+    let (_, joint) = &last.fractures[0];
+    let shear = joint.force[2].abs();
+    assert!((shear / weight - 1.0).abs() < 1e-6, "{shear} of {weight}");
+    let normal = joint.force[0].abs();
+    assert!((normal / 1e5 - 1.0).abs() < 1e-6, "{normal}");
+    let loose = ended(&text(1e4), draft([4, 4, 4], volume, &planes));
+    match loose.ending {
+        Ending::NotConverged(why) => assert!(why.contains("joint"), "{why}"),
+        other => panic!("{other:?}, where friction carries half the weight"),
+    }
 }

@@ -128,6 +128,14 @@ pub(crate) fn bind_with(
     }
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
+    if let Some(reduction) = scene
+        .strength_reduction
+        .as_ref()
+        .filter(|_| !scene.has_stages())
+    {
+        let laws = fractures.iter().map(|entry| entry.value.fracture.law);
+        defects.extend(reduction.defects(&mesh.fractures, &laws.collect::<Vec<_>>()));
+    }
     if !defects.is_empty() {
         return Err(defects);
     }

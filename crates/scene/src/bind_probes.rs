@@ -51,7 +51,11 @@ pub(crate) fn bind_probes(
     let mut defects = Vec::new();
     let mut probes = Vec::new();
     if scene.has_stages() {
-        return Ok(scene.probes.iter().map(|entry| as_far_as_there(mesh, entry)).collect());
+        return Ok(scene
+            .probes
+            .iter()
+            .map(|entry| as_far_as_there(mesh, entry))
+            .collect());
     }
     for entry in &scene.probes {
         match hits(mesh, entry, decisions) {

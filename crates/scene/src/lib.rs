@@ -32,6 +32,7 @@ mod scene;
 mod setting;
 mod sources;
 mod stages;
+mod strength;
 mod surfaces;
 mod warning;
 
@@ -57,5 +58,6 @@ pub use roles::{Roles, roles};
 pub use scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 pub use setting::{FluidUse, Setting};
 pub use stages::{StageBinding, Staged};
+pub use strength::StrengthReduction;
 pub use surfaces::{SurfaceMesh, surface_mesh};
 pub use warning::Doubt;

@@ -17,6 +17,7 @@ use crate::reader::{Section, Source};
 use crate::rock::read_rock;
 use crate::scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::Setting;
+use crate::strength::read_strength_reduction;
 
 impl Scene {
     /// Reads a scene file; paths in it are relative to its folder.
@@ -118,6 +119,11 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
     let mut mesh = read_mesh_section(root, folder, setting);
+    if root.has("fluid") && root.has("strength_reduction") {
+        let problem = "[strength_reduction] knows nothing of a fluid that flows".into();
+        let remedy = "give fractures a fluid_pressure, or remove [strength_reduction]";
+        root.refuse("strength_reduction", problem, remedy);
+    }
     if timetable.has_stages() {
         refuse_beside_stages(root);
         // Crack fronts come and go with volumes, and nodes stay where they are.
@@ -159,6 +165,9 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         timetable,
         solver: read_solver(root),
+        strength_reduction: root
+            .section("strength_reduction")
+            .map(read_strength_reduction),
         silenced: root
             .section("warnings")
             .map_or_else(Vec::new, read_silenced),
@@ -180,7 +189,11 @@ fn refuse_beside_stages(root: &Section<'_, '_>) {
     for key in ["fluid", "oracle"] {
         if root.has(key) {
             let problem = format!("[{key}] knows nothing of volumes that phases remove or add");
-            root.refuse(key, problem, format!("remove [{key}], or `remove` and `add`"));
+            root.refuse(
+                key,
+                problem,
+                format!("remove [{key}], or `remove` and `add`"),
+            );
         }
     }
     let Some(mesh) = root.section("mesh") else {
@@ -188,7 +201,11 @@ fn refuse_beside_stages(root: &Section<'_, '_>) {
     };
     if mesh.has("adapt") {
         let problem = "a mesh is adapted to one body, and phases remove or add volumes".into();
-        mesh.refuse("adapt", problem, "remove [mesh.adapt], and give sizes in the geometry");
+        mesh.refuse(
+            "adapt",
+            problem,
+            "remove [mesh.adapt], and give sizes in the geometry",
+        );
     }
     if mesh.flag("quarter_points") == Some(true) {
         let problem = "crack fronts move with volumes that phases remove or add".into();

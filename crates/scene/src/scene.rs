@@ -12,6 +12,7 @@ use crate::initial_stress::InitialStressEntry;
 use crate::oracle::Oracle;
 use crate::probe::ProbeEntry;
 use crate::rock::RockEntry;
+use crate::strength::StrengthReduction;
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -118,6 +119,8 @@ pub struct Scene {
     pub timetable: Timetable,
     /// What is asked of the linear solver.
     pub solver: SolverEntry,
+    /// How far strength is reduced after the last load step, if it is.
+    pub strength_reduction: Option<StrengthReduction>,
     /// Probes.
     pub probes: Vec<Named<ProbeEntry>>,
     /// Closed forms by fracture.

@@ -39,6 +39,8 @@ pub struct StageBinding {
 struct Plan {
     steps: Range<usize>,
     is_there: Vec<bool>,
+    /// Whether sets were added at its beginning.
+    is_new: Vec<bool>,
     /// Rock of sets that were added as another than their volume.
     rock: Vec<Option<u32>>,
     /// Share of what holds the walls at its beginning that still does at the end of its steps.
@@ -78,8 +80,8 @@ impl Scene {
         roles: Vec<SurfaceRole>,
     ) -> Result<Staged<'_>, Vec<Defect>> {
         let refined = refine(self, joined, &roles).map_err(in_terms_of_scene)?;
-        let (whole, mesh) = Whole::of(refined.draft, refined.faces, roles)
-            .map_err(in_terms_of_scene)?;
+        let (whole, mesh) =
+            Whole::of(refined.draft, refined.faces, roles).map_err(in_terms_of_scene)?;
         let plans = Planner::of(self, whole.draft()).plan()?;
         let mut defects = never_outside(self, &whole, &plans);
         defects.extend(probe_defects(self, &mesh));
@@ -125,6 +127,14 @@ impl Staged<'_> {
             }
         }
         defects
+    }
+
+    /// Lets the end of the stage before forget what this one has anew, though it was there: a
+    /// phase may remove a volume and add it again.
+    pub fn renew(&self, stage: usize, before: &mut StageEnd) {
+        let sets = &self.whole.draft().cells.group_set;
+        let is_new = &self.plans[stage].is_new;
+        before.forget(|cell| is_new[sets[cell as usize] as usize]);
     }
 
     /// The problem of a stage, which goes on from the end of the one before.
@@ -180,6 +190,7 @@ struct Planner<'a> {
     /// Whether each group is there, as far as phases say.
     groups: Vec<Option<bool>>,
     is_there: Vec<bool>,
+    is_new: Vec<bool>,
     rock: Vec<Option<u32>>,
     defects: Vec<Defect>,
 }
@@ -191,6 +202,7 @@ impl<'a> Planner<'a> {
             draft,
             groups: vec![None; draft.groups.len()],
             is_there: vec![true; draft.group_sets.len()],
+            is_new: vec![false; draft.group_sets.len()],
             rock: vec![None; draft.group_sets.len()],
             defects: Vec::new(),
         }
@@ -221,10 +233,11 @@ impl<'a> Planner<'a> {
     }
 
     /// What is there now, from a load step on.
-    fn from(&self, step: usize, says: String) -> Plan {
+    fn from(&mut self, step: usize, says: String) -> Plan {
         Plan {
             steps: step..step,
             is_there: self.is_there.clone(),
+            is_new: std::mem::replace(&mut self.is_new, vec![false; self.draft.group_sets.len()]),
             rock: self.rock.clone(),
             held: Vec::new(),
             says,
@@ -254,7 +267,10 @@ impl<'a> Planner<'a> {
         for name in &phase.remove {
             self.turn(phase, name, false, None);
         }
-        let rock = phase.added_as.as_ref().and_then(|name| self.rock(phase, name));
+        let rock = phase
+            .added_as
+            .as_ref()
+            .and_then(|name| self.rock(phase, name));
         for name in &phase.add {
             self.turn(phase, name, true, rock);
         }
@@ -267,7 +283,8 @@ impl<'a> Planner<'a> {
         if found.is_none() {
             let problem = format!("`added_as` names a rock `{name}` that the scene has not");
             let remedy = format!("add a section [rock.{name}], or name another");
-            self.defects.push(Defect::new(&phase.place, problem, remedy));
+            self.defects
+                .push(Defect::new(&phase.place, problem, remedy));
         }
         found.map(|rock| rock as u32)
     }
@@ -281,15 +298,22 @@ impl<'a> Planner<'a> {
         if self.groups[group] == Some(is_there) {
             let (problem, remedy) = match is_there {
                 true => (
-                    format!("phase \"{}\" adds `{name}`, which is there already", phase.name),
+                    format!(
+                        "phase \"{}\" adds `{name}`, which is there already",
+                        phase.name
+                    ),
                     "let an earlier phase remove it, or remove it from `add`",
                 ),
                 false => (
-                    format!("phase \"{}\" removes `{name}`, which is not there", phase.name),
+                    format!(
+                        "phase \"{}\" removes `{name}`, which is not there",
+                        phase.name
+                    ),
                     "let an earlier phase add it, or remove it from `remove`",
                 ),
             };
-            self.defects.push(Defect::new(&phase.place, problem, remedy));
+            self.defects
+                .push(Defect::new(&phase.place, problem, remedy));
         }
         self.set(group, is_there, rock);
     }
@@ -299,6 +323,7 @@ impl<'a> Planner<'a> {
         for (index, set) in self.draft.group_sets.iter().enumerate() {
             if set.contains(&group) {
                 self.is_there[index] = is_there;
+                self.is_new[index] = is_there;
                 self.rock[index] = rock;
             }
         }

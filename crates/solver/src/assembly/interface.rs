@@ -149,6 +149,31 @@ impl Interface {
         self.laws = laws;
     }
 
+    /// Takes these laws, with friction and cohesion of some fractures divided by a factor. What
+    /// carries the initial stress stays.
+    pub(crate) fn weaken(
+        &mut self,
+        laws: &[FractureLaw],
+        factor: f64,
+        is_weakened: impl Fn(usize) -> bool,
+    ) {
+        assert_eq!(
+            laws.len(),
+            self.laws.len(),
+            "a law for each of those before"
+        );
+        self.laws.copy_from_slice(laws);
+        let fractures = 0..self.rules.len();
+        let of_points = self.points.iter().map(|point| (point.law, point.fracture));
+        let of_points = of_points.map(|(law, fracture)| (law as usize, fracture as usize));
+        let mut all: Vec<(usize, usize)> = fractures.map(|f| (f, f)).chain(of_points).collect();
+        all.sort_unstable();
+        all.dedup();
+        for (law, _) in all.into_iter().filter(|(_, f)| is_weakened(*f)) {
+            self.laws[law] = laws[law].weakened(factor);
+        }
+    }
+
     /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the
     /// facets, in the order of [`kluft_mesh::Facets::elements`]' flat node list; middle points
     /// follow.
@@ -462,7 +487,10 @@ fn initial_walls(
 ) -> JointState {
     let (at, normal) = (point.position, point.normal);
     let facets = &problem.mesh.facets;
-    let sides = [facets.minus[point.facet as usize], facets.plus[point.facet as usize]];
+    let sides = [
+        facets.minus[point.facet as usize],
+        facets.plus[point.facet as usize],
+    ];
     let [one, other] = sides.map(|cell| problem.initial_stress_in(cell as usize));
     let stress = one.and(other);
     let traction = stress.map_or(DVec3::ZERO, |stress| {

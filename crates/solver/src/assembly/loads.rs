@@ -75,7 +75,10 @@ impl Loads {
         displacements: &[DVec3],
         offsets: &StrainOffsets,
     ) -> Vec<DVec3> {
-        negative(space, Some(cell_forces::elastic(space, displacements, offsets)))
+        negative(
+            space,
+            Some(cell_forces::elastic(space, displacements, offsets)),
+        )
     }
 
     /// Forces of each load case at load factor 1.

@@ -134,7 +134,9 @@ impl Estimator {
     ) -> StressError {
         let problem = system.problem;
         let points = &system.discretisation.points;
-        let recovered = self.patches.recover(problem, points, (displacements, offsets));
+        let recovered = self
+            .patches
+            .recover(problem, points, (displacements, offsets));
         let of_cell = |index: usize| {
             let first = problem.mesh.cells.range(index).start;
             let cell = Cell::of(problem, points, displacements, index).strained(offsets, index);

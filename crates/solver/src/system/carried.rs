@@ -45,6 +45,22 @@ impl StageEnd {
         cells.iter().map(of).collect()
     }
 
+    /// Forgets cells that the next stage has anew, free of stress, and the facets beside them.
+    pub fn forget(&mut self, is_renewed: impl Fn(u32) -> bool) {
+        let kept: Vec<usize> = (0..self.cells.len())
+            .filter(|&place| !is_renewed(self.cells[place]))
+            .collect();
+        self.starts = kept.iter().map(|&place| self.starts[place]).collect();
+        self.added = kept.iter().map(|&place| self.added[place]).collect();
+        self.cells = kept.iter().map(|&place| self.cells[place]).collect();
+        let facets = self
+            .facets
+            .iter()
+            .zip(std::mem::take(&mut self.facet_points));
+        let facets = facets.filter(|(sides, _)| !sides.iter().any(|&cell| is_renewed(cell)));
+        (self.facets, self.facet_points) = facets.map(|(sides, own)| (*sides, own)).unzip();
+    }
+
     pub(super) fn place(&self, cell: u32) -> Option<usize> {
         self.cells.binary_search(&cell).ok()
     }

@@ -20,8 +20,8 @@ use crate::flow::{Coupling, FlowSystem};
 use crate::problem::{Conduit, Flow, Load, Problem};
 use crate::space::cell::StrainOffsets;
 
-pub use discretisation::Discretisation;
 use carried::Carried;
+pub use discretisation::Discretisation;
 
 pub use carried::StageEnd;
 pub(crate) use state::StateScales;
@@ -80,6 +80,23 @@ impl<'a> System<'a> {
             let pressures = initial_pressures(coupling.flow(), interface);
             interface.set_initial_pressures(self.problem, &pressures);
         }
+    }
+
+    /// Takes `laws`, as [`Self::laws`] has them, with the strength of some fractures divided by a
+    /// factor. Stiffnesses, rock and loads stay; a state reached before serves as a first guess.
+    ///
+    /// # Panics
+    /// If there are not as many laws as before.
+    pub fn weaken(
+        &mut self,
+        laws: &[FractureLaw],
+        factor: f64,
+        is_weakened: impl Fn(usize) -> bool,
+    ) {
+        self.generation += 1;
+        self.discretisation
+            .interface
+            .weaken(laws, factor, is_weakened);
     }
 
     /// Takes other forces instead of those of the problem.
@@ -174,7 +191,10 @@ impl<'a> System<'a> {
             load,
             unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
             facet_points,
-            reached: self.carried.as_ref().map_or_else(StateScales::default, |c| c.reached),
+            reached: self
+                .carried
+                .as_ref()
+                .map_or_else(StateScales::default, |c| c.reached),
             generation: self.generation,
         }
     }
