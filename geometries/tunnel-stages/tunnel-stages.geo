@@ -1,5 +1,5 @@
 // A tunnel through a block of jointed rock: heading above, bench below, a ring for the lining of each.
-// Two sets of joints strike along the tunnel (y), one dipping 55 degrees to the left, one 35 degrees to the right; a
+// Two sets of joints strike along the tunnel (y), one dipping 55 degrees to the right, one 35 degrees to the left; a
 // third set stands across it. No joint goes through the rings.
 SetFactory("OpenCASCADE");
 
@@ -31,7 +31,7 @@ core() = {5};
 steep = -Tan(55 * Pi / 180);
 flat = Tan(35 * Pi / 180);
 x_steep() = {-4.2, 3.1};
-x_flat() = {-7.3, 2.3};
+x_flat() = {-6.1, 2.3};
 joints() = {};
 For i In {0 : 1}
   p = newp;
@@ -118,6 +118,7 @@ For i In {0 : 2 * #rock() - 1}
 EndFor
 
 // The joints by where they lie: drawn out along y, and the corners of the box around a piece on the line of its joint.
+// The arc of a wall between two crossings is wider than that, as long as it reaches an axis.
 steep_joints() = {};
 flat_joints() = {};
 cross_joint() = {};

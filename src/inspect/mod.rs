@@ -192,29 +192,8 @@ fn stages(
 ) -> Result<Mesh, Vec<Defect>> {
     let staged = scene.staged_on(joined, of_group)?;
     inspection.mesh = MeshCounts::of(staged.draft());
-    let mut defects = Vec::new();
-    for stage in 1..staged.count() {
-        let found = staged.bind(stage, None).and_then(|bound| {
-            let problem = bound.binding.problem;
-            let held = Discretisation::of(&problem).map_err(in_terms_of_scene);
-            held.map_err(|found| staged.in_stage(stage, found))?;
-            Ok(problem.mesh)
-        });
-        match found {
-            Ok(mesh) => inspection.decisions.push(format!(
-                "{}: {} cells, {} fracture facets, {} blocks",
-                staged.says(stage),
-                mesh.cells.len(),
-                mesh.facets.elements.len(),
-                mesh.block_count
-            )),
-            Err(found) => defects.extend(found),
-        }
-    }
-    match defects.is_empty() {
-        true => Ok(staged.bind(0, None)?.binding.problem.mesh),
-        false => Err(defects),
-    }
+    inspection.decisions.extend(staged.check()?);
+    Ok(staged.bind(0, None)?.binding.problem.mesh)
 }
 
 /// The mesh of fractures and outer faces alone.

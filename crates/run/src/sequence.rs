@@ -19,7 +19,12 @@ impl Run<'_> {
     /// As [`Self::solve`], for each body.
     pub fn solve_stages(&mut self, mut former: Option<FormerRun>) -> Result<(), Interruption> {
         let scene = self.request.scene;
-        let staged = self.read_mesh(former.as_ref(), |_, draft| scene.staged(draft))?;
+        let (staged, bodies) = self.read_mesh(former.as_ref(), |_, draft| {
+            let staged = scene.staged(draft)?;
+            let bodies = staged.check()?;
+            Ok((staged, bodies))
+        })?;
+        self.summary.decisions.extend(bodies);
         self.summary.decisions.extend_from_slice(&staged.decisions);
         self.doubts.clone_from(&staged.warnings);
         let done = former

@@ -6,63 +6,18 @@ use kluft_solver::{
     BlockMotion, Newton, State, StepOutcome, StepRecord, System, block_motions, solution,
 };
 use lie_core::FractureLaw;
-use serde::Serialize;
 
 use crate::failures;
 use crate::grids::{fracture_grid, real_field, rock_grid};
 use crate::observer::{Stage, StepStart};
 use crate::stages::{Interruption, Run};
+use crate::strength_summary::{MotionSummary, StrengthSummary, Trial};
 
 /// The rock and the fractures at the last stable factor.
 pub const GRIDS: [&str; 2] = ["strength_rock.vtu", "strength_fractures.vtu"];
 
 /// By what the factor grows as long as nothing fails.
 const GROWTH: f64 = 1.25;
-
-/// How far strength could be reduced.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct StrengthSummary {
-    /// Fractures whose strength was reduced.
-    pub fractures: Vec<String>,
-    /// Largest factor at which everything held.
-    pub stable: f64,
-    /// Smallest factor at which it did not; none if none was found.
-    pub failing: Option<f64>,
-    /// What happened there.
-    pub failure: Option<String>,
-    /// Blocks that nothing held there, with their free motions.
-    pub free_blocks: Vec<String>,
-    /// How blocks have moved from full strength to the last stable factor.
-    pub motions: Vec<MotionSummary>,
-    /// The factors that were tried, in order.
-    pub trials: Vec<Trial>,
-}
-
-/// One factor that was tried.
-#[derive(Debug, Clone, Serialize)]
-pub struct Trial {
-    /// The factor.
-    pub factor: f64,
-    /// Whether everything held.
-    pub stable: bool,
-    /// Newton iterations.
-    pub newton_iterations: usize,
-    /// Largest motion of a point since full strength (m), if everything held.
-    pub largest_motion: Option<f64>,
-}
-
-/// How a block has moved.
-#[derive(Debug, Clone, Serialize)]
-pub struct MotionSummary {
-    /// Its number, as in `history.csv`.
-    pub block: usize,
-    /// Volume (m^3).
-    pub volume: f64,
-    /// Mean displacement (m).
-    pub displacement: [f64; 3],
-    /// Mean rotation (radians).
-    pub rotation: [f64; 3],
-}
 
 /// A search under way.
 struct Search<'a> {
@@ -75,7 +30,52 @@ struct Search<'a> {
     found: StrengthSummary,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// From a state at full strength on.
+    fn of(asked: &'a StrengthReduction, system: &System<'_>, state: &State) -> Self {
+        let names = &system.problem().mesh.fractures;
+        let laws = system.laws().to_vec();
+        let is_weakened = asked.chosen(names, &laws);
+        let chosen = names.iter().zip(&is_weakened).filter(|(_, own)| **own);
+        Self {
+            found: StrengthSummary {
+                fractures: chosen.map(|(name, _)| name.clone()).collect(),
+                stable: 1.0,
+                ..StrengthSummary::default()
+            },
+            begin: system.total_displacements(state),
+            asked,
+            laws,
+            is_weakened,
+        }
+    }
+
+    /// Takes over what came of a factor: a state, if everything held.
+    fn take(&mut self, system: &System<'_>, factor: f64, (state, record): (&State, &StepRecord)) {
+        let found = &mut self.found;
+        let motion = record.converged().then(|| {
+            let now = system.total_displacements(state);
+            let moved = now.iter().zip(&self.begin);
+            let lengths = moved.map(|(now, begin)| now.distance(*begin));
+            lengths.fold(0.0, f64::max)
+        });
+        found.trials.push(Trial {
+            factor,
+            stable: record.converged(),
+            newton_iterations: record.iterations.len(),
+            largest_motion: motion,
+        });
+        if record.converged() {
+            found.stable = factor;
+            return;
+        }
+        found.failing = Some(factor);
+        let blocks = record.rigid_motions.iter();
+        let blocks = blocks.map(|b| format!("{}: {}: {}", b.place, b.problem, b.remedy));
+        found.free_blocks = blocks.collect();
+        found.failure = Some(failures::of_outcome(system, record));
+    }
+
     /// The next factor, if the answer is not accurate enough.
     fn next(&self) -> Option<f64> {
         let stable = self.found.stable;
@@ -102,21 +102,7 @@ impl Run<'_> {
         let Some(asked) = &self.request.scene.strength_reduction else {
             return Ok(());
         };
-        let names = &system.problem().mesh.fractures;
-        let laws = system.laws().to_vec();
-        let is_weakened = asked.chosen(names, &laws);
-        let chosen = names.iter().zip(&is_weakened).filter(|(_, own)| **own);
-        let mut search = Search {
-            found: StrengthSummary {
-                fractures: chosen.map(|(name, _)| name.clone()).collect(),
-                stable: 1.0,
-                ..StrengthSummary::default()
-            },
-            begin: system.total_displacements(&state),
-            asked,
-            laws,
-            is_weakened,
-        };
+        let mut search = Search::of(asked, system, &state);
         while let Some(factor) = search.next() {
             self.go_on_if_asked()?;
             system.weaken(&search.laws, factor, |fracture| {
@@ -127,29 +113,9 @@ impl Run<'_> {
             if record.outcome == StepOutcome::Stopped {
                 return Err(Interruption::Stopped);
             }
-            let found = &mut search.found;
-            let motion = record.converged().then(|| {
-                let now = system.total_displacements(&trial);
-                let moved = now.iter().zip(&search.begin);
-                moved
-                    .map(|(now, begin)| now.distance(*begin))
-                    .fold(0.0, f64::max)
-            });
-            found.trials.push(Trial {
-                factor,
-                stable: record.converged(),
-                newton_iterations: record.iterations.len(),
-                largest_motion: motion,
-            });
+            search.take(system, factor, (&trial, &record));
             if record.converged() {
-                (state, found.stable) = (trial, factor);
-            } else {
-                found.failing = Some(factor);
-                let motions = record.rigid_motions.iter();
-                found.free_blocks = motions
-                    .map(|block| format!("{}: {}: {}", block.place, block.problem, block.remedy))
-                    .collect();
-                found.failure = Some(failures::of_outcome(system, &record));
+                state = trial;
             }
         }
         system.weaken(&search.laws, search.found.stable, |f| search.is_weakened[f]);

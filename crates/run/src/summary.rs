@@ -11,7 +11,7 @@ use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
 use crate::permeability_summary::PermeabilitySummary;
 use crate::spread::Spread;
-use crate::strength::StrengthSummary;
+use crate::strength_summary::StrengthSummary;
 
 /// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -215,3 +215,32 @@ fn read_phase(section: &Section<'_, '_>, former: &[PhaseEntry]) -> Option<PhaseE
         release: release.unwrap_or(1.0),
     })
 }
+
+/// Refuses what does not know that volumes come and go.
+pub(crate) fn refuse_beside_stages(root: &Section<'_, '_>) {
+    for key in ["fluid", "oracle"] {
+        if root.has(key) {
+            let problem = format!("[{key}] knows nothing of volumes that phases remove or add");
+            root.refuse(
+                key,
+                problem,
+                format!("remove [{key}], or `remove` and `add`"),
+            );
+        }
+    }
+    let Some(mesh) = root.section("mesh") else {
+        return;
+    };
+    if mesh.has("adapt") {
+        let problem = "a mesh is adapted to one body, and phases remove or add volumes".into();
+        mesh.refuse(
+            "adapt",
+            problem,
+            "remove [mesh.adapt], and give sizes in the geometry",
+        );
+    }
+    if mesh.flag("quarter_points") == Some(true) {
+        let problem = "crack fronts move with volumes that phases remove or add".into();
+        mesh.refuse("quarter_points", problem, "remove it");
+    }
+}

@@ -10,7 +10,7 @@ use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, re
 use crate::fluid::{FluidEntry, SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
 use crate::initial_stress::read_initial_stress;
-use crate::load::{Clock, read_timetable};
+use crate::load::{Clock, read_timetable, refuse_beside_stages};
 use crate::oracle;
 use crate::probe::read_probe;
 use crate::reader::{Section, Source};
@@ -182,35 +182,6 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         // After everything has been read.
         warnings: source.take_warnings(),
     })
-}
-
-/// Refuses what does not know that volumes come and go.
-fn refuse_beside_stages(root: &Section<'_, '_>) {
-    for key in ["fluid", "oracle"] {
-        if root.has(key) {
-            let problem = format!("[{key}] knows nothing of volumes that phases remove or add");
-            root.refuse(
-                key,
-                problem,
-                format!("remove [{key}], or `remove` and `add`"),
-            );
-        }
-    }
-    let Some(mesh) = root.section("mesh") else {
-        return;
-    };
-    if mesh.has("adapt") {
-        let problem = "a mesh is adapted to one body, and phases remove or add volumes".into();
-        mesh.refuse(
-            "adapt",
-            problem,
-            "remove [mesh.adapt], and give sizes in the geometry",
-        );
-    }
-    if mesh.flag("quarter_points") == Some(true) {
-        let problem = "crack fronts move with volumes that phases remove or add".into();
-        mesh.refuse("quarter_points", problem, "remove it");
-    }
 }
 
 /// What a scene says of its mesh.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use kluft_mesh::{Defect, Draft, Faces, Part, SurfaceRole, Whole};
-use kluft_solver::{Load, Problem, StageEnd};
+use kluft_solver::{Discretisation, Load, Problem, StageEnd};
 
 use crate::bind::{Binding, bind_with};
 use crate::bind_probes::probe_defects;
@@ -79,7 +79,13 @@ impl Scene {
         joined: JoinedDraft,
         roles: Vec<SurfaceRole>,
     ) -> Result<Staged<'_>, Vec<Defect>> {
-        let refined = refine(self, joined, &roles).map_err(in_terms_of_scene)?;
+        let inner = joined.faces.inner_surfaces(&joined.draft);
+        let of_whole = roles.iter().zip(inner).map(|(role, inner)| match role {
+            SurfaceRole::Boundary if inner => SurfaceRole::Unused,
+            role => *role,
+        });
+        let of_whole: Vec<SurfaceRole> = of_whole.collect();
+        let refined = refine(self, joined, &of_whole).map_err(in_terms_of_scene)?;
         let (whole, mesh) =
             Whole::of(refined.draft, refined.faces, roles).map_err(in_terms_of_scene)?;
         let plans = Planner::of(self, whole.draft()).plan()?;
@@ -117,6 +123,39 @@ impl Staged<'_> {
     /// The mesh as read, with all volumes.
     pub fn draft(&self) -> &Draft {
         self.whole.draft()
+    }
+
+    /// Checks the bodies that phases make; returns what each is like, one line each.
+    ///
+    /// # Errors
+    /// Every defect of their meshes, what does not fit them, and blocks that nothing holds.
+    pub fn check(&self) -> Result<Vec<String>, Vec<Defect>> {
+        let mut defects = Vec::new();
+        let mut lines = Vec::new();
+        for stage in 1..self.count() {
+            match self.line(stage) {
+                Ok(line) => lines.push(line),
+                Err(found) => defects.extend(found),
+            }
+        }
+        match defects.is_empty() {
+            true => Ok(lines),
+            false => Err(defects),
+        }
+    }
+
+    fn line(&self, stage: usize) -> Result<String, Vec<Defect>> {
+        let problem = self.bind(stage, None)?.binding.problem;
+        let held = Discretisation::of(&problem).map_err(in_terms_of_scene);
+        held.map_err(|found| self.in_stage(stage, found))?;
+        let mesh = problem.mesh;
+        Ok(format!(
+            "{}: {} cells, {} fracture facets, {} blocks",
+            self.says(stage),
+            mesh.cells.len(),
+            mesh.facets.elements.len(),
+            mesh.block_count
+        ))
     }
 
     /// Defects that show in a stage, with what it changes.

@@ -10,13 +10,13 @@
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists};
-use kluft_mesh::cell_volume;
 use lie_core::enrichment::coefficient;
 use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, JointState, facet_points};
 use rayon::prelude::*;
 
 use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::shared_walls;
+use crate::assembly::spring::spring;
 use crate::problem::{Load, Problem};
 use crate::space::sector_nodes::SectorNodes;
 use crate::space::supports::Supports;
@@ -465,16 +465,6 @@ fn jump_terms(
                     - coefficient(sectors, minus_sector, k) * free_minus),
         })
         .filter(|term| term.factor != DMat3::ZERO)
-}
-
-fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
-    let mesh = &problem.mesh;
-    let compliance = |cell: u32| {
-        let cell = cell as usize;
-        let volume = cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
-        volume / area / problem.rock(cell).constrained_modulus()
-    };
-    1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
 }
 
 /// The walls of a facet point carrying the initial stress beside a fluid of some pressure (Pa). A

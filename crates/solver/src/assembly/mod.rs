@@ -7,4 +7,5 @@ pub(crate) mod interface;
 pub(crate) mod loads;
 pub(crate) mod rock;
 pub(crate) mod shared_walls;
+pub(crate) mod spring;
 pub(crate) mod tetrahedra;
