@@ -86,6 +86,7 @@ fn class_name(section: &KeySection) -> &'static str {
         "[load]" => "Load",
         "[[load.phase]]" => "Phase",
         "[solver]" => "Solver",
+        "[strength_reduction]" => "StrengthReduction",
         "[warnings]" => "Warnings",
         "[oracle.NAME]" => "Oracle",
         // Shown by a test to occur nowhere.

@@ -7,7 +7,7 @@ use crate::table::{Key, KeySection, Kind, Need, number};
 /// Friction and cohesion reduced until blocks move.
 pub static STRENGTH_REDUCTION: KeySection = KeySection {
     pattern: "[strength_reduction]",
-    says: "After the last load step `tan(friction_angle)` and `cohesion` are divided by a factor that grows until blocks move: the factor of safety",
+    says: "Friction and cohesion divided by a growing factor until blocks move: the factor of safety",
     keys: &[
         Key {
             name: "fractures",
