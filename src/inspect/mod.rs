@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use kluft_io::{GmshOptions, NOT_WRITTEN, write_atomically, write_vtu};
-use kluft_mesh::{Defect, Draft, Faces, Mesh, Survey, outer_surfaces};
+use kluft_mesh::{Defect, Draft, Faces, Mesh, SurfaceRole, Survey, outer_surfaces};
 use kluft_solver::{Discretisation, FlowWorkload, Problem, Workload};
 
 use crate::failure::Failure;
@@ -187,11 +187,28 @@ fn mesh(
     inspection.warnings.extend(found.warnings);
     let list = |draft: &Draft| groups::list(draft, &inner, Some(&found.of_group), Some(scene));
     inspection.groups = list(&joined.draft);
+    if scene.has_stages() {
+        return stages(scene, joined, found.of_group, inspection);
+    }
     joined = refine(scene, joined, &found.of_group).map_err(in_terms_of_scene)?;
     inspection.groups = list(&joined.draft);
     inspection.mesh = MeshCounts::of(&joined.draft);
     let built = Mesh::build_on(joined.draft, joined.faces, &found.of_group);
     built.map_err(in_terms_of_scene)
+}
+
+/// The mesh that the phases of a scene begin with; what they change is told, and all bodies are
+/// checked.
+fn stages(
+    scene: &Scene,
+    joined: JoinedDraft,
+    of_group: Vec<SurfaceRole>,
+    inspection: &mut Inspection,
+) -> Result<Mesh, Vec<Defect>> {
+    let staged = scene.staged_on(joined, of_group)?;
+    inspection.mesh = MeshCounts::of(staged.draft());
+    inspection.decisions.extend(staged.check()?);
+    Ok(staged.bind(0, None)?.binding.problem.mesh)
 }
 
 /// The mesh of fractures and outer faces alone.

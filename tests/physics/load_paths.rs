@@ -39,6 +39,7 @@ fn schedule(path: &[[f64; 3]]) -> Schedule {
     Schedule {
         steps: path.iter().map(step).collect(),
         is_timed: true,
+        goes_on_from: None,
         sudden: Vec::new(),
         ..Schedule::proportional(Vec::new())
     }

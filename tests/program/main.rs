@@ -33,6 +33,7 @@ mod renumbered;
 mod results;
 mod resume;
 mod soak;
+mod stages;
 mod strangers;
 mod studies;
 mod study;

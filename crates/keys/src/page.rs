@@ -137,6 +137,7 @@ pub(crate) fn holds(kind: &Kind) -> String {
         Kind::Choice(_, known) => words(known),
         Kind::Choices(known) => format!("list of {}", words(known)),
         Kind::Pair => "two texts in brackets".into(),
+        Kind::Texts => "list of names".into(),
         Kind::Flags => "list of `true` and `false`".into(),
         Kind::Numbers(_) => "list of numbers".into(),
         Kind::Vector(_) => "`[x, y, z]`".into(),

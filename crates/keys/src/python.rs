@@ -86,6 +86,7 @@ fn class_name(section: &KeySection) -> &'static str {
         "[load]" => "Load",
         "[[load.phase]]" => "Phase",
         "[solver]" => "Solver",
+        "[strength_reduction]" => "StrengthReduction",
         "[warnings]" => "Warnings",
         "[oracle.NAME]" => "Oracle",
         // Shown by a test to occur nowhere.
@@ -188,7 +189,7 @@ fn annotation(kind: &Kind) -> String {
         Kind::Path => "str | os.PathLike[str]".to_owned(),
         Kind::Choice(_, words) => literal(words),
         Kind::Choices(words) => format!("Sequence[{}]", literal(words)),
-        Kind::Pair => "Sequence[str]".to_owned(),
+        Kind::Pair | Kind::Texts => "Sequence[str]".to_owned(),
         Kind::Flags => "Sequence[bool]".to_owned(),
         Kind::Numbers(quantity) | Kind::Vector(quantity) => {
             format!("Sequence[{}]", number(quantity.dimension))

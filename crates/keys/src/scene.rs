@@ -12,6 +12,7 @@ mod probe;
 mod rock;
 mod shared;
 mod solver;
+mod strength;
 mod study;
 mod warnings;
 
@@ -26,6 +27,7 @@ pub use oracle::{FORMS, ORACLE};
 pub use probe::PROBE;
 pub use rock::ROCK;
 pub use solver::{FACETS, SOLVER, SOLVERS};
+pub use strength::STRENGTH_REDUCTION;
 pub use study::{CLOSURE, SERIES, STUDY};
 pub use warnings::{SILENCED, WARNINGS};
 
@@ -63,6 +65,13 @@ pub static ROOT: KeySection = KeySection {
         INITIAL_STRESSES,
         LOADS,
         SOLVING,
+        Key {
+            name: "strength_reduction",
+            kind: Kind::Table(&STRENGTH_REDUCTION),
+            need: Need::Without("no factor of safety"),
+            example: "[strength_reduction]",
+            says: "How far the strength of fractures can be reduced until blocks move",
+        },
         Key {
             name: "warnings",
             kind: Kind::Table(&SILENCED),

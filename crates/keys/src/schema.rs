@@ -103,6 +103,9 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Choices(words) => {
             json!({ "type": "array", "items": { "enum": words }, "minItems": 1 })
         }
+        Kind::Texts => json!({
+            "type": "array", "items": { "type": "string", "minLength": 1 }, "minItems": 1
+        }),
         Kind::Pair => tuple(json!({ "type": "string", "minLength": 1 }), 2),
         Kind::Flags => {
             json!({ "type": "array", "items": { "type": "boolean" }, "minItems": 1 })

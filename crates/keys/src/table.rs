@@ -60,6 +60,8 @@ pub enum Kind {
     Choice(&'static str, &'static [&'static str]),
     /// Some of these words, in brackets.
     Choices(&'static [&'static str]),
+    /// Texts in brackets.
+    Texts,
     /// Two texts in brackets.
     Pair,
     /// Truth values in brackets.

@@ -47,6 +47,21 @@ impl FractureLaw {
         )
     }
 
+    /// The same with friction and cohesion divided by a factor, as strength reduction has it; no
+    /// fracture dilates more than it rubs.
+    #[must_use]
+    pub fn weakened(self, factor: f64) -> Self {
+        let friction = self.friction.map(|friction| {
+            let coefficient = friction.coefficient / factor;
+            Friction {
+                coefficient,
+                cohesion: friction.cohesion / factor,
+                dilation: friction.dilation.min(coefficient),
+            }
+        });
+        Self { friction, ..self }
+    }
+
     /// Whether traction is proportional to the jump.
     pub fn is_linear(&self) -> bool {
         self.friction.is_none() && self.closure.is_linear()

@@ -147,6 +147,24 @@ pub fn mean_gradient(shape: Shape, nodes: &[DVec3], displacement: &[DVec3]) -> D
     sum * (1.0 / whole)
 }
 
+/// Adds the forces (N) by which a cell of a rock resists displacements of its nodes (m),
+/// `f_a = int sigma(u) . grad N_a dV`.
+pub fn add_elastic_forces(
+    shape: Shape,
+    (nodes, displacement): (&[DVec3], &[DVec3]),
+    rock: &Rock,
+    forces: &mut [DVec3],
+) {
+    for point in &rule(shape).points {
+        let Gradients { of_node: g, volume } = gradients(point, nodes);
+        let (gradient, _) = gradient_at(point, nodes, displacement);
+        let sigma = rock.stress(gradient);
+        for (force, gradient) in forces.iter_mut().zip(g) {
+            *force += volume * (sigma * gradient);
+        }
+    }
+}
+
 /// Mean position of a cell (m), weighted by volume.
 pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
     let mut sum = DVec3::ZERO;

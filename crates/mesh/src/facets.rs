@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::adjacency::Adjacency;
 use crate::draft::{Draft, Elements};
 use crate::orient;
+use crate::sides::Sides;
 use crate::surfaces::{DraftFacet, Surfaces};
 
 /// Facets of all fractures. The `slots` say where a facet's nodes stand in the flat node list of
@@ -45,10 +46,13 @@ pub struct Boundary {
 pub(crate) fn collect(
     draft: &Draft,
     nodes: &[DVec3],
-    adjacency: &Adjacency,
+    (adjacency, sides): (&Adjacency, Option<&Sides>),
     surfaces: &Surfaces,
 ) -> (Facets, Vec<Boundary>, Vec<Defect>) {
-    let (faces, found) = orient::fractures(draft, nodes, adjacency, surfaces);
+    let (faces, found) = match sides {
+        Some(sides) => (sides.of_facets(adjacency, surfaces), Vec::new()),
+        None => orient::fractures(draft, nodes, adjacency, surfaces),
+    };
     let facets = collect_facets(&draft.cells.elements, adjacency, surfaces, &faces);
     (
         facets,

@@ -10,6 +10,7 @@ use crate::draft::{Draft, Elements, Group};
 use crate::facets::{self, Boundary, Facets};
 use crate::roles::{Faces, SurfaceRole};
 use crate::sectors::{self, Sectors};
+use crate::sides::Sides;
 use crate::surfaces::Surfaces;
 use crate::{blocks, check, layers};
 use kluft_defect::Defect;
@@ -98,12 +99,22 @@ impl Mesh {
     /// # Errors
     /// As [`Mesh::build`].
     pub fn build_on(
+        draft: Draft,
+        faces: Faces,
+        roles: &[SurfaceRole],
+    ) -> Result<Self, Vec<Defect>> {
+        Self::build_with(draft, faces, roles, None)
+    }
+
+    /// Like [`Mesh::build_on`], with the sides of fractures as given, if they are.
+    pub(crate) fn build_with(
         mut draft: Draft,
         Faces {
             mut adjacency,
             may_touch,
         }: Faces,
         roles: &[SurfaceRole],
+        sides: Option<&Sides>,
     ) -> Result<Self, Vec<Defect>> {
         let nodes = std::mem::take(&mut draft.nodes).into_iter();
         let nodes: Vec<DVec3> = nodes.map(DVec3::from).collect();
@@ -131,7 +142,7 @@ impl Mesh {
         // The fractures are mostly one thread's work, which leaves the others to the cells.
         let ((facets, boundaries, one_sided), (broken, (block, block_count), sectors)) =
             rayon::join(
-                || facets::collect(&draft, &nodes, &adjacency, &surfaces),
+                || facets::collect(&draft, &nodes, (&adjacency, sides), &surfaces),
                 || divide(&draft, &nodes, &adjacency, &surfaces),
             );
         if !broken.is_empty() {

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use kluft_io::Grid;
 use kluft_mesh::Defect;
-use kluft_scene::Binding;
+use kluft_scene::{Binding, Scene};
 use kluft_solver::{
     CaseLoads, Load, Loads, Newton, Problem, State, Step, StepOutcome, StepRecord, System,
     determinacy, solution,
@@ -75,10 +75,20 @@ pub fn with_prepared_rock<T: Send>(
         let mut run = Run::new(request, output, observer, identity, None);
         let mut binding = run.prepare(None)?;
         refuse_flow(&binding)?;
+        refuse_stages(run.request.scene)?;
         let acting = separate(&mut binding.problem);
         let mut rock = prepare(&mut run, &binding, acting)?;
         Ok(drive(&mut rock))
     })
+}
+
+fn refuse_stages(scene: &Scene) -> Result<(), Defect> {
+    if !scene.has_stages() {
+        return Ok(());
+    }
+    let remedy = "run the scene as it is, or remove `remove` and `add` from its phases";
+    let problem = "phases remove or add volumes, and prepared rock is one body";
+    Err(Defect::new("[load]", problem, remedy))
 }
 
 fn refuse_flow(binding: &Binding) -> Result<(), Defect> {

@@ -61,6 +61,7 @@ pub fn separate(problem: &mut Problem) -> ActingCases {
         cases,
         steps: vec![Step { load, phase: None }; EXPECTED_STEPS],
         is_timed: true,
+        goes_on_from: None,
         sudden: Vec::new(),
     };
     ActingCases { names }

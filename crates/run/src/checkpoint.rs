@@ -4,13 +4,14 @@
 //! of all that. Whether the file is whole and belongs to the run is known before anything else of
 //! it is believed.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
 use kluft_io::{Fingerprint, write_atomically};
 use kluft_mesh::Defect;
-use kluft_solver::RestartState;
+use kluft_solver::{RestartState, StageEnd};
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
@@ -71,6 +72,8 @@ pub struct Progress<'a> {
     pub seconds: Seconds,
     /// Largest resident memory so far (bytes).
     pub peak_memory_bytes: u64,
+    /// What the present stage of the body began with, if it is not the first.
+    pub stage: Option<Cow<'a, StageEnd>>,
     /// Where the solver stands; none after the last load step.
     pub restart: Option<RestartState<'a>>,
 }
@@ -282,6 +285,7 @@ mod tests {
             measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,
+            stage: None,
             restart: None,
         }
     }

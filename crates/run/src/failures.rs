@@ -64,13 +64,29 @@ pub fn not_converged(
 ) -> String {
     let problem = system.problem();
     let step = of_step(&problem.schedule, step);
+    let why = of_outcome(system, record);
+    let completed = (record.completed > 0.0).then(|| {
+        let percent = 100.0 * record.completed;
+        format!("; {percent:.1} % of the load increment was completed")
+    });
+    let motions = record.rigid_motions.iter().map(|block| {
+        let (place, problem, remedy) = (&block.place, &block.problem, &block.remedy);
+        format!("; {place}: {problem}: {remedy}")
+    });
+    let rest: String = completed.into_iter().chain(motions).collect();
+    format!("step {number} ({step}): {why}{rest}")
+}
+
+/// Why the iterations of a load step did not converge.
+pub fn of_outcome(system: &System<'_>, record: &StepRecord) -> String {
+    let problem = system.problem();
     let count = record.iterations.len();
     let at = |point: Option<usize>| {
         point.map_or(String::new(), |point| {
             format!(" at {}", facet_place(problem, system, point))
         })
     };
-    let why = match &record.outcome {
+    match &record.outcome {
         StepOutcome::Converged => "nothing went wrong".to_owned(),
         StepOutcome::OutOfIterations => format!(
             "the tests do not hold after {count} iterations; the closure error is largest{}",
@@ -86,17 +102,7 @@ pub fn not_converged(
         ),
         StepOutcome::Linear(failure) => linear_failure(problem, system, failure),
         StepOutcome::Stopped => format!("it was stopped after {count} iterations"),
-    };
-    let completed = (record.completed > 0.0).then(|| {
-        let percent = 100.0 * record.completed;
-        format!("; {percent:.1} % of the load increment was completed")
-    });
-    let motions = record.rigid_motions.iter().map(|block| {
-        let (place, problem, remedy) = (&block.place, &block.problem, &block.remedy);
-        format!("; {place}: {problem}: {remedy}")
-    });
-    let rest: String = completed.into_iter().chain(motions).collect();
-    format!("step {number} ({step}): {why}{rest}")
+    }
 }
 
 /// A facet point in words.

@@ -8,6 +8,8 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `strength`, `strength_summary` | the factor of safety, by strength reduction |
+//! | `sequence` | one body after the other, where phases remove and add volumes |
 //! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
 //! | `permeability`, `flow_history` | the equivalent permeability; the history in rigid rock |
@@ -65,9 +67,12 @@ mod resume;
 mod rigid;
 mod run;
 mod save;
+mod sequence;
 mod spread;
 mod stages;
 mod steps;
+mod strength;
+mod strength_summary;
 mod summary;
 mod threads;
 mod undetermined;
@@ -91,5 +96,6 @@ pub use run::run;
 pub use save::Saving;
 pub use spread::Spread;
 pub use stages::Interruption;
+pub use strength_summary::{MotionSummary, StrengthSummary, Trial};
 pub use summary::{FractureSummary, StepMeasures, StepSummary, Summary, Undetermined};
 pub use threads::{ThreadCount, pool, thread_count};

@@ -93,6 +93,13 @@ struct Row {
     fracture: Option<[f64; OF_FRACTURE.len()]>,
 }
 
+impl Row {
+    /// Whether the point hits anything that is there.
+    fn has_values(&self) -> bool {
+        self.rock.is_some() || self.fracture.is_some()
+    }
+}
+
 impl Solved<'_> {
     /// Adds the rows of the load step to a table.
     fn add_to(&self, text: &mut String, probes: &[Probe]) {
@@ -142,6 +149,11 @@ impl Solved<'_> {
                     fracture: None,
                 }
             }
+            Hit::Nothing => Row {
+                position,
+                rock: None,
+                fracture: None,
+            },
             Hit::Fracture(node) => {
                 let found = &self.nodes[*node];
                 let [jump, traction] = [found.jump, found.traction];
@@ -196,7 +208,8 @@ impl Solved<'_> {
 /// The mean of rows of one kind.
 fn mean(rows: &[Row]) -> Option<Row> {
     let count = rows.len() as f64;
-    let first = rows.first()?;
+    let present: Vec<&Row> = rows.iter().filter(|row| row.has_values()).collect();
+    let shared = present.len() as f64;
     fn of<const N: usize>(all: impl Iterator<Item = [f64; N]>, count: f64) -> [f64; N] {
         let mut sums = [0.0; N];
         for values in all {
@@ -206,11 +219,14 @@ fn mean(rows: &[Row]) -> Option<Row> {
         }
         sums.map(|sum| sum / count)
     }
-    let rock = rows.iter().filter_map(|row| row.rock);
-    let fracture = rows.iter().filter_map(|row| row.fracture);
-    Some(Row {
+    let rock = present.iter().filter_map(|row| row.rock);
+    let fracture = present.iter().filter_map(|row| row.fracture);
+    let first = present.first();
+    (!rows.is_empty()).then(|| Row {
         position: rows.iter().map(|row| row.position).sum::<DVec3>() / count,
-        rock: first.rock.map(|_| of(rock, count)),
-        fracture: first.fracture.map(|_| of(fracture, count)),
+        rock: first.and_then(|row| row.rock).map(|_| of(rock, shared)),
+        fracture: first
+            .and_then(|row| row.fracture)
+            .map(|_| of(fracture, shared)),
     })
 }

@@ -15,6 +15,7 @@ use crate::probes;
 use crate::request::{MeshInput, Request};
 use crate::resume::{self, FormerRun};
 use crate::stages::{Interruption, Run};
+use crate::strength;
 
 /// Runs a scene: mesh, enrich, assemble, solve, write.
 ///
@@ -66,6 +67,9 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     };
     let mut names = OWN.to_vec();
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
+    if request.scene.strength_reduction.is_some() {
+        names.extend(strength::GRIDS);
+    }
     if !request.scene.probes.is_empty() {
         names.push(probes::NAME);
     }
@@ -89,6 +93,9 @@ fn solve(
 ) -> Result<(), Interruption> {
     if !mesh_is_kept {
         adapt::search(run)?;
+    }
+    if run.request.scene.has_stages() {
+        return run.solve_stages(former);
     }
     let binding = run.prepare(former.as_ref())?;
     match &binding.flow {

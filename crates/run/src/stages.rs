@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use kluft_io::{Meshed, fingerprint_of};
-use kluft_mesh::{Defect, Draft};
+use kluft_mesh::{Defect, Draft, Mesh};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
     Discretisation, Iteration, LinearFailure, Newton, NewtonSettings, Plan, Problem, System,
@@ -182,22 +182,40 @@ impl<'a> Run<'a> {
     /// # Errors
     /// Defects of geometry, mesh and scene, and a mesh that is not the one of the former run.
     pub fn prepare(&mut self, former: Option<&FormerRun>) -> Result<Binding, Interruption> {
+        let mut binding = self.read_mesh(former, |run, draft| run.bind(draft))?;
+        self.oracles = std::mem::take(&mut binding.oracles);
+        self.note_mesh();
+        Ok(binding)
+    }
+
+    /// Makes something of the mesh as read.
+    ///
+    /// # Errors
+    /// Defects of the geometry, the mesh and what is made of it.
+    pub fn read_mesh<T>(
+        &mut self,
+        former: Option<&FormerRun>,
+        make: impl FnOnce(&mut Self, Draft) -> Result<T, Vec<Defect>>,
+    ) -> Result<T, Interruption> {
         let file = match &self.request.mesh {
             MeshInput::OfScene => Some(self.mesh_file(former)?),
             MeshInput::Draft(_) => None,
         };
-        let mut binding = self.stage(Stage::Read, |run| {
+        let made = self.stage(Stage::Read, |run| {
             let draft = run.draft(file.as_ref(), former)?;
-            run.bind(draft)
+            make(run, draft)
         })?;
-        self.oracles = std::mem::take(&mut binding.oracles);
+        Ok(made)
+    }
+
+    /// Tells how large the mesh is.
+    pub fn note_mesh(&mut self) {
         let mesh = &self.summary.mesh;
         let size = format!(
             "{} nodes, {} cells, {} fracture facets, at most {} sectors at a node",
             mesh.nodes, mesh.cells, mesh.fracture_facets, mesh.max_sectors
         );
         self.note_timed("read", &size);
-        Ok(binding)
     }
 
     /// The mesh as read; one in memory is taken.
@@ -232,7 +250,12 @@ impl<'a> Run<'a> {
         self.summary.decisions.append(&mut binding.decisions);
         self.doubts = std::mem::take(&mut binding.warnings);
         self.summary.warnings.clone_from(&self.doubts);
-        let mesh = &binding.problem.mesh;
+        self.count_mesh(&binding.problem.mesh);
+        Ok(binding)
+    }
+
+    /// Sums up the mesh.
+    pub fn count_mesh(&mut self, mesh: &Mesh) {
         let counts = mesh.sectors.count.iter();
         let own = (0..mesh.nodes.len()).filter(|&node| mesh.is_own(node as u32));
         self.summary.mesh = MeshSummary {
@@ -244,7 +267,6 @@ impl<'a> Run<'a> {
             fracture_facets: mesh.facets.elements.len(),
             max_sectors: counts.copied().max().unwrap_or(0),
         };
-        Ok(binding)
     }
 
     /// The mesh file; gmsh makes it if it has to.

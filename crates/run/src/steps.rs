@@ -1,5 +1,6 @@
 //! The load steps of a run: each is solved, estimated, written, and can be resumed from.
 
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
@@ -7,8 +8,8 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Estimator, FacetResult, Flow, Newton, Plan, Problem, Solution, State, StepOutcome, System,
-    determinacy, solution,
+    Estimator, FacetResult, Flow, Newton, Plan, Problem, Solution, StageEnd, State, StepOutcome,
+    System, determinacy, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -32,15 +33,17 @@ use crate::undetermined;
 use crate::unresolved;
 
 /// A run that has a system and a solver.
-struct Prepared<'s, 'p> {
+pub(crate) struct Prepared<'s, 'p> {
     system: &'s System<'p>,
     flow: Option<&'s RunFlow<'p>>,
     /// What could flow, if there is a fluid.
     fluid: Option<&'p Flow>,
-    newton: Newton,
-    state: State,
+    pub(crate) newton: Newton,
+    pub(crate) state: State,
     /// Made with the first results, so that it takes no memory from the first solve.
     estimator: Option<Estimator>,
+    /// What its stage of the body began with, if it is not the first.
+    pub(crate) stage: Option<&'s StageEnd>,
 }
 
 impl Run<'_> {
@@ -61,6 +64,7 @@ impl Run<'_> {
             flow: None,
             fluid: None,
             estimator: None,
+            stage: None,
         };
         for index in 0..problem.schedule.steps.len() {
             self.solve_step(&mut prepared, index)?;
@@ -101,13 +105,29 @@ impl Run<'_> {
         };
         prepared.flow = flow.as_ref();
         prepared.fluid = binding.flow.as_ref();
-        for index in self.finished.len()..problem.schedule.steps.len() {
+        self.solve_until(&mut prepared, problem.schedule.steps.len())?;
+        let Prepared {
+            mut newton, state, ..
+        } = prepared;
+        self.reduce_strength(&mut system, &mut newton, state)
+    }
+
+    /// Solves the load steps that are left up to one.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub(crate) fn solve_until(
+        &mut self,
+        prepared: &mut Prepared<'_, '_>,
+        end: usize,
+    ) -> Result<(), Interruption> {
+        for index in self.finished.len()..end {
             self.go_on_if_asked()?;
-            let measures = self.solve_step(&mut prepared, index)?;
+            let measures = self.solve_step(prepared, index)?;
             self.finished.push(measures);
-            self.take_results(&mut prepared)?;
+            self.take_results(prepared)?;
             self.write_summary()?;
-            self.write_checkpoint(problem, &prepared)?;
+            self.write_checkpoint(prepared.system.problem(), prepared)?;
         }
         Ok(())
     }
@@ -125,7 +145,7 @@ impl Run<'_> {
     }
 
     /// Prepares for the first load step.
-    fn begin<'s, 'p>(
+    pub(crate) fn begin<'s, 'p>(
         &mut self,
         system: &'s System<'p>,
         plan: Plan,
@@ -134,6 +154,15 @@ impl Run<'_> {
         self.output.expect_steps(steps)?;
         self.output.remove_former()?;
         self.write_summary()?;
+        self.enter(system, plan)
+    }
+
+    /// Prepares for the first load step of a body.
+    pub(crate) fn enter<'s, 'p>(
+        &mut self,
+        system: &'s System<'p>,
+        plan: Plan,
+    ) -> Result<Prepared<'s, 'p>, Interruption> {
         Ok(Prepared {
             newton: self.set_up(system, plan)?,
             state: system.initial_state(),
@@ -141,11 +170,12 @@ impl Run<'_> {
             flow: None,
             fluid: None,
             estimator: None,
+            stage: None,
         })
     }
 
     /// Prepares for the load step after the last one that a former run finished.
-    fn go_on<'s, 'p>(
+    pub(crate) fn go_on<'s, 'p>(
         &mut self,
         system: &'s System<'p>,
         plan: Plan,
@@ -184,6 +214,7 @@ impl Run<'_> {
             flow: None,
             fluid: None,
             estimator: None,
+            stage: None,
         })
     }
 
@@ -367,8 +398,14 @@ impl Run<'_> {
             return Ok(());
         }
         let start = Instant::now();
-        let is_left = self.finished.len() < problem.schedule.steps.len();
-        let Prepared { newton, state, .. } = prepared;
+        let is_left = self.finished.len() < problem.schedule.steps.len()
+            || self.request.scene.strength_reduction.is_some();
+        let Prepared {
+            newton,
+            state,
+            stage,
+            ..
+        } = prepared;
         let progress = Progress {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
@@ -386,6 +423,7 @@ impl Run<'_> {
             stress_error: self.summary.stress_error,
             seconds: self.summary.seconds.clone(),
             peak_memory_bytes: self.summary.peak_memory_bytes,
+            stage: stage.filter(|_| is_left).map(Cow::Borrowed),
             restart: is_left.then(|| newton.restart_state(state)),
         };
         // What a checkpoint speaks of lasts before it does.

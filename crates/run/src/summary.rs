@@ -11,6 +11,7 @@ use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
 use crate::permeability_summary::PermeabilitySummary;
 use crate::spread::Spread;
+use crate::strength_summary::StrengthSummary;
 
 /// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -234,6 +235,9 @@ pub struct Summary {
     /// The equivalent permeability of the body, if it is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub permeability: Option<PermeabilitySummary>,
+    /// How far strength could be reduced, if that is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strength_reduction: Option<StrengthSummary>,
     /// Estimated error of the stress in the rock, as a share of it in the energy norm.
     pub stress_error: f64,
     /// Numbers by which runs are compared, after the last converged step.

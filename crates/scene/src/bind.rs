@@ -48,6 +48,11 @@ impl Scene {
         if self.takes_surfaces(&draft) {
             return self.surface_problem(draft);
         }
+        if self.has_stages() {
+            let staged = self.staged(draft)?;
+            let first = staged.bind(0, None)?.binding;
+            return Ok(first.after(staged.decisions, staged.warnings));
+        }
         let faces = Faces::of(&draft);
         let joined = name_places(self, join(self, draft, faces)?)?;
         let inner = joined.faces.inner_surfaces(&joined.draft);
@@ -79,7 +84,7 @@ impl Scene {
 
 impl Binding {
     /// The same after what was decided and doubted before.
-    fn after(mut self, mut decisions: Vec<String>, mut warnings: Vec<String>) -> Self {
+    pub(crate) fn after(mut self, mut decisions: Vec<String>, mut warnings: Vec<String>) -> Self {
         decisions.append(&mut self.decisions);
         warnings.append(&mut self.warnings);
         Self {
@@ -104,17 +109,37 @@ impl Scene {
 /// # Errors
 /// Volumes without or with several rocks, gravity without density, fixed points that are not in
 /// the body, and boreholes that hit no fracture.
-pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
+pub fn bind(scene: &Scene, mesh: Mesh) -> Result<Binding, Vec<Defect>> {
+    bind_with(scene, mesh, |_| None)
+}
+
+/// Like [`bind`], with other rocks where `rock_of` has one for a cell.
+pub(crate) fn bind_with(
+    scene: &Scene,
+    mut mesh: Mesh,
+    rock_of: impl Fn(usize) -> Option<u32>,
+) -> Result<Binding, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut decisions = Vec::new();
     if scene.quarter_points {
         decisions.extend(quarter_points(mesh.move_to_quarter_points()));
     }
-    let rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
+    let mut rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
+    for (cell, rock) in rock_of_cell.iter_mut().enumerate() {
+        *rock = rock_of(cell).unwrap_or(*rock);
+    }
     let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
     defects.extend(wrong_gravity(scene, &mesh));
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
+    if let Some(reduction) = scene
+        .strength_reduction
+        .as_ref()
+        .filter(|_| !scene.has_stages())
+    {
+        let laws = fractures.iter().map(|entry| entry.value.fracture.law);
+        defects.extend(reduction.defects(&mesh.fractures, &laws.collect::<Vec<_>>()));
+    }
     if !defects.is_empty() {
         return Err(defects);
     }
@@ -144,6 +169,7 @@ pub fn bind(scene: &Scene, mut mesh: Mesh) -> Result<Binding, Vec<Defect>> {
             .initial_stress
             .as_ref()
             .map(|entry| entry.stress.clone()),
+        added: Vec::new(),
         varying: Varying::default(),
         facet_quadrature: scene.solver.facets,
         mesh,

@@ -35,6 +35,8 @@ pub enum Hit {
     Rock(InCell),
     /// A node of a facet: its index in the flat node list of the facets.
     Fracture(usize),
+    /// Nothing that is there now.
+    Nothing,
 }
 
 /// The probes of a scene on a mesh; what they hit goes to `decisions`.
@@ -48,12 +50,15 @@ pub(crate) fn bind_probes(
 ) -> Result<Vec<Probe>, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut probes = Vec::new();
+    if scene.has_stages() {
+        return Ok(scene
+            .probes
+            .iter()
+            .map(|entry| as_far_as_there(mesh, entry))
+            .collect());
+    }
     for entry in &scene.probes {
-        let found = match &entry.value.fracture {
-            Some(fracture) => on_fracture(mesh, entry, fracture, decisions),
-            None => in_rock(mesh, entry, decisions),
-        };
-        match found {
+        match hits(mesh, entry, decisions) {
             Ok(points) => probes.push(Probe {
                 name: entry.name.clone(),
                 points,
@@ -65,6 +70,50 @@ pub(crate) fn bind_probes(
     match defects.is_empty() {
         true => Ok(probes),
         false => Err(defects),
+    }
+}
+
+/// A probe on a mesh that other phases have other volumes of: what it misses now has no values.
+fn as_far_as_there(mesh: &Mesh, entry: &Named<ProbeEntry>) -> Probe {
+    let point = |&position: &DVec3| {
+        let single = Named {
+            value: ProbeEntry {
+                points: vec![position],
+                ..entry.value.clone()
+            },
+            ..entry.clone()
+        };
+        let found = hits(mesh, &single, &mut Vec::new()).ok();
+        let found = found.and_then(|mut points| points.pop());
+        found.unwrap_or(ProbePoint {
+            position,
+            hit: Hit::Nothing,
+        })
+    };
+    Probe {
+        name: entry.name.clone(),
+        points: entry.value.points.iter().map(point).collect(),
+        mean: entry.value.mean,
+    }
+}
+
+/// Defects of probes on a mesh that has the volumes of all phases.
+pub(crate) fn probe_defects(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
+    let probes = scene.probes.iter();
+    probes
+        .filter_map(|entry| hits(mesh, entry, &mut Vec::new()).err())
+        .collect()
+}
+
+/// What the points of a probe hit.
+fn hits(
+    mesh: &Mesh,
+    entry: &Named<ProbeEntry>,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<ProbePoint>, Defect> {
+    match &entry.value.fracture {
+        Some(fracture) => on_fracture(mesh, entry, fracture, decisions),
+        None => in_rock(mesh, entry, decisions),
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn schedule(
 ) -> Schedule {
     let (ends, grown) = match &scene.timetable {
         Timetable::Factors(factors) => return Schedule::proportional(factors.clone()),
-        Timetable::Times { ends, grown } => (ends, *grown),
+        Timetable::Times { ends, grown, .. } => (ends, *grown),
     };
     let mut found = Found {
         grown,
@@ -51,6 +51,7 @@ pub(crate) fn schedule(
         cases,
         steps: ends.iter().map(step).collect(),
         is_timed: true,
+        goes_on_from: None,
         sudden: found.factors(0.0),
     }
 }

@@ -54,7 +54,52 @@ pub enum Timetable {
         ends: Vec<StepEnd>,
         /// When a condition without a history has grown to its full size.
         grown: f64,
+        /// The phases, if there are any.
+        phases: Vec<PhaseEntry>,
     },
+}
+
+/// A phase, and what it changes of the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhaseEntry {
+    /// Its name.
+    pub name: String,
+    /// File and line.
+    pub place: String,
+    /// Its end.
+    pub until: f64,
+    /// The number of its steps.
+    pub steps: usize,
+    /// Volumes that it removes.
+    pub remove: Vec<String>,
+    /// Volumes that it adds.
+    pub add: Vec<String>,
+    /// Rock of what it adds, if not that of the volume.
+    pub added_as: Option<String>,
+    /// Share of what holds cut walls that it lets go.
+    pub release: f64,
+}
+
+impl PhaseEntry {
+    /// Whether other volumes are there in it than before.
+    pub fn changes(&self) -> bool {
+        !self.remove.is_empty() || !self.add.is_empty()
+    }
+}
+
+impl Timetable {
+    /// The phases, if there are any.
+    pub fn phases(&self) -> &[PhaseEntry] {
+        match self {
+            Self::Times { phases, .. } => phases,
+            Self::Factors(_) => &[],
+        }
+    }
+
+    /// Whether phases remove or add volumes.
+    pub fn has_stages(&self) -> bool {
+        self.phases().iter().any(PhaseEntry::changes)
+    }
 }
 
 impl Default for Timetable {

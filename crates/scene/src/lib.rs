@@ -33,6 +33,8 @@ mod roles;
 mod scene;
 mod setting;
 mod sources;
+mod stages;
+mod strength;
 mod surfaces;
 mod warning;
 
@@ -45,7 +47,7 @@ pub use conditions::{
 pub use field::FieldEntry;
 pub use fluid::{FluidEntry, SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
-pub use history::{LoadHistory, StepEnd, Timetable};
+pub use history::{LoadHistory, PhaseEntry, StepEnd, Timetable};
 pub use initial_stress::InitialStressEntry;
 pub use join::{JoinedDraft, join};
 pub use load::Clock;
@@ -60,5 +62,7 @@ pub use rock::RockEntry;
 pub use roles::{Roles, repeated_name, roles};
 pub use scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 pub use setting::{FluidUse, Setting};
+pub use stages::{StageBinding, Staged};
+pub use strength::StrengthReduction;
 pub use surfaces::{SurfaceMesh, surface_mesh};
 pub use warning::Doubt;

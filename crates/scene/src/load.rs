@@ -1,6 +1,6 @@
 //! The load steps of a scene, and histories of its conditions.
 
-use crate::history::{LoadHistory, StepEnd, Timetable};
+use crate::history::{LoadHistory, PhaseEntry, StepEnd, Timetable};
 use crate::reader::Section;
 
 /// Whether the load steps of a scene have times, as histories need them.
@@ -128,18 +128,12 @@ fn read_times(section: &Section<'_, '_>) -> Option<Timetable> {
     Some(Timetable::Times {
         ends: ends.collect(),
         grown,
+        phases: Vec::new(),
     })
 }
 
-/// A phase: its name, its end, and the number of its steps.
-struct Phase {
-    name: String,
-    until: f64,
-    steps: usize,
-}
-
 fn read_phases(section: &Section<'_, '_>) -> Option<Timetable> {
-    let mut phases: Vec<Phase> = Vec::new();
+    let mut phases: Vec<PhaseEntry> = Vec::new();
     let sections = section.listed_sections("phase");
     if sections.is_empty() {
         let remedy = "add [[load.phase]] with a name and `until`";
@@ -168,11 +162,12 @@ fn read_phases(section: &Section<'_, '_>) -> Option<Timetable> {
     Some(Timetable::Times {
         ends: ends.collect(),
         grown,
+        phases,
     })
 }
 
 /// Reads a phase that follows `former` ones.
-fn read_phase(section: &Section<'_, '_>, former: &[Phase]) -> Option<Phase> {
+fn read_phase(section: &Section<'_, '_>, former: &[PhaseEntry]) -> Option<PhaseEntry> {
     section.require("name");
     section.require("until");
     let name = section.text("name");
@@ -190,9 +185,62 @@ fn read_phase(section: &Section<'_, '_>, former: &[Phase]) -> Option<Phase> {
         );
         section.refuse("until", problem, "let the ends of the phases ascend");
     }
-    Some(Phase {
+    let lists = ["remove", "add"].map(|key| section.texts(key));
+    let [remove, add] = lists.map(Option::unwrap_or_default);
+    let added_as = section.text("added_as").filter(|_| {
+        let is_used = !add.is_empty();
+        if !is_used {
+            let problem = format!("{} adds nothing", section.title);
+            section.refuse("added_as", problem, "give `add`, or remove it");
+        }
+        is_used
+    });
+    let changes = !remove.is_empty() || !add.is_empty();
+    let release = section.number("release").filter(|_| {
+        let is_used = changes || former.iter().any(PhaseEntry::changes);
+        if !is_used {
+            let problem = format!("nothing has been removed up to {}", section.title);
+            section.refuse("release", problem, "give `remove`, or remove it");
+        }
+        is_used
+    });
+    Some(PhaseEntry {
         name: name?.to_owned(),
+        place: section.place(),
         until: until?,
         steps: steps.unwrap_or(1.0) as usize,
+        remove,
+        add,
+        added_as: added_as.map(str::to_owned),
+        release: release.unwrap_or(1.0),
     })
+}
+
+/// Refuses what does not know that volumes come and go.
+pub(crate) fn refuse_beside_stages(root: &Section<'_, '_>) {
+    for key in ["fluid", "oracle"] {
+        if root.has(key) {
+            let problem = format!("[{key}] knows nothing of volumes that phases remove or add");
+            root.refuse(
+                key,
+                problem,
+                format!("remove [{key}], or `remove` and `add`"),
+            );
+        }
+    }
+    let Some(mesh) = root.section("mesh") else {
+        return;
+    };
+    if mesh.has("adapt") {
+        let problem = "a mesh is adapted to one body, and phases remove or add volumes".into();
+        mesh.refuse(
+            "adapt",
+            problem,
+            "remove [mesh.adapt], and give sizes in the geometry",
+        );
+    }
+    if mesh.flag("quarter_points") == Some(true) {
+        let problem = "crack fronts move with volumes that phases remove or add".into();
+        mesh.refuse("quarter_points", problem, "remove it");
+    }
 }

@@ -10,13 +10,14 @@ use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, re
 use crate::fluid::{FluidEntry, SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
 use crate::initial_stress::read_initial_stress;
-use crate::load::{Clock, read_timetable};
+use crate::load::{Clock, read_timetable, refuse_beside_stages};
 use crate::oracle;
 use crate::probe::read_probe;
 use crate::reader::{Section, Source};
 use crate::rock::read_rock;
 use crate::scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::Setting;
+use crate::strength::read_strength_reduction;
 
 impl Scene {
     /// Reads a scene file; paths in it are relative to its folder.
@@ -118,7 +119,17 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         fluid: fluid_use(root),
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
-    let mesh = read_mesh_section(root, folder);
+    let mut mesh = read_mesh_section(root, folder);
+    if root.has("fluid") && root.has("strength_reduction") {
+        let problem = "[strength_reduction] knows nothing of a fluid that flows".into();
+        let remedy = "give fractures a fluid_pressure, or remove [strength_reduction]";
+        root.refuse("strength_reduction", problem, remedy);
+    }
+    if timetable.has_stages() {
+        refuse_beside_stages(root);
+        // Crack fronts come and go with volumes, and nodes stay where they are.
+        mesh.quarter_points = false;
+    }
     match setting.is_rigid() {
         true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
@@ -154,6 +165,9 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         timetable,
         solver: read_solver(root),
+        strength_reduction: root
+            .section("strength_reduction")
+            .map(read_strength_reduction),
         silenced: root
             .section("warnings")
             .map_or_else(Vec::new, read_silenced),

@@ -166,7 +166,10 @@ fn surface_roles(
 }
 
 fn volume_names(scene: &Scene, groups: &[Group]) -> Vec<Defect> {
+    let phases = scene.phases();
+    let is_added = |name: &str| phases.iter().any(|p| p.added_as.as_deref() == Some(name));
     let named = scene.rocks.iter().filter(|entry| entry.name != DEFAULT);
+    let named = named.filter(|entry| !is_added(&entry.name));
     named
         .filter_map(|entry| find_group(groups, &entry.name, 3, &entry.place).err())
         .collect()

@@ -8,11 +8,12 @@ use lie_core::FacetQuadrature;
 
 use crate::conditions::{BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::fluid::{FluidEntry, SourceEntry};
-use crate::history::Timetable;
+use crate::history::{PhaseEntry, Timetable};
 use crate::initial_stress::InitialStressEntry;
 use crate::oracle::Oracle;
 use crate::probe::ProbeEntry;
 use crate::rock::RockEntry;
+use crate::strength::StrengthReduction;
 
 /// Something the scene says about a named group, and where it says so.
 #[derive(Debug, Clone)]
@@ -121,6 +122,8 @@ pub struct Scene {
     pub timetable: Timetable,
     /// What is asked of the linear solver.
     pub solver: SolverEntry,
+    /// How far strength is reduced after the last load step, if it is.
+    pub strength_reduction: Option<StrengthReduction>,
     /// Probes.
     pub probes: Vec<Named<ProbeEntry>>,
     /// Closed forms by fracture.
@@ -179,6 +182,16 @@ impl Scene {
             }
         }
         files
+    }
+
+    /// The phases, if the load steps have any.
+    pub fn phases(&self) -> &[PhaseEntry] {
+        self.timetable.phases()
+    }
+
+    /// Whether phases remove or add volumes.
+    pub fn has_stages(&self) -> bool {
+        self.timetable.has_stages()
     }
 
     /// Whether the rock is rigid, and flow is all that happens.

@@ -72,4 +72,4 @@ pub use space::pattern::{CellOfSlot, Pattern};
 pub use space::rigid_modes::UNHELD_BLOCK;
 pub use space::sector_nodes::SectorNodes;
 pub use space::supports::{Constraint, Supports};
-pub use system::{Discretisation, FacetPointState, State, System};
+pub use system::{Discretisation, FacetPointState, StageEnd, State, System};

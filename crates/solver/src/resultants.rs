@@ -260,7 +260,8 @@ fn cell_forces(
         system.discretisation().points(),
         displacements,
         index,
-    );
+    )
+    .strained(system.strain_offsets(), index);
     let count = cell.nodes().len();
     let matrix = &mut matrix[..count * count];
     kernel::stiffness(cell.shape, cell.nodes(), cell.rock, matrix);
@@ -272,7 +273,7 @@ fn cell_forces(
             .map(|(block, u)| *block * *u)
             .sum();
     }
-    if let Some(stress) = &problem.initial_stress {
+    if let Some(stress) = problem.initial_stress_in(index) {
         kernel::add_stress_forces(
             cell.shape,
             cell.nodes(),

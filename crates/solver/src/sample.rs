@@ -129,9 +129,11 @@ pub fn sample(system: &System<'_>, solution: &Solution, place: &InCell) -> RockS
         place.cell,
     );
     let moved = cell.moved().iter().zip(&place.shares);
+    let displacement = moved.map(|(u, share)| *u * *share).sum();
+    let cell = cell.strained(system.strain_offsets(), place.cell);
     let gradient = kernel::mean_gradient(cell.shape, cell.nodes(), cell.moved());
     RockSample {
-        displacement: moved.map(|(u, share)| *u * *share).sum(),
+        displacement,
         stress: solution.stresses[place.cell],
         strain: components(0.5 * (gradient + gradient.transpose())),
     }

@@ -106,14 +106,14 @@ fn take_from_control(
 
 /// Derives the fields of a state.
 pub fn solution(system: &System<'_>, state: &State) -> Solution {
-    let displacements = system.displacements(&state.unknowns, &state.load);
+    let displacements = system.total_displacements(state);
     let cell_count = system.problem.mesh.cells.len();
     let stresses = (0..cell_count)
         .into_par_iter()
         .map(|cell| cell_stress(system, &displacements, cell))
         .collect();
     let interface = &system.discretisation.interface;
-    let jumps = interface.jumps(&state.unknowns, &state.load);
+    let jumps = system.total_jumps(state);
     let facet_points = (0..jumps.len())
         .into_par_iter()
         .map(|i| {
@@ -136,13 +136,13 @@ pub fn solution(system: &System<'_>, state: &State) -> Solution {
     }
 }
 
-fn cell_stress(system: &System<'_>, displacements: &[DVec3], cell: usize) -> SymmetricStress {
+fn cell_stress(system: &System<'_>, displacements: &[DVec3], index: usize) -> SymmetricStress {
     let problem = system.problem;
     let points = &system.discretisation.points;
-    let cell = Cell::of(problem, points, displacements, cell);
+    let cell =
+        Cell::of(problem, points, displacements, index).strained(system.strain_offsets(), index);
     let initial = problem
-        .initial_stress
-        .as_ref()
+        .initial_stress_in(index)
         .map_or(DMat3::ZERO, |stress| {
             stress.at(kernel::centre(cell.shape, cell.nodes()))
         });

@@ -142,6 +142,31 @@ class Warnings(Section):
         )
 
 
+class StrengthReduction(Section):
+    """Friction and cohesion divided by a growing factor until blocks move: the factor of safety.
+
+    Args:
+        fractures: Fractures whose strength is reduced. Without it: all that have friction.
+        accuracy: Largest difference between the last stable and the first failing factor, as a
+            share of the former; 0.000001 to 0.5. Without it 0.01.
+        most: Factor at which the search ends, if nothing has moved by then; 1 to 1000000. Without
+            it 10.
+    """
+
+    def __init__(
+        self,
+        *,
+        fractures: Sequence[str] | None = None,
+        accuracy: Quantity | None = None,
+        most: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            fractures=fractures,
+            accuracy=accuracy,
+            most=most,
+        )
+
+
 class Solver(Section):
     """What is asked of the solver, only to overrule the program.
 
@@ -182,6 +207,13 @@ class Phase(Section):
         name: What the report and `summary.json` call it. Required.
         until: End of the phase; the first begins at 0 (time); > 0. Required.
         steps: Number of equal load steps in the phase; 1 to 100000. Without it 1.
+        remove: Physical volumes that are not there from its beginning on, with the fractures in
+            them. Without it: nothing.
+        add: Physical volumes that are there from its beginning on, free of stress; one that none
+            has removed before is not there until then. Without it: nothing.
+        added_as: Rock of what it adds, a section `[rock.NAME]`. Without it: the rock of the volume.
+        release: Share, of the forces that hold the walls of what was removed at its beginning, that
+            it lets go step by step; 0 to 1. Without it 1.
     """
 
     def __init__(
@@ -190,11 +222,19 @@ class Phase(Section):
         name: str | None = None,
         until: float | None = None,
         steps: int | None = None,
+        remove: Sequence[str] | None = None,
+        add: Sequence[str] | None = None,
+        added_as: str | None = None,
+        release: Quantity | None = None,
     ) -> None:
         super().__init__(
             name=name,
             until=until,
             steps=steps,
+            remove=remove,
+            add=add,
+            added_as=added_as,
+            release=release,
         )
 
 
@@ -837,6 +877,8 @@ class SceneSections(Section):
         initial_stress: Stress before any load. Without it: none.
         load: Load steps. Without it: one load step.
         solver: What is asked of the solver. Without it: the program chooses.
+        strength_reduction: How far the strength of fractures can be reduced until blocks move.
+            Without it: no factor of safety.
         warnings: What is meant, however unlikely it looks. Without it: all are told.
         oracle: Closed forms by fracture, to compare it with. Without it: nothing is compared.
         probe: Points whose values are written down after each load step. Without it: none.
@@ -857,6 +899,7 @@ class SceneSections(Section):
         initial_stress: InitialStress | Mapping[str, Any] | None = None,
         load: Load | Mapping[str, Any] | None = None,
         solver: Solver | Mapping[str, Any] | None = None,
+        strength_reduction: StrengthReduction | Mapping[str, Any] | None = None,
         warnings: Warnings | Mapping[str, Any] | None = None,
         oracle: Mapping[str, Oracle | Mapping[str, Any]] | None = None,
         probe: Mapping[str, Probe | Mapping[str, Any]] | None = None,
@@ -874,6 +917,7 @@ class SceneSections(Section):
             initial_stress=initial_stress,
             load=load,
             solver=solver,
+            strength_reduction=strength_reduction,
             warnings=warnings,
             oracle=oracle,
             probe=probe,
@@ -899,6 +943,7 @@ __all__ = [
     "Rock",
     "Solver",
     "Source",
+    "StrengthReduction",
     "StressProfile",
     "Varying",
     "Warnings",

@@ -103,6 +103,20 @@ impl<'a, 'i> Section<'a, 'i> {
         pair
     }
 
+    /// Texts in brackets.
+    pub fn texts(&self, key: &'static str) -> Option<Vec<String>> {
+        let value = self.get(key)?;
+        let array = value.get_ref().as_array();
+        let texts = array.and_then(|array| {
+            let texts = array.iter().map(|entry| entry.get_ref().as_str());
+            texts.map(|text| text.map(str::to_owned)).collect()
+        });
+        if texts.is_none() {
+            self.wrong_type(key, value, "names in brackets, e.g. [\"heading\"]");
+        }
+        texts
+    }
+
     /// Truth values in brackets.
     pub fn flags(&self, key: &'static str) -> Option<Vec<bool>> {
         let value = self.get(key)?;

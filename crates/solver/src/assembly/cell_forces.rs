@@ -9,7 +9,7 @@ use lie_core::kernel::{self, MAX_NODES};
 use rayon::prelude::*;
 
 use crate::space::Space;
-use crate::space::cell;
+use crate::space::cell::{self, Cell, StrainOffsets};
 
 /// Cells of one task.
 const CELLS_PER_TASK: usize = 256;
@@ -33,11 +33,28 @@ pub(crate) fn gravity(space: Space<'_>) -> Vec<DVec3> {
 /// `f_a = int sigma_0 . grad N_a dV`.
 pub(crate) fn initial_stress(space: Space<'_>) -> Option<Vec<DVec3>> {
     let problem = space.problem;
-    let stress = problem.initial_stress.as_ref()?;
+    problem.initial_stress.as_ref()?;
     Some(gather(space, |cell, positions, forces| {
         let shape = problem.mesh.cells.shapes[cell];
-        kernel::add_stress_forces(shape, positions, |at| stress.at(at), forces);
+        if let Some(stress) = problem.initial_stress_in(cell) {
+            kernel::add_stress_forces(shape, positions, |at| stress.at(at), forces);
+        }
     }))
+}
+
+/// Forces (N) by which the rock resists displacements of all points (m), and what strains cells
+/// beside: `f_a = int sigma(u) . grad N_a dV`.
+pub(crate) fn elastic(
+    space: Space<'_>,
+    displacements: &[DVec3],
+    offsets: &StrainOffsets,
+) -> Vec<DVec3> {
+    let problem = space.problem;
+    gather(space, |index, _, forces| {
+        let cell = Cell::of(problem, space.points, displacements, index).strained(offsets, index);
+        let nodes = (cell.nodes(), cell.moved());
+        kernel::add_elastic_forces(cell.shape, nodes, cell.rock, forces);
+    })
 }
 
 /// Forces (N) on all points, where `of_cell` adds one cell's nodal forces.

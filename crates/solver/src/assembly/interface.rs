@@ -10,12 +10,12 @@
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists};
-use kluft_mesh::cell_volume;
 use lie_core::enrichment::coefficient;
 use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, JointState, facet_points};
 use rayon::prelude::*;
 
 use crate::assembly::facet_point::FacetPoint;
+use crate::assembly::rock_spring::spring;
 use crate::assembly::shared_walls;
 use crate::problem::{Load, Problem};
 use crate::space::sector_nodes::SectorNodes;
@@ -147,6 +147,31 @@ impl Interface {
             point.initial = initial_walls(problem, law, point, 0.0);
         }
         self.laws = laws;
+    }
+
+    /// Takes these laws, with friction and cohesion of some fractures divided by a factor. What
+    /// carries the initial stress stays.
+    pub(crate) fn weaken(
+        &mut self,
+        laws: &[FractureLaw],
+        factor: f64,
+        is_weakened: impl Fn(usize) -> bool,
+    ) {
+        assert_eq!(
+            laws.len(),
+            self.laws.len(),
+            "a law for each of those before"
+        );
+        self.laws.copy_from_slice(laws);
+        let fractures = 0..self.rules.len();
+        let of_points = self.points.iter().map(|point| (point.law, point.fracture));
+        let of_points = of_points.map(|(law, fracture)| (law as usize, fracture as usize));
+        let mut all: Vec<(usize, usize)> = fractures.map(|f| (f, f)).chain(of_points).collect();
+        all.sort_unstable();
+        all.dedup();
+        for (law, _) in all.into_iter().filter(|(_, f)| is_weakened(*f)) {
+            self.laws[law] = laws[law].weakened(factor);
+        }
     }
 
     /// The facet points. With all but Gauss's rule the first ones are those of the nodes of the
@@ -442,16 +467,6 @@ fn jump_terms(
         .filter(|term| term.factor != DMat3::ZERO)
 }
 
-fn spring(problem: &Problem, facet: usize, area: f64) -> f64 {
-    let mesh = &problem.mesh;
-    let compliance = |cell: u32| {
-        let cell = cell as usize;
-        let volume = cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
-        volume / area / problem.rock(cell).constrained_modulus()
-    };
-    1.0 / (compliance(mesh.facets.minus[facet]) + compliance(mesh.facets.plus[facet]))
-}
-
 /// The walls of a facet point carrying the initial stress beside a fluid of some pressure (Pa). A
 /// fracture without stiffness carries none, so it relaxes what the initial stress would need of it.
 fn initial_walls(
@@ -461,7 +476,13 @@ fn initial_walls(
     pressure: f64,
 ) -> JointState {
     let (at, normal) = (point.position, point.normal);
-    let stress = problem.initial_stress.as_ref();
+    let facets = &problem.mesh.facets;
+    let sides = [
+        facets.minus[point.facet as usize],
+        facets.plus[point.facet as usize],
+    ];
+    let [one, other] = sides.map(|cell| problem.initial_stress_in(cell as usize));
+    let stress = one.and(other);
     let traction = stress.map_or(DVec3::ZERO, |stress| {
         let place = problem.field_place(point.facet as usize, at);
         stress.at_place(at, &place) * normal

@@ -9,6 +9,7 @@ use crate::assembly::cell_forces;
 use crate::assembly::interface::Interface;
 use crate::assembly::springs;
 use crate::space::Space;
+use crate::space::cell::StrainOffsets;
 
 /// Forces of one load case on all unknowns at load factor 1 (N).
 #[derive(Debug, Clone)]
@@ -65,6 +66,19 @@ impl Loads {
         Self::new(
             cases.map(of_case).collect(),
             negative(space, cell_forces::initial_stress(space)),
+        )
+    }
+
+    /// Forces on the unknowns (N) that balance what the rock does when all points have moved (m),
+    /// and what strains cells beside.
+    pub(crate) fn resistance(
+        space: Space<'_>,
+        displacements: &[DVec3],
+        offsets: &StrainOffsets,
+    ) -> Vec<DVec3> {
+        negative(
+            space,
+            Some(cell_forces::elastic(space, displacements, offsets)),
         )
     }
 

@@ -6,6 +6,7 @@ mod facet_values;
 pub(crate) mod interface;
 pub(crate) mod loads;
 pub(crate) mod rock;
+pub(crate) mod rock_spring;
 pub(crate) mod shared_walls;
 pub(crate) mod springs;
 pub(crate) mod tetrahedra;

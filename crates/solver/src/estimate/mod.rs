@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::newton::Newton;
 use crate::problem::Load;
-use crate::space::cell::{Cell, components};
+use crate::space::cell::{Cell, StrainOffsets, components};
 use crate::system::System;
 use kluft_algebra::LinearFailure;
 use patches::Patches;
@@ -123,12 +123,23 @@ impl Estimator {
 
     /// Estimates the error of the stresses of `displacements` (m), one a point.
     pub fn stress_error(&self, system: &System<'_>, displacements: &[DVec3]) -> StressError {
+        self.error_beside(system, displacements, system.strain_offsets())
+    }
+
+    fn error_beside(
+        &self,
+        system: &System<'_>,
+        displacements: &[DVec3],
+        offsets: &StrainOffsets,
+    ) -> StressError {
         let problem = system.problem;
         let points = &system.discretisation.points;
-        let recovered = self.patches.recover(problem, points, displacements);
-        let of_cell = |cell: usize| {
-            let first = problem.mesh.cells.range(cell).start;
-            let cell = Cell::of(problem, points, displacements, cell);
+        let recovered = self
+            .patches
+            .recover(problem, points, (displacements, offsets));
+        let of_cell = |index: usize| {
+            let first = problem.mesh.cells.range(index).start;
+            let cell = Cell::of(problem, points, displacements, index).strained(offsets, index);
             let (mut error, mut energy, mut whole) = (0.0, 0.0, 0.0);
             let at = |fine: &FinePoint| {
                 let (gradient, volume) =
@@ -181,7 +192,7 @@ impl Estimator {
         interface.add_forces(directions, 1.0, &mut forces);
         let pressed = newton.respond(system, &forces, ROUGH)?;
         let pressed = system.displacements(&pressed, &Load::NONE);
-        let dual = self.stress_error(system, &pressed);
+        let dual = self.error_beside(system, &pressed, &StrainOffsets::default());
         let mut areas = vec![0.0; system.problem.fractures.len()];
         for point in &interface.points {
             areas[point.fracture as usize] += point.area;

@@ -12,7 +12,7 @@ use lie_core::{RulePoint, SymmetricStress, recovery_rule};
 use rayon::prelude::*;
 
 use crate::problem::Problem;
-use crate::space::cell::{self, Cell, components};
+use crate::space::cell::{self, Cell, StrainOffsets, components};
 use crate::space::sector_nodes::SectorNodes;
 use crate::system::Discretisation;
 use kluft_algebra::small::inverse_factor;
@@ -158,11 +158,11 @@ impl Patches {
         &self,
         problem: &Problem,
         points: &SectorNodes,
-        displacements: &[DVec3],
+        (displacements, offsets): (&[DVec3], &StrainOffsets),
     ) -> Recovered {
         let cells = &problem.mesh.cells;
-        let stresses = self.sampled(cells, |cell, sample| {
-            let cell = Cell::of(problem, points, displacements, cell);
+        let stresses = self.sampled(cells, |index, sample| {
+            let cell = Cell::of(problem, points, displacements, index).strained(offsets, index);
             let (gradient, _) = kernel::gradient_at(sample, cell.nodes(), cell.moved());
             components(cell.rock.stress(gradient))
         });

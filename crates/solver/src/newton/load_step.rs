@@ -9,6 +9,10 @@ use super::{Iteration, Newton, Step, StepOutcome, StepRecord};
 use crate::problem::Load;
 use crate::system::{State, System};
 
+/// Iterations that walls may take to slide to rest, against those of an increment: close to the
+/// largest load that friction bears each leaves a fixed share of the way.
+const SETTLING: usize = 8;
+
 impl Newton {
     /// Solves one load step from `state` to `load`. A step that the laws make too difficult or too
     /// coarse is divided.
@@ -31,6 +35,33 @@ impl Newton {
             }
             Err(outcome) => outcome,
         };
+        let seconds = start.elapsed().as_secs_f64();
+        step.finished(outcome, seconds)
+    }
+
+    /// Lets `state` come to rest under the load that it has, as after its laws have changed: in one
+    /// increment, which no division would make shorter, of more iterations than one of a load step.
+    /// `observe` and `state` are as those of [`Self::solve_step`].
+    pub fn settle(
+        &mut self,
+        system: &System<'_>,
+        state: &mut State,
+        mut observe: impl FnMut(usize, &Iteration) -> ControlFlow<()>,
+    ) -> StepRecord {
+        let start = Instant::now();
+        let load = state.load.clone();
+        let mut step = Step::new(system, &load, &mut observe);
+        let most = self.settings.max_iterations;
+        self.settings.max_iterations = SETTLING * most;
+        let outcome = match self.solve_increment(&mut step, state, &load) {
+            Ok(end) => {
+                *state = end;
+                step.record.completed = 1.0;
+                StepOutcome::Converged
+            }
+            Err(outcome) => outcome,
+        };
+        self.settings.max_iterations = most;
         let seconds = start.elapsed().as_secs_f64();
         step.finished(outcome, seconds)
     }

@@ -55,6 +55,8 @@ pub struct Problem {
     pub gravity: DVec3,
     /// Stress before any load.
     pub initial_stress: Option<InitialStress>,
+    /// Cells that came later than the initial stress, and are without it; empty if there are none.
+    pub added: Vec<bool>,
     /// What varies within fractures and parts of the surface.
     pub varying: Varying,
     /// Load cases and load steps.
@@ -76,6 +78,7 @@ impl Problem {
             fixed_points: Vec::new(),
             gravity: DVec3::ZERO,
             initial_stress: None,
+            added: Vec::new(),
             varying: Varying::default(),
             schedule: Schedule::proportional(vec![1.0]),
             facet_quadrature: FacetQuadrature::Nodal,
@@ -92,6 +95,12 @@ impl Problem {
             std::iter::repeat_n(aperture, facets.elements.range(facet).len())
         });
         apertures.collect()
+    }
+
+    /// Stress before any load in a cell, if it has been there as long.
+    pub fn initial_stress_in(&self, cell: usize) -> Option<&InitialStress> {
+        let stress = self.initial_stress.as_ref()?;
+        (!self.added.get(cell).is_some_and(|&added| added)).then_some(stress)
     }
 
     /// Rock of a cell.

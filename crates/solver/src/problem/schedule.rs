@@ -117,7 +117,8 @@ impl Cases {
     }
 }
 
-/// The load cases and the load steps of a problem. It starts at time 0 with nothing acting.
+/// The load cases and the load steps of a problem. It starts at time 0 with nothing acting, unless
+/// it goes on from what another has led to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// What belongs to which case.
@@ -126,6 +127,8 @@ pub struct Schedule {
     pub steps: Vec<Step>,
     /// Whether the times are the user's; if not, they count the steps.
     pub is_timed: bool,
+    /// What acts where it goes on from, if it does.
+    pub goes_on_from: Option<Load>,
     /// Factor on each load case right after time 0, as a flow that takes time sees it; zero where
     /// none stands.
     pub sudden: Vec<f64>,
@@ -145,6 +148,7 @@ impl Schedule {
             cases: Cases::default(),
             steps: steps.collect(),
             is_timed: false,
+            goes_on_from: None,
             sudden: Vec::new(),
         }
     }
@@ -155,12 +159,13 @@ impl Schedule {
         counts.max().unwrap_or(0).max(1)
     }
 
-    /// Before the first step: nothing acts.
+    /// What acts before the first step: nothing at time 0, or what it goes on from.
     pub fn start(&self) -> Load {
-        Load {
+        let nothing = || Load {
             time: 0.0,
             factors: vec![0.0; self.case_count()],
-        }
+        };
+        self.goes_on_from.clone().unwrap_or_else(nothing)
     }
 
     /// What a step begins with whose loads walk in time: what acts right after time 0, or what the

@@ -1,5 +1,7 @@
 //! A cell with what moves it.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat3, DVec3};
 use kluft_mesh::{Mesh, Shape};
 use lie_core::kernel::MAX_NODES;
@@ -7,6 +9,11 @@ use lie_core::{Rock, SymmetricStress};
 
 use crate::problem::Problem;
 use crate::space::sector_nodes::SectorNodes;
+
+/// What strains cells beside the displacement of their points (m), node by node: of cells that were
+/// added after their points had moved, and of cells at points that were several before.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct StrainOffsets(pub(crate) BTreeMap<u32, Vec<DVec3>>);
 
 /// Nodes and displacements of one cell.
 pub(crate) struct Cell<'a> {
@@ -38,6 +45,15 @@ impl<'a> Cell<'a> {
             nodes,
             moved,
         }
+    }
+
+    /// The same, with the displacements that strain it.
+    pub(crate) fn strained(mut self, offsets: &StrainOffsets, cell: usize) -> Self {
+        let own = offsets.0.get(&(cell as u32)).into_iter().flatten();
+        for (moved, offset) in self.moved.iter_mut().zip(own) {
+            *moved += *offset;
+        }
+        self
     }
 
     /// Places of the nodes (m).

@@ -1,6 +1,9 @@
 //! The discrete problem: unknowns, stiffness, loads, and what they make of a state.
 
+mod carried;
 mod discretisation;
+mod spread_displacements;
+mod stage;
 mod state;
 
 use glam::{DMat3, DVec3};
@@ -15,8 +18,12 @@ use crate::assembly::loads::Loads;
 use crate::assembly::{rock, springs};
 use crate::flow::{Coupling, FlowSystem};
 use crate::problem::{Conduit, Flow, Load, Problem};
+use crate::space::cell::StrainOffsets;
 
+use carried::Carried;
 pub use discretisation::Discretisation;
+
+pub use carried::StageEnd;
 pub(crate) use state::StateScales;
 pub use state::{FacetPointState, State};
 
@@ -35,6 +42,10 @@ pub struct System<'a> {
     generation: u32,
     /// Flow that follows the walls, if there is any.
     coupling: Option<Coupling<'a>>,
+    /// What it has from the stage before, if there was one.
+    carried: Option<Carried>,
+    /// What strains cells where nothing is carried: nothing.
+    unstrained: StrainOffsets,
 }
 
 /// Share of the forces of prescribed displacements that counts even if they cancel: rounding.
@@ -53,6 +64,8 @@ impl<'a> System<'a> {
             loads,
             generation: 0,
             coupling: None,
+            carried: None,
+            unstrained: StrainOffsets::default(),
             discretisation,
         }
     }
@@ -68,6 +81,23 @@ impl<'a> System<'a> {
             let pressures = initial_pressures(coupling.flow(), interface);
             interface.set_initial_pressures(self.problem, &pressures);
         }
+    }
+
+    /// Takes `laws`, as [`Self::laws`] has them, with the strength of some fractures divided by a
+    /// factor. Stiffnesses, rock and loads stay; a state reached before serves as a first guess.
+    ///
+    /// # Panics
+    /// If there are not as many laws as before.
+    pub fn weaken(
+        &mut self,
+        laws: &[FractureLaw],
+        factor: f64,
+        is_weakened: impl Fn(usize) -> bool,
+    ) {
+        self.generation += 1;
+        self.discretisation
+            .interface
+            .weaken(laws, factor, is_weakened);
     }
 
     /// Takes other forces instead of those of the problem.
@@ -140,7 +170,7 @@ impl<'a> System<'a> {
     }
 
     /// The state before any load: no displacement, apertures and shear as the initial stress
-    /// leaves them.
+    /// leaves them, or as the stage before does.
     pub fn initial_state(&self) -> State {
         let points = self.discretisation.interface.points.iter();
         let facet_points = points.map(|point| FacetPointState {
@@ -148,6 +178,10 @@ impl<'a> System<'a> {
             jump_residual: DVec3::ZERO,
             history: JointHistory::default(),
         });
+        let facet_points: Vec<FacetPointState> = match &self.carried {
+            Some(carried) => carried.facet_points.clone(),
+            None => facet_points.collect(),
+        };
         let load = self.problem.schedule.start();
         let fluid = self.coupling.as_ref().map(|coupling| {
             let walls = self.discretisation.interface.points.iter();
@@ -157,8 +191,11 @@ impl<'a> System<'a> {
             fluid,
             load,
             unknowns: vec![DVec3::ZERO; self.discretisation.points.len()],
-            facet_points: facet_points.collect(),
-            reached: StateScales::default(),
+            facet_points,
+            reached: self
+                .carried
+                .as_ref()
+                .map_or_else(StateScales::default, |c| c.reached),
             generation: self.generation,
         }
     }
@@ -171,11 +208,10 @@ impl<'a> System<'a> {
         }
         state.generation = self.generation;
         let interface = &self.discretisation.interface;
-        let jumps = interface.jumps(&state.unknowns, &state.load);
+        let jumps = self.seen_jumps(state);
         let points = interface.points.iter().zip(jumps);
-        for ((point, jump), state) in points.zip(&mut state.facet_points) {
+        for ((point, seen), state) in points.zip(&mut state.facet_points) {
             let law = self.law(point);
-            let seen = point.initial_jump() + jump;
             let opening = seen.dot(point.normal);
             let aperture = state.joint.separation.aperture;
             let trial = TrialState {
@@ -217,6 +253,46 @@ impl<'a> System<'a> {
             .into_par_iter()
             .map(|point| supports.apply(point, points.displacement(unknowns, point), load))
             .collect()
+    }
+
+    /// How far all points have moved in a state (m), former stages included.
+    pub fn total_displacements(&self, state: &State) -> Vec<DVec3> {
+        let mut moved = self.displacements(&state.unknowns, &state.load);
+        if let Some(carried) = &self.carried {
+            let pairs = moved.iter_mut().zip(&carried.displacements);
+            pairs.for_each(|(moved, before)| *moved += *before);
+        }
+        moved
+    }
+
+    /// Jumps of the walls in a state (m) since that of initial stress, former stages included.
+    pub(crate) fn total_jumps(&self, state: &State) -> Vec<DVec3> {
+        let interface = &self.discretisation.interface;
+        let mut jumps = interface.jumps(&state.unknowns, &state.load);
+        if let Some(carried) = &self.carried {
+            let pairs = jumps.iter_mut().zip(&carried.jumps);
+            pairs.for_each(|(jump, before)| *jump += *before);
+        }
+        jumps
+    }
+
+    /// Jumps in a state as the laws see them (m): beyond walls without stress.
+    fn seen_jumps(&self, state: &State) -> Vec<DVec3> {
+        let interface = &self.discretisation.interface;
+        let jumps = interface.jumps(&state.unknowns, &state.load).into_iter();
+        let carried = self.carried.as_ref();
+        let seen = jumps.zip(&interface.points).enumerate();
+        seen.map(|(index, (jump, point))| {
+            let before = carried.map(|carried| carried.seen[index]);
+            before.unwrap_or_else(|| point.initial_jump()) + jump
+        })
+        .collect()
+    }
+
+    /// What strains cells beside the displacements of their points.
+    pub(crate) fn strain_offsets(&self) -> &StrainOffsets {
+        let carried = self.carried.as_ref();
+        carried.map_or(&self.unstrained, |carried| &carried.offsets)
     }
 
     /// Forces of the loads on all unknowns (N).

@@ -1,0 +1,402 @@
+//! Phases that remove and add volumes: which cells are there when, of what rock, and what holds the
+//! walls that were cut.
+
+use std::ops::Range;
+
+use kluft_mesh::{Defect, Draft, Faces, Part, SurfaceRole, Whole};
+use kluft_solver::{Discretisation, Load, Problem, StageEnd};
+
+use crate::bind::{Binding, bind_with};
+use crate::bind_probes::probe_defects;
+use crate::history::PhaseEntry;
+use crate::join::{JoinedDraft, join};
+use crate::refine::refine;
+use crate::remedies::in_terms_of_scene;
+use crate::roles::{Roles, find_group, roles};
+use crate::scene::Scene;
+
+/// A scene with stages on a mesh that has the volumes of all of them.
+pub struct Staged<'a> {
+    scene: &'a Scene,
+    whole: Whole,
+    plans: Vec<Plan>,
+    /// What was decided on the way, one line each.
+    pub decisions: Vec<String>,
+    /// What is hardly meant, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// The problem of a stage.
+pub struct StageBinding {
+    /// The problem and what was decided on the way to it.
+    pub binding: Binding,
+    /// Numbers of its cells in the mesh with all volumes, ascending.
+    pub cells: Vec<u32>,
+}
+
+/// What is there in a stage, by sets of groups, and its load steps.
+#[derive(Debug, Clone, PartialEq)]
+struct Plan {
+    steps: Range<usize>,
+    is_there: Vec<bool>,
+    /// Whether sets were added at its beginning.
+    is_new: Vec<bool>,
+    /// Rock of sets that were added as another than their volume.
+    rock: Vec<Option<u32>>,
+    /// Share of what holds the walls at its beginning that still does at the end of its steps.
+    held: Vec<f64>,
+    /// What it changes, in words.
+    says: String,
+}
+
+impl Scene {
+    /// The stages of this scene on a mesh as read.
+    ///
+    /// # Errors
+    /// Every defect of the mesh with all its volumes, names that are no volumes, volumes that are
+    /// removed or added twice, and surfaces with conditions that are inside the rock in all stages.
+    pub fn staged(&self, draft: Draft) -> Result<Staged<'_>, Vec<Defect>> {
+        let faces = Faces::of(&draft);
+        let joined = join(self, draft, faces)?;
+        let inner = joined.faces.inner_surfaces(&joined.draft);
+        let Roles {
+            of_group,
+            decisions,
+            warnings,
+        } = roles(self, &joined.draft, &inner)?;
+        let mut staged = self.staged_on(joined, of_group)?;
+        staged.decisions.extend(decisions);
+        staged.warnings = warnings;
+        Ok(staged)
+    }
+
+    /// The stages on a mesh that has been joined and whose groups have their roles.
+    ///
+    /// # Errors
+    /// As [`Self::staged`].
+    pub fn staged_on(
+        &self,
+        joined: JoinedDraft,
+        roles: Vec<SurfaceRole>,
+    ) -> Result<Staged<'_>, Vec<Defect>> {
+        let inner = joined.faces.inner_surfaces(&joined.draft);
+        let of_whole = roles.iter().zip(inner).map(|(role, inner)| match role {
+            SurfaceRole::Boundary if inner => SurfaceRole::Unused,
+            role => *role,
+        });
+        let of_whole: Vec<SurfaceRole> = of_whole.collect();
+        let refined = refine(self, joined, &of_whole).map_err(in_terms_of_scene)?;
+        let (whole, mesh) =
+            Whole::of(refined.draft, refined.faces, roles).map_err(in_terms_of_scene)?;
+        let plans = Planner::of(self, whole.draft()).plan()?;
+        let mut defects = never_outside(self, &whole, &plans);
+        defects.extend(probe_defects(self, &mesh));
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        Ok(Staged {
+            scene: self,
+            whole,
+            plans,
+            decisions: refined.decisions,
+            warnings: Vec::new(),
+        })
+    }
+}
+
+impl Staged<'_> {
+    /// Number of stages.
+    pub fn count(&self) -> usize {
+        self.plans.len()
+    }
+
+    /// The load steps of a stage.
+    pub fn steps(&self, stage: usize) -> Range<usize> {
+        self.plans[stage].steps.clone()
+    }
+
+    /// What a stage changes, in words.
+    pub fn says(&self, stage: usize) -> &str {
+        &self.plans[stage].says
+    }
+
+    /// The mesh as read, with all volumes.
+    pub fn draft(&self) -> &Draft {
+        self.whole.draft()
+    }
+
+    /// Checks the bodies that phases make; returns what each is like, one line each.
+    ///
+    /// # Errors
+    /// Every defect of their meshes, what does not fit them, and blocks that nothing holds.
+    pub fn check(&self) -> Result<Vec<String>, Vec<Defect>> {
+        let mut defects = Vec::new();
+        let mut lines = Vec::new();
+        for stage in 1..self.count() {
+            match self.line(stage) {
+                Ok(line) => lines.push(line),
+                Err(found) => defects.extend(found),
+            }
+        }
+        match defects.is_empty() {
+            true => Ok(lines),
+            false => Err(defects),
+        }
+    }
+
+    fn line(&self, stage: usize) -> Result<String, Vec<Defect>> {
+        let problem = self.bind(stage, None)?.binding.problem;
+        let held = Discretisation::of(&problem).map_err(in_terms_of_scene);
+        held.map_err(|found| self.in_stage(stage, found))?;
+        let mesh = problem.mesh;
+        Ok(format!(
+            "{}: {} cells, {} fracture facets, {} blocks",
+            self.says(stage),
+            mesh.cells.len(),
+            mesh.facets.elements.len(),
+            mesh.block_count
+        ))
+    }
+
+    /// Defects that show in a stage, with what it changes.
+    pub fn in_stage(&self, stage: usize, mut defects: Vec<Defect>) -> Vec<Defect> {
+        if stage > 0 {
+            for defect in &mut defects {
+                defect.place = format!("{}, {}", self.says(stage), defect.place);
+            }
+        }
+        defects
+    }
+
+    /// Lets the end of the stage before forget what this one has anew, though it was there: a
+    /// phase may remove a volume and add it again.
+    pub fn renew(&self, stage: usize, before: &mut StageEnd) {
+        let sets = &self.whole.draft().cells.group_set;
+        let is_new = &self.plans[stage].is_new;
+        before.forget(|cell| is_new[sets[cell as usize] as usize]);
+    }
+
+    /// The problem of a stage, which goes on from the end of the one before.
+    ///
+    /// # Errors
+    /// Defects of its mesh, and everything in the scene that does not fit it.
+    pub fn bind(
+        &self,
+        stage: usize,
+        before: Option<&StageEnd>,
+    ) -> Result<StageBinding, Vec<Defect>> {
+        let plan = &self.plans[stage];
+        let sets = &self.whole.draft().cells.group_set;
+        let is_there: Vec<bool> = sets.iter().map(|&s| plan.is_there[s as usize]).collect();
+        let named = |defects| self.in_stage(stage, defects);
+        let part = self.whole.part(&is_there).map_err(in_terms_of_scene);
+        let Part { mesh, cells } = part.map_err(named)?;
+        let rock_of = |cell: usize| plan.rock[sets[cells[cell] as usize] as usize];
+        let mut binding = bind_with(self.scene, mesh, rock_of).map_err(named)?;
+        if let Some(end) = before {
+            binding.problem.added = end.added(&cells);
+        }
+        if stage > 0 {
+            plan.hold(&mut binding.problem);
+        }
+        Ok(StageBinding { binding, cells })
+    }
+}
+
+impl Plan {
+    /// Adds the load case of what holds the walls, and where the stage goes on from.
+    fn hold(&self, problem: &mut Problem) {
+        let schedule = &mut problem.schedule;
+        let mut start = match self.steps.start.checked_sub(1) {
+            Some(last) => schedule.steps[last].load.clone(),
+            None => schedule.start(),
+        };
+        start.factors.push(1.0);
+        schedule.goes_on_from = Some(start);
+        for (index, step) in schedule.steps.iter_mut().enumerate() {
+            let own = index.checked_sub(self.steps.start);
+            let held = own.and_then(|own| self.held.get(own).copied());
+            let Load { factors, .. } = &mut step.load;
+            factors.push(held.unwrap_or(1.0));
+        }
+    }
+}
+
+/// Walks through the phases.
+struct Planner<'a> {
+    scene: &'a Scene,
+    draft: &'a Draft,
+    /// Whether each group is there, as far as phases say.
+    groups: Vec<Option<bool>>,
+    is_there: Vec<bool>,
+    is_new: Vec<bool>,
+    rock: Vec<Option<u32>>,
+    defects: Vec<Defect>,
+}
+
+impl<'a> Planner<'a> {
+    fn of(scene: &'a Scene, draft: &'a Draft) -> Self {
+        Self {
+            scene,
+            draft,
+            groups: vec![None; draft.groups.len()],
+            is_there: vec![true; draft.group_sets.len()],
+            is_new: vec![false; draft.group_sets.len()],
+            rock: vec![None; draft.group_sets.len()],
+            defects: Vec::new(),
+        }
+    }
+
+    fn plan(mut self) -> Result<Vec<Plan>, Vec<Defect>> {
+        self.begin();
+        let mut step = 0;
+        let mut plans = vec![self.from(step, String::new())];
+        for phase in self.scene.phases() {
+            if phase.changes() {
+                self.change(phase);
+                plans.push(self.from(step, says(phase)));
+            }
+            step += phase.steps;
+            if let Some(plan) = plans.last_mut() {
+                plan.steps.end = step;
+                let start = plan.held.last().copied().unwrap_or(1.0);
+                let let_go = |done: usize| phase.release * done as f64 / phase.steps as f64;
+                let own = (1..=phase.steps).map(|done| start * (1.0 - let_go(done)));
+                plan.held.extend(own);
+            }
+        }
+        match self.defects.is_empty() {
+            true => Ok(plans),
+            false => Err(self.defects),
+        }
+    }
+
+    /// What is there now, from a load step on.
+    fn from(&mut self, step: usize, says: String) -> Plan {
+        Plan {
+            steps: step..step,
+            is_there: self.is_there.clone(),
+            is_new: std::mem::replace(&mut self.is_new, vec![false; self.draft.group_sets.len()]),
+            rock: self.rock.clone(),
+            held: Vec::new(),
+            says,
+        }
+    }
+
+    /// What is added before it was removed is not there at first.
+    fn begin(&mut self) {
+        let mut seen = Vec::new();
+        for phase in self.scene.phases() {
+            let removed = phase.remove.iter().map(|name| (name, true));
+            let added = phase.add.iter().map(|name| (name, false));
+            for (name, is_there) in removed.chain(added) {
+                if seen.contains(&name) {
+                    continue;
+                }
+                seen.push(name);
+                match find_group(&self.draft.groups, name, 3, &phase.place) {
+                    Ok(group) => self.set(group, is_there, None),
+                    Err(defect) => self.defects.push(defect),
+                }
+            }
+        }
+    }
+
+    fn change(&mut self, phase: &PhaseEntry) {
+        for name in &phase.remove {
+            self.turn(phase, name, false, None);
+        }
+        let rock = phase
+            .added_as
+            .as_ref()
+            .and_then(|name| self.rock(phase, name));
+        for name in &phase.add {
+            self.turn(phase, name, true, rock);
+        }
+    }
+
+    /// The rock that a phase adds something as.
+    fn rock(&mut self, phase: &PhaseEntry, name: &str) -> Option<u32> {
+        let mut rocks = self.scene.rocks.iter();
+        let found = rocks.position(|entry| entry.name == name);
+        if found.is_none() {
+            let problem = format!("`added_as` names a rock `{name}` that the scene has not");
+            let remedy = format!("add a section [rock.{name}], or name another");
+            self.defects
+                .push(Defect::new(&phase.place, problem, remedy));
+        }
+        found.map(|rock| rock as u32)
+    }
+
+    fn turn(&mut self, phase: &PhaseEntry, name: &str, is_there: bool, rock: Option<u32>) {
+        let found = find_group(&self.draft.groups, name, 3, &phase.place);
+        // Names that are no volumes have been reported.
+        let Ok(group) = found else {
+            return;
+        };
+        if self.groups[group] == Some(is_there) {
+            let (problem, remedy) = match is_there {
+                true => (
+                    format!(
+                        "phase \"{}\" adds `{name}`, which is there already",
+                        phase.name
+                    ),
+                    "let an earlier phase remove it, or remove it from `add`",
+                ),
+                false => (
+                    format!(
+                        "phase \"{}\" removes `{name}`, which is not there",
+                        phase.name
+                    ),
+                    "let an earlier phase add it, or remove it from `remove`",
+                ),
+            };
+            self.defects
+                .push(Defect::new(&phase.place, problem, remedy));
+        }
+        self.set(group, is_there, rock);
+    }
+
+    fn set(&mut self, group: usize, is_there: bool, rock: Option<u32>) {
+        self.groups[group] = Some(is_there);
+        for (index, set) in self.draft.group_sets.iter().enumerate() {
+            if set.contains(&group) {
+                self.is_there[index] = is_there;
+                self.is_new[index] = is_there;
+                self.rock[index] = rock;
+            }
+        }
+    }
+}
+
+/// What a phase changes, in words.
+fn says(phase: &PhaseEntry) -> String {
+    let lists = [("removes", &phase.remove), ("adds", &phase.add)].into_iter();
+    let lists = lists.filter(|(_, names)| !names.is_empty());
+    let what = lists.map(|(verb, names)| format!("{verb} {}", names.join(", ")));
+    let what: Vec<String> = what.collect();
+    format!("phase \"{}\" {}", phase.name, what.join(" and "))
+}
+
+/// Conditions on surfaces that have rock on both sides, or on none, in all stages.
+fn never_outside(scene: &Scene, whole: &Whole, plans: &[Plan]) -> Vec<Defect> {
+    let ever = |pair: &[u32; 2]| {
+        plans.iter().any(|plan| {
+            let [one, other] = pair.map(|set| plan.is_there[set as usize]);
+            one != other
+        })
+    };
+    let hidden = whole.inner_boundaries().into_iter();
+    let hidden = hidden.filter(|(_, pairs)| !pairs.iter().any(ever));
+    hidden
+        .filter_map(|(group, _)| {
+            let name = &whole.draft().groups[group].name;
+            let entry = scene.boundaries.iter().find(|entry| entry.name == *name)?;
+            Some(Defect::new(
+                &entry.place,
+                format!("`{name}` lies inside the rock in all phases"),
+                "conditions act on the outer surface; let a phase remove the volume on one side of it",
+            ))
+        })
+        .collect()
+}

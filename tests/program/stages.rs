@@ -1,0 +1,240 @@
+//! Bodies that change between phases, and strength that is reduced: scenes with their oracles,
+//! interruptions, bad input.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::harness::{Workshop, files, kluft, summary};
+
+/// Displacement of a probe after the last load step (m), along the axis.
+fn probe(out: &Path, name: &str, axis: usize) -> f64 {
+    let text = fs::read_to_string(out.join("probes.csv")).expect("probes.csv");
+    let mut rows = text
+        .lines()
+        .filter(|row| row.split(',').nth(3) == Some(name));
+    let last = rows.next_back().expect("a row");
+    let value = last.split(',').nth(8 + axis).expect("a displacement");
+    value.parse().expect("a number")
+}
+
+/// The tolerance is that of the mesh, whose cells of second order are a tenth of the radius.
+const MESH: f64 = 2e-4;
+
+/// What a scene without lining does not need.
+const CONCRETE: &str = "[rock.concrete]\nyoung_modulus = 25e9\npoisson_ratio = 0.2\n\n";
+
+fn assert_near(found: f64, wanted: f64, tolerance: f64) {
+    let off = (found / wanted - 1.0).abs();
+    assert!(
+        off < tolerance,
+        "{found:e} instead of {wanted:e}, {off:e} off"
+    );
+}
+
+/// Kirsch (1898), in a plate that is held at 30 radii; the numbers are in the head of the scene.
+#[test]
+fn a_tunnel_without_lining_converges_as_kirsch_has_it() {
+    let edits = [
+        ("add = [\"ring\"]\nadded_as = \"concrete\"\n", ""),
+        (CONCRETE, ""),
+    ];
+    let out = Workshop::new("lined-tunnel", &edits);
+    let out = out.solve("out", &[]);
+    assert_near(probe(&out, "side", 0), -6.536023e-3, MESH);
+    assert_near(probe(&out, "crown", 2), -2.807796e-3, MESH);
+}
+
+/// A thick ring in elastic rock, loaded by the walls that let go; and by what is left of that where
+/// the ring comes after a part.
+#[test]
+fn a_lining_takes_what_the_walls_let_go_after_it() {
+    let workshop = Workshop::new("lined-tunnel", &[]);
+    let at_once = workshop.solve("out", &[]);
+    assert_near(probe(&at_once, "side", 0), -4.266462e-3, MESH);
+    assert_near(probe(&at_once, "crown", 2), -1.231527e-3, MESH);
+    let phases = "remove = [\"core\", \"ring\"]\nrelease = 0.4\n\n[[load.phase]]\nname = \"lining\"\n\
+                  until = 2\nadd = [\"ring\"]\nadded_as = \"concrete\"\n";
+    let once = "remove = [\"core\", \"ring\"]\nadd = [\"ring\"]\nadded_as = \"concrete\"\n";
+    let later = Workshop::new("lined-tunnel", &[(once, phases)]);
+    let later = later.solve("out", &[]);
+    // The rock has moved by 40 % of Kirsch before, and by 60 % of the lined tunnel after.
+    let [side, crown] = [
+        0.4 * -6.536023e-3 + 0.6 * -4.266462e-3,
+        0.4 * -2.807796e-3 + 0.6 * -1.231527e-3,
+    ];
+    assert_near(probe(&later, "side", 0), side, MESH);
+    assert_near(probe(&later, "crown", 2), crown, MESH);
+}
+
+/// Everything that must not depend on interruptions.
+fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
+    let mut left = files(out);
+    left.retain(|name, _| !name.starts_with(".mesh."));
+    assert!(left.remove("resume.bin").is_some() && left.remove("summary.json").is_some());
+    let mut said = summary(out);
+    let said_of = said.as_object_mut().expect("an object");
+    for key in ["seconds", "peak_memory_bytes", "predicted_memory_bytes"] {
+        assert!(said_of.remove(key).is_some());
+    }
+    // Told again for each body that is assembled again.
+    said_of.remove("decisions");
+    (left, said)
+}
+
+/// A tunnel in jointed rock, in coarse cells.
+fn tunnel() -> Workshop {
+    Workshop::new(
+        "tunnel-stages",
+        &[(
+            "geometry = \"tunnel-stages.geo\"",
+            "geometry = \"tunnel-stages.geo\"\nparameters = { h = 2.5, grow = 0.4 }",
+        )],
+    )
+}
+
+#[test]
+fn a_run_with_stages_is_resumed_to_the_same_bits() {
+    let workshop = tunnel();
+    let whole = outcome(&workshop.solve("whole", &[]));
+    // The same run, whose checkpoint after each load step is resumed from in turn.
+    let scene = workshop.scene();
+    let out = workshop.path("out");
+    let arguments = |flag: &[&str]| -> Vec<std::ffi::OsString> {
+        let fixed = [
+            "run".into(),
+            scene.clone().into_os_string(),
+            "--out".into(),
+            out.clone().into_os_string(),
+        ];
+        let flags = flag.iter().map(|flag| (*flag).into());
+        fixed.into_iter().chain(flags).collect()
+    };
+    let mut child = crate::harness::command(crate::harness::KLUFT)
+        .args(arguments(&[]))
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let grid = out.join("rock_0004.vtu");
+    let begin = std::time::Instant::now();
+    while !grid.exists() && begin.elapsed().as_secs() < 240 {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert!(
+        child.try_wait().expect("a child").is_none(),
+        "it ended before"
+    );
+    child.kill().expect("killed");
+    child.wait().expect("gone");
+    let run = kluft(&arguments(&["--resume", "-v"]));
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("resumed    after step"), "{}", run.out);
+    assert_eq!(outcome(&out), whole);
+}
+
+/// The wedge of the scene, dry and under water, by limit equilibrium.
+#[test]
+fn a_wedge_slides_at_its_factor_of_safety() {
+    let water = "friction_angle = 40\nfluid_pressure = 5e3";
+    let edits = |text: &str| -> Vec<(String, String)> {
+        ["left_joint", "right_joint"]
+            .map(|name| {
+                let head = format!(
+                    "[fracture.{name}]\naperture = 1e-3\nnormal_stiffness = 20e9\n\
+                     shear_stiffness = 10e9\nclosure = \"logarithmic\"\n"
+                );
+                (
+                    format!("{head}friction_angle = 40"),
+                    format!("{head}{text}"),
+                )
+            })
+            .to_vec()
+    };
+    for (text, wanted) in [("friction_angle = 40", 1.414214), (water, 1.186749)] {
+        let edits = edits(text);
+        let edits: Vec<(&str, &str)> = edits.iter().map(|(a, b)| (&a[..], &b[..])).collect();
+        let out = Workshop::new("cliff-wedge", &edits);
+        let out = out.solve("out", &[]);
+        let found = &summary(&out)["strength_reduction"];
+        let [stable, failing] = ["stable", "failing"].map(|key| found[key].as_f64());
+        let (stable, failing) = (stable.expect("a factor"), failing.expect("a factor"));
+        assert!(
+            stable < wanted * 1.0001 && wanted < failing * 1.0001,
+            "{found}"
+        );
+        let said = found["free_blocks"].to_string();
+        assert!(
+            said.contains("left_joint") && said.contains("right_joint"),
+            "{said}"
+        );
+        assert!(out.join("strength_rock.vtu").exists());
+    }
+}
+
+/// Everything that is wrong with phases is said at once, with its place.
+#[test]
+fn wrong_stages_are_refused_by_name() {
+    let edits = [
+        ("add = [\"ring\"]", "add = [\"ring\", \"rock\", \"rings\"]"),
+        ("added_as = \"concrete\"", "added_as = \"concret\""),
+    ];
+    let run = Workshop::new("lined-tunnel", &edits).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.out);
+    for said in [
+        "the mesh has no physical volume `rings`",
+        "adds `rock`, which is there already",
+        "a rock `concret` that the scene has not",
+    ] {
+        assert!(run.err.contains(said), "{said:?} is not in\n{}", run.err);
+    }
+    let early = [
+        (
+            "until = 1\nremove = [\"core\", \"ring\"]\nadd = [\"ring\"]\nadded_as = \"concrete\"",
+            "until = 1\nrelease = 0.5",
+        ),
+        (CONCRETE, ""),
+    ];
+    let run = Workshop::new("lined-tunnel", &early).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.out);
+    assert!(run.err.contains("nothing has been removed"), "{}", run.err);
+}
+
+/// A condition on a surface between two volumes acts where one of them is gone; one that never gets
+/// outside is refused.
+#[test]
+fn surfaces_that_appear_take_their_condition() {
+    let held = [
+        ("add = [\"ring\"]\nadded_as = \"concrete\"\n", ""),
+        (CONCRETE, ""),
+        (
+            "[boundary.far]",
+            "[boundary.wall]\ndisplacement = { x = 0.0, z = 0.0 }\n\n[boundary.far]",
+        ),
+    ];
+    let out = Workshop::new("lined-tunnel", &held);
+    let out = out.solve("out", &[]);
+    // Held where it is, the wall does not move.
+    assert!(probe(&out, "side", 0).abs() < 1e-12);
+    let never = [
+        (
+            "remove = [\"core\", \"ring\"]\nadd = [\"ring\"]\nadded_as = \"concrete\"\n",
+            "remove = [\"core\"]\n",
+        ),
+        (CONCRETE, ""),
+        (
+            "[boundary.far]",
+            "[boundary.wall]\npressure = 1e6\n\n[boundary.far]",
+        ),
+    ];
+    let run = Workshop::new("lined-tunnel", &never).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.out);
+    assert!(
+        run.err
+            .contains("`wall` lies inside the rock in all phases"),
+        "{}",
+        run.err
+    );
+}
