@@ -134,6 +134,9 @@ pub struct RunArgs {
     /// Go on after the last load step that an interrupted run of the same scene finished
     #[arg(long)]
     resume: bool,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     gmsh: GmshArgs,
     /// End when the standard input is closed, as it is when a study dies that runs this
@@ -257,6 +260,7 @@ impl From<RunArgs> for RunOptions {
             threads: args.threads.map(usize::from),
             verbosity: verbosity(args.quiet, args.verbose),
             resume: args.resume,
+            report: !args.no_report,
             is_tied: args.tied,
             gmsh: args.gmsh.into(),
         }

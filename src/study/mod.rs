@@ -9,7 +9,6 @@ mod charts;
 mod dimension;
 mod edits;
 mod files;
-mod machine;
 mod page;
 mod point;
 mod reference;
@@ -25,7 +24,7 @@ use std::path::{Path, PathBuf};
 
 use kluft_io::{sync_folder, write_atomically};
 use kluft_mesh::Defect;
-use kluft_run::{ThreadCount, thread_count};
+use kluft_run::{Machine, ThreadCount, thread_count};
 
 use crate::failure::Failure;
 use crate::gmsh::GmshArgs;
@@ -36,8 +35,8 @@ use crate::stdout::print;
 use assess::{Assessment, assess};
 use files::{PAGE, TABLE};
 use kluft_io::fingerprint_of;
+use kluft_io::gmsh::version;
 use kluft_scene::Scene;
-use machine::Machine;
 use point::{PointOutcome, PointRecord, Runner};
 use settings::StudyPlan;
 use under_way::Study;
@@ -136,7 +135,8 @@ impl Study {
             runner,
             folders,
             records,
-            machine: Machine::this(options.gmsh),
+            machine: Machine::this(),
+            gmsh: version(&options.gmsh.into()).unwrap_or_else(|| "unknown".to_owned()),
             thread_word: word,
             claimed,
         })

@@ -27,6 +27,7 @@ mod probes;
 mod read_back;
 mod refine;
 mod renumbered;
+mod report;
 mod results;
 mod resume;
 mod soak;

@@ -106,6 +106,7 @@ fn check(expected: &Expected) {
         "fractures_0001.vtu",
         "history.csv",
         "mesh.msh",
+        "report.html",
         "resume.bin",
         "rock.pvd",
         "rock_0001.vtu",
@@ -121,8 +122,8 @@ fn check(expected: &Expected) {
 fn check_alike(one: &Path, two: &Path) {
     let (mut ones, mut twos) = (files(one), files(two));
     for files in [&mut ones, &mut twos] {
-        // Both hold seconds.
-        for name in ["summary.json", "resume.bin"] {
+        // They hold seconds.
+        for name in ["summary.json", "resume.bin", "report.html"] {
             assert!(files.remove(name).is_some(), "{name}");
         }
     }
@@ -141,6 +142,8 @@ fn check_alike(one: &Path, two: &Path) {
             "peak_memory_bytes",
             "predicted_memory_bytes",
             "threads",
+            // When it began, and into which folder.
+            "provenance",
         ] {
             let gone = summary.as_object_mut().expect("an object").remove(key);
             assert!(gone.is_some(), "{key}");

@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::checkpoint;
 use crate::flow::SOURCES;
 use crate::history;
+use crate::page;
 use crate::probes;
 
 /// The files that the collections, the summary and the report of an inspection name, and these
@@ -50,6 +51,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
     }
     if read(probes::NAME).is_some_and(|text| probes::is_probes(&text)) {
         names.push(probes::NAME.into());
+    }
+    if read(page::NAME).is_some_and(|text| page::is_page(&text)) {
+        names.push(page::NAME.into());
     }
     if checkpoint::is_checkpoint(&folder.join(checkpoint::NAME)) {
         names.push(checkpoint::NAME.into());

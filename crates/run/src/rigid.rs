@@ -11,7 +11,6 @@ use kluft_solver::{Flow, Problem, Step};
 
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
-use crate::flow_history::FlowHistory;
 use crate::flow_summary;
 use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, integer_field, real_field};
@@ -47,9 +46,8 @@ impl Run<'_> {
         };
         let factor = self.stage(Stage::PrepareSolver, |_| made.factorise());
         factor.map_err(failed)?;
-        let mut history = FlowHistory::default();
         for index in 0..steps {
-            self.flow_step(problem, (&made, &mut history), index)?;
+            self.flow_step(problem, &made, index)?;
         }
         Ok(())
     }
@@ -69,7 +67,7 @@ impl Run<'_> {
     fn flow_step(
         &mut self,
         problem: &Problem,
-        (made, history): (&RunFlow<'_>, &mut FlowHistory),
+        made: &RunFlow<'_>,
         index: usize,
     ) -> Result<(), Interruption> {
         let step: &Step = &problem.schedule.steps[index];
@@ -91,14 +89,15 @@ impl Run<'_> {
         });
         let summary = made.summary(&solved);
         self.summary.measures = flow_summary::measures(&solved.step, &summary.fractures);
-        history.add(index + 1, step, &solved.step, &summary.fractures);
+        let (number, conduits) = (index + 1, &summary.fractures);
+        self.flow_history.add(number, step, &solved.step, conduits);
         self.summary.flow = Some(summary);
         self.stage(Stage::Write, |run| {
             let rock = || rock_grid(problem);
             let fractures = || fracture_grid(&problem.mesh, made, &solved);
             run.output.write_step(step.load.time, rock, fractures)?;
             run.write_sources()?;
-            let text = history.text().as_bytes();
+            let text = run.flow_history.text().as_bytes();
             let write = |path: &Path| write_atomically(path, |out| out.write_all(text));
             if run.output.is_kept() {
                 run.output.write(history::NAME, write)?;

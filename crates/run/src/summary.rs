@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
 use crate::permeability_summary::PermeabilitySummary;
+use crate::provenance::Provenance;
 use crate::spread::Spread;
 
 /// Areas (m^2) of a fracture where the state is not unique, see [`kluft_solver::Determinacy`].
@@ -210,6 +211,8 @@ pub struct Summary {
     pub kluft: &'static str,
     /// Title of the scene.
     pub title: String,
+    /// What it was made with, and of.
+    pub provenance: Provenance,
     /// What the program decided, and why.
     pub decisions: Vec<String>,
     /// What the user should know about the result.
