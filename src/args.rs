@@ -9,6 +9,7 @@ use kluft_network::{Domain, Grouping};
 use crate::gmsh::GmshArgs;
 #[cfg(target_os = "linux")]
 use crate::gmsh::START;
+use crate::init::InitOptions;
 use crate::inspect::InspectOptions;
 use crate::network::NetworkOptions;
 use crate::printing::WIDTH;
@@ -34,6 +35,9 @@ pub struct Cli {
 /// The commands.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Write a scene for a mesh or a geometry, with what its groups suggest
+    #[command(after_help = include_str!("help/init.txt").trim_end())]
+    Init(InitArgs),
     /// Mesh, enrich, solve and write a scene
     #[command(after_help = include_str!("help/run.txt").trim_end())]
     Run(RunArgs),
@@ -58,10 +62,29 @@ pub enum Command {
         #[arg(value_enum, default_value = "scene")]
         document: SchemaOf,
     },
+    /// Print what lets a shell complete commands and options
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual, a page of man(1)
+    Man,
     /// Become gmsh
     #[cfg(target_os = "linux")]
     #[command(name = START, hide = true)]
     StartGmsh(StartArgs),
+}
+
+/// Arguments of `kluft init`.
+#[derive(Args)]
+pub struct InitArgs {
+    /// A mesh (.msh) or a geometry (.geo) of gmsh
+    pub input: PathBuf,
+    /// The scene to write [default: `scene.toml` beside the input]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    gmsh: GmshArgs,
 }
 
 /// A document that has a schema.
@@ -88,7 +111,7 @@ impl From<SchemaOf> for Document {
 /// Arguments of `kluft study`.
 #[derive(Args)]
 pub struct StudyArgs {
-    /// The scene file (TOML)
+    /// The scene file (TOML), or the folder that holds it
     pub scene: PathBuf,
     /// Folder for the results [default: `study` beside the scene]
     #[arg(long, value_name = "DIR")]
@@ -122,7 +145,7 @@ fn share(text: &str) -> Result<f64, String> {
 /// Arguments of `kluft run`.
 #[derive(Args)]
 pub struct RunArgs {
-    /// The scene file (TOML)
+    /// The scene file (TOML), or the folder that holds it
     pub scene: PathBuf,
     /// Folder for the results [default: `out` beside the scene]
     #[arg(long, value_name = "DIR")]
@@ -241,7 +264,7 @@ fn verbosity(quiet: bool, verbose: bool) -> Verbosity {
 /// Arguments of `kluft inspect`.
 #[derive(Args)]
 pub struct InspectArgs {
-    /// The scene file (TOML), or a gmsh mesh (.msh)
+    /// The scene file (TOML), the folder that holds it, or a gmsh mesh (.msh)
     pub input: PathBuf,
     /// Print the report as JSON
     #[arg(long)]
@@ -251,6 +274,15 @@ pub struct InspectArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     gmsh: GmshArgs,
+}
+
+impl From<InitArgs> for InitOptions {
+    fn from(args: InitArgs) -> Self {
+        Self {
+            out: args.out,
+            gmsh: args.gmsh.into(),
+        }
+    }
 }
 
 impl From<RunArgs> for RunOptions {

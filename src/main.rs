@@ -7,12 +7,14 @@ mod defects;
 mod explain;
 mod failure;
 mod gmsh;
+mod init;
 mod input;
 mod inspect;
 mod network;
 mod printing;
 mod report;
 mod run;
+mod shell;
 #[cfg(target_os = "linux")]
 mod start_gmsh;
 mod stdout;
@@ -26,12 +28,15 @@ use args::{Cli, Command};
 
 fn main() -> ExitCode {
     let done = match arguments().command {
+        Command::Init(args) => init::init(&args.input.clone(), &args.into()),
         Command::Run(args) => run::run(&args.scene.clone(), &args.into()),
         Command::Network(args) => network::make_network(&args.input.clone(), &args.into()),
         Command::Inspect(args) => inspect::inspect(&args.input.clone(), &args.into()),
         Command::Study(args) => study::study(&args.scene.clone(), &args.into()),
         Command::Explain { key } => explain::explain(key.as_deref()),
         Command::Schema { document } => explain::print_schema(document.into()),
+        Command::Completions { shell } => shell::print_completions(shell),
+        Command::Man => shell::print_manual(),
         #[cfg(target_os = "linux")]
         Command::StartGmsh(args) => return start_gmsh::start(&args),
     };

@@ -10,7 +10,7 @@ use kluft_run::{
 use kluft_scene::Scene;
 
 use crate::failure::Failure;
-use crate::input::expect_scene;
+use crate::input::{expect_scene, scene_at};
 use crate::report::{Report, Verbosity};
 
 /// How to run a scene.
@@ -41,6 +41,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     if options.is_tied {
         end_with_standard_input();
     }
+    let scene_file = &scene_at(scene_file)?;
     expect_scene(scene_file)?;
     let text = Scene::text(scene_file)?;
     let scene = Scene::parse_file(scene_file, &text)?;

@@ -28,7 +28,7 @@ use kluft_run::{Machine, ThreadCount, thread_count};
 
 use crate::failure::Failure;
 use crate::gmsh::GmshArgs;
-use crate::input::expect_scene;
+use crate::input::{expect_scene, scene_at};
 use crate::printing::{lines, one_line};
 use crate::report::{Report, Verbosity};
 use crate::stdout::print;
@@ -103,6 +103,7 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
 
 impl Study {
     fn begin(scene_file: &Path, options: &StudyOptions) -> Result<Self, Failure> {
+        let scene_file = &scene_at(scene_file)?;
         expect_scene(scene_file)?;
         let text = Scene::text(scene_file)?;
         let plan = StudyPlan::read(scene_file, &text)?;

@@ -67,6 +67,7 @@ fn a_star_of_joints_has_its_rates() {
         "history.csv",
         "mesh.msh",
         "report.html",
+        "results.vtm",
         "rock.pvd",
         "rock_0001.vtu",
         "sources.csv",

@@ -53,7 +53,9 @@ fn a_run_leaves_a_page_with_what_it_was_made_of_and_what_came_out() {
     let made = &said["provenance"];
     assert_eq!(made["gmsh"], gmsh_version(), "what gmsh says itself");
     let inputs = made["inputs"].as_array().expect("files");
-    let sums = inputs.iter().map(|input| input["xxh3_128"].as_str().expect("a sum"));
+    let sums = inputs
+        .iter()
+        .map(|input| input["xxh3_128"].as_str().expect("a sum"));
     let shown = [made["command"].as_str(), made["began"].as_str()];
     for text in sums.chain(shown.map(|text| text.expect("a text"))) {
         assert!(page.contains(text), "{text}");
@@ -115,7 +117,11 @@ fn a_page_that_no_run_has_written_stays() {
     fs::write(workshop.path("out/report.html"), "mine").expect("written");
     let run = workshop.run("out", &[]);
     assert_eq!(run.code, Some(2));
-    assert!(run.err.contains("report.html") && run.err.contains("--out"), "{}", run.err);
+    assert!(
+        run.err.contains("report.html") && run.err.contains("--out"),
+        "{}",
+        run.err
+    );
     assert_eq!(page(&workshop.path("out")), "mine");
     assert_eq!(workshop.run("out", &["--no-report"]).code, Some(0));
     assert_eq!(page(&workshop.path("out")), "mine");

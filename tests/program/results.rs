@@ -107,6 +107,7 @@ fn check(expected: &Expected) {
         "history.csv",
         "mesh.msh",
         "report.html",
+        "results.vtm",
         "resume.bin",
         "rock.pvd",
         "rock_0001.vtu",
@@ -184,7 +185,7 @@ fn check_rock(found: &Value, said: &Value, expected: &Expected) {
     );
     check_finite(
         found,
-        &["displacement"],
+        &["displacement", "node"],
         &["rock", "stress", "stress_error"],
     );
     if let Some(stress) = expected.stress {
@@ -229,6 +230,7 @@ fn check_fractures(found: &Value, said: &Value, folder: &Path) {
         "normal_traction",
         "opening",
         "slip",
+        "slip_tendency",
         "state",
         "traction",
     ];

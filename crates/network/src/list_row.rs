@@ -147,6 +147,7 @@ impl<'a> Row<'a> {
             "z",
             "dip",
             "dip_direction",
+            "strike",
             "radius",
             "semi_major",
             "semi_minor",
@@ -176,7 +177,7 @@ impl<'a> Row<'a> {
 pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
     let outline = match row.text("shape") {
         Some("polygon") => return through_points(row),
-        Some("disc") => disc(row),
+        Some("disc" | "disk") => disc(row),
         Some("ellipse") => ellipse(row),
         Some("rectangle") => rectangle(row),
         Some(other) => {
@@ -200,12 +201,7 @@ pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
         |dip| (0.0..=90.0).contains(&dip),
         "an angle from 0 to 90 degrees",
     );
-    let turn = |angle: f64| (-360.0..=360.0).contains(&angle);
-    let dip_direction = row.number(
-        "dip_direction",
-        turn,
-        "an angle in degrees, clockwise from north",
-    );
+    let dip_direction = dip_direction(row);
     let orientation = Orientation {
         dip: dip?,
         dip_direction: dip_direction?,
@@ -217,6 +213,22 @@ pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
     ))
 }
 
+/// The dip direction, or by the right-hand rule the strike and a quarter turn: who looks along the
+/// strike has the dip on the right.
+fn dip_direction(row: &mut Row<'_>) -> Option<f64> {
+    let turn = |angle: f64| (-360.0..=360.0).contains(&angle);
+    let wanted = "an angle in degrees, clockwise from north";
+    if row.text("strike").is_none() {
+        return row.number("dip_direction", turn, wanted);
+    }
+    if row.text("dip_direction").is_some() {
+        let remedy = "write one of them";
+        row.refuse("strike", "there is a dip direction as well", remedy);
+    }
+    let strike = row.number("strike", turn, wanted)?;
+    Some((strike + 90.0) % 360.0)
+}
+
 fn disc(row: &mut Row<'_>) -> Option<Outline> {
     row.unused(
         "disc",
@@ -226,6 +238,7 @@ fn disc(row: &mut Row<'_>) -> Option<Outline> {
             "z",
             "dip",
             "dip_direction",
+            "strike",
             "radius",
             "rotation",
             "sides",
@@ -246,6 +259,7 @@ fn ellipse(row: &mut Row<'_>) -> Option<Outline> {
         "z",
         "dip",
         "dip_direction",
+        "strike",
         "semi_major",
         "semi_minor",
         "rotation",
@@ -271,6 +285,7 @@ fn rectangle(row: &mut Row<'_>) -> Option<Outline> {
             "z",
             "dip",
             "dip_direction",
+            "strike",
             "length",
             "width",
             "rotation",

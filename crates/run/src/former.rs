@@ -11,6 +11,9 @@ use crate::history;
 use crate::page;
 use crate::probes;
 
+/// The list of the grids of the last load step.
+pub const TOGETHER: &str = "results.vtm";
+
 /// The files that the collections, the summary and the report of an inspection name, and these
 /// themselves. What nothing names is not ours.
 pub fn named_files(folder: &Path) -> Vec<String> {
@@ -22,6 +25,11 @@ pub fn named_files(folder: &Path) -> Vec<String> {
             names.extend(grids);
             names.push(collection);
         }
+    }
+    // The list of the last load step, beside the collections that list its grids too.
+    let of_last = "type=\"vtkMultiBlockDataSet\"";
+    if !names.is_empty() && read(TOGETHER).is_some_and(|text| text.contains(of_last)) {
+        names.push(TOGETHER.into());
     }
     let json = |name: &str, key: &str| -> Option<Value> {
         let value: Value = serde_json::from_str(&read(name)?).ok()?;

@@ -42,6 +42,7 @@ mod checkpoint;
 mod crack_front;
 mod decisions;
 mod doubts;
+mod facts;
 mod failures;
 mod flow;
 mod flow_history;

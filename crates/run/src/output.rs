@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use kluft_io::{ClaimedFolder, Grid, fingerprint_of, sync_folder, write_pvd, write_vtu};
+use kluft_io::{
+    About, ClaimedFolder, Grid, fingerprint_of, sync_folder, write_pvd, write_vtm, write_vtu_with,
+};
 use kluft_mesh::Defect;
 use kluft_report::Surface;
 use rayon::prelude::*;
@@ -10,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::checkpoint::{self, StepFiles};
 use crate::flow::SOURCES;
-use crate::former;
+use crate::former::{self, TOGETHER};
 use crate::history;
 use crate::page::{self, Shown};
 use crate::probes;
@@ -19,13 +21,15 @@ use crate::probes;
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
 
 /// Files of every run beside the grids of its load steps.
-pub const OWN: [&str; 5] = [
+pub const OWN: [&str; 6] = [
     SUMMARY,
     history::NAME,
     checkpoint::NAME,
     COLLECTIONS[0],
     COLLECTIONS[1],
+    TOGETHER,
 ];
+
 
 /// The numbers of a run.
 pub const SUMMARY: &str = "summary.json";
@@ -41,6 +45,8 @@ pub struct Output {
     fractures: Vec<(f64, String)>,
     /// The sums of the grids of each load step.
     sums: Vec<StepFiles>,
+    /// What the grids say of themselves, but their times.
+    about: About,
     /// Whether what the page shows is kept.
     shows: bool,
     /// What the page shows: the load step that was written last.
@@ -91,6 +97,7 @@ impl Output {
             rock: Vec::new(),
             fractures: Vec::new(),
             sums: Vec::new(),
+            about: About::default(),
             shows: false,
             shown: None,
         }
@@ -100,6 +107,11 @@ impl Output {
     #[must_use]
     pub fn with_page(self, shows: bool) -> Self {
         Self { shows, ..self }
+    }
+
+    /// Lets the grids say these facts of themselves.
+    pub fn tell(&mut self, facts: Vec<(String, i32)>) {
+        self.about.facts = facts;
     }
 
     /// What the page shows, if a load step was written.
@@ -278,6 +290,7 @@ impl Output {
             return Ok(());
         }
         let [rock, fractures] = names(self.rock.len() + 1);
+        self.about.time = Some(time);
         let of_rock = || {
             let grid = rock_grid();
             let body = box_of(&grid.points);
@@ -299,13 +312,19 @@ impl Output {
         for (name, entries) in COLLECTIONS.into_iter().zip([&self.rock, &self.fractures]) {
             self.write(name, |path| write_pvd(path, entries))?;
         }
-        Ok(())
+        let last = self.rock.last().zip(self.fractures.last());
+        let Some(((_, rock), (_, fractures))) = last else {
+            return Ok(());
+        };
+        let blocks = [("rock", rock.as_str()), ("fractures", fractures.as_str())];
+        self.write(TOGETHER, |path| write_vtm(path, &blocks))
     }
 
     /// Writes a grid that is not yet published, and sums up its bytes.
     fn write_grid(&self, name: &str, grid: Grid) -> Result<u128, Defect> {
         let unfinished = self.unfinished(name);
-        let written = write_vtu(&unfinished, grid).and_then(|()| fingerprint_of(&unfinished));
+        let written = write_vtu_with(&unfinished, grid, &self.about)
+            .and_then(|()| fingerprint_of(&unfinished));
         written.map_err(|defect| Defect {
             place: self.path(name).display().to_string(),
             ..defect
@@ -329,7 +348,7 @@ fn box_of(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
 fn is_of_run(name: &str) -> bool {
     let tables = [history::NAME, probes::NAME, SOURCES];
     tables.contains(&name)
-        || [checkpoint::NAME, page::NAME].contains(&name)
+        || [checkpoint::NAME, page::NAME, TOGETHER].contains(&name)
         || former::is_step(name)
 }
 

@@ -37,6 +37,7 @@ impl<'a> Saving<'a> {
             names.push(SOURCES);
         }
         let mut output = Output::prepare(folder, &names, &[])?.with_page(true);
+        output.tell(summary.facts.clone());
         output.expect_steps(summary.steps.len())?;
         output.remove_former().map_err(|defect| vec![defect])?;
         Ok(Self {

@@ -15,6 +15,7 @@ use kluft_solver::{
 
 use crate::checkpoint::{self, Identity};
 use crate::decisions;
+use crate::facts::facts;
 use crate::failures;
 use crate::flow_history::FlowHistory;
 use crate::history::History;
@@ -246,6 +247,15 @@ impl<'a> Run<'a> {
     fn bind(&mut self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let mut binding = self.request.scene.problem(draft)?;
         self.summary.decisions.append(&mut binding.decisions);
+        let rocks: Vec<&str> = self
+            .request
+            .scene
+            .rocks
+            .iter()
+            .map(|r| r.name.as_str())
+            .collect();
+        self.summary.facts = facts(&self.summary, &rocks, &binding.problem.mesh.fractures);
+        self.output.tell(self.summary.facts.clone());
         self.doubts = std::mem::take(&mut binding.warnings);
         self.summary.warnings.clone_from(&self.doubts);
         let mesh = &binding.problem.mesh;

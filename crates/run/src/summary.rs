@@ -213,6 +213,9 @@ pub struct Summary {
     pub title: String,
     /// What it was made with, and of.
     pub provenance: Provenance,
+    /// What the grids say of themselves: facts, each with its number.
+    #[serde(skip)]
+    pub facts: Vec<(String, i32)>,
     /// What the program decided, and why.
     pub decisions: Vec<String>,
     /// What the user should know about the result.
