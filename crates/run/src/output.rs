@@ -30,7 +30,6 @@ pub const OWN: [&str; 6] = [
     TOGETHER,
 ];
 
-
 /// The numbers of a run.
 pub const SUMMARY: &str = "summary.json";
 
