@@ -33,16 +33,16 @@ pub struct InitOptions {
 /// # Errors
 /// [`Failure::BadInput`] with every defect of geometry and mesh, or a scene that is there already.
 pub fn init(input: &Path, options: &InitOptions) -> Result<(), Failure> {
-    let beside = || input.with_file_name(SCENE);
-    let file = options.out.clone().unwrap_or_else(beside);
-    if std::fs::symlink_metadata(&file).is_ok() {
-        return Err(there_already(&file).into());
-    }
     let is_geometry = match (is_mesh(input), is_geometry(input)) {
         (true, _) => false,
         (false, true) => true,
         (false, false) => return Err(neither(input).into()),
     };
+    let beside = || input.with_file_name(SCENE);
+    let file = options.out.clone().unwrap_or_else(beside);
+    if std::fs::symlink_metadata(&file).is_ok() {
+        return Err(there_already(&file).into());
+    }
     let mesh = mesh(input, is_geometry, &options.gmsh)?;
     let survey = Survey::of(&mesh);
     let source = Source {

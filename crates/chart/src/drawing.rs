@@ -45,6 +45,8 @@ const ROOM: (i32, i32, i32) = (80, 50, 52);
 const EDGE: i32 = 5;
 /// Free right of a chart whose names are below (pixels).
 const RIGHT: i32 = 25;
+/// Between the title of the lower axis and names below it (pixels).
+const GAP: i32 = 8;
 /// Height of text (pixels).
 const TEXT: f64 = 15.0;
 /// Distance between names (pixels).
@@ -86,7 +88,7 @@ impl Layout {
     fn whole(self, chart: &Chart) -> Place {
         let (width, height) = (ROOM.0 + self.size.0, ROOM.1 + self.size.1 + ROOM.2);
         match self.below {
-            true => (width + RIGHT, height + LINE * names(chart) as i32),
+            true => (width + RIGHT, height + GAP + LINE * names(chart) as i32),
             false => (width + beside_width(chart), height),
         }
     }
@@ -316,7 +318,7 @@ impl Sheet<'_, '_> {
         let wanted: Vec<i32> = ends.iter().map(|end| end.2).collect();
         let (heights, left) = match self.layout.below {
             true => {
-                let first = bottom + (ROOM.2 + LINE / 2) * UNIT;
+                let first = bottom + (ROOM.2 + GAP + LINE / 2) * UNIT;
                 let lines = (0..ends.len() as i32).map(|line| first + line * LINE * UNIT);
                 (lines.collect(), 30 * UNIT)
             }

@@ -48,7 +48,10 @@ impl Scale {
     pub fn words(&self, unit: &str) -> Vec<String> {
         let (low, high) = (f64::from(self.low), f64::from(self.high));
         let (factor, unit) = prefixed(low.abs().max(high.abs()), unit);
-        let number = |value: f64| significant(value / factor).replace('-', "−");
+        let largest = low.abs().max(high.abs());
+        // Rounding beside values that count.
+        let shown = |value: f64| if value.abs() > f64::from(SAME) * largest { value } else { 0.0 };
+        let number = |value: f64| significant(shown(value) / factor).replace('-', "−");
         let mark = |is_beyond: bool, sign: &str| {
             if is_beyond {
                 format!("{sign} ")
@@ -124,6 +127,7 @@ mod tests {
         assert_eq!(words(&[-7e6, 0.0], "Pa"), ["−7.00 MPa", "0 MPa"]);
         assert_eq!(words(&[2.5e-4; 3], "m"), ["250 µm"]);
         assert_eq!(words(&[0.0; 3], "m"), ["0 m"]);
+        assert_eq!(words(&[1e-13, 9e5], "Pa"), ["0 kPa", "900 kPa"]);
         assert_eq!(words(&[1.0, f32::NAN, 1.000_000_1], "m"), ["1.00 m"]);
     }
 

@@ -22,17 +22,12 @@ const SCENE: usize = 200_000;
 /// Most decisions and warnings.
 const MOST_LINES: usize = 100;
 /// Fields that are drawn where they are, with their names and units.
-const FIELDS: [(&str, &str, &str); 6] = [
+const FIELDS: [(&str, &str, &str); 5] = [
     ("aperture", "Aperture", "m"),
     ("normal_traction", "Normal traction", "Pa"),
     ("slip", "Slip", "m"),
     ("pressure", "Fluid pressure", "Pa"),
     ("hydraulic_aperture", "Hydraulic aperture", "m"),
-    (
-        "state",
-        "State: 0 open, 1 closed, 2 slipping, 3 below the cutoff",
-        "",
-    ),
 ];
 /// Pictures of a page.
 const MOST_PICTURES: usize = 4;
@@ -47,7 +42,7 @@ pub struct Shown {
 }
 
 /// The fields that pages draw.
-pub fn fields() -> [&'static str; 6] {
+pub fn fields() -> [&'static str; 5] {
     FIELDS.map(|(name, ..)| name)
 }
 
@@ -147,7 +142,7 @@ impl Told<'_> {
         page.heading("Fractures after the last load step");
         page.pictures(&pictures);
         page.remark(&format!(
-            "{}; z is up. Tension is positive. `rock.pvd` and `fractures.pvd` open in ParaView.",
+            "{}; z is up. Tension is positive. results.vtm opens in ParaView.",
             frame.caption()
         ));
     }
