@@ -14,5 +14,5 @@ mod view;
 
 pub use page::{Page, Table, escaped};
 pub use picture::{Frame, Picture};
-pub use scale::quantity;
+pub use scale::{prefixed, quantity};
 pub use surface::Surface;

@@ -70,7 +70,7 @@ impl Scale {
 }
 
 /// A multiple of a unit that suits a size, and its name.
-fn prefixed(size: f64, unit: &str) -> (f64, String) {
+pub fn prefixed(size: f64, unit: &str) -> (f64, String) {
     const PREFIXES: [(f64, &str); 7] = [
         (1e9, "G"),
         (1e6, "M"),

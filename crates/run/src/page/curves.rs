@@ -1,6 +1,7 @@
 //! Curves over the load steps.
 
 use kluft_chart::{Axis, Chart, Series};
+use kluft_report::prefixed;
 
 use crate::summary::StepSummary;
 
@@ -9,21 +10,19 @@ const MOST_SERIES: usize = 8;
 /// Points of a curve; more cannot be seen.
 const MOST_POINTS: usize = 60;
 /// Columns that are charted where they are, with their titles.
-const COLUMNS: [(&str, &str, &str); 5] = [
-    ("aperture_mean", "Mean aperture", "aperture (m)"),
-    (
-        "normal_traction_mean",
-        "Mean normal traction",
-        "traction (Pa)",
-    ),
-    ("slip_mean", "Mean slip", "slip (m)"),
-    ("pressure_mean", "Mean fluid pressure", "pressure (Pa)"),
-    (
-        "hydraulic_aperture_mean",
-        "Mean hydraulic aperture",
-        "aperture (m)",
-    ),
+const COLUMNS: [(&str, &str, Measured); 5] = [
+    ("aperture_mean", "Mean aperture", APERTURE),
+    ("normal_traction_mean", "Mean normal traction", ("traction", "Pa")),
+    ("slip_mean", "Mean slip", ("slip", "m")),
+    ("pressure_mean", "Mean fluid pressure", ("pressure", "Pa")),
+    ("hydraulic_aperture_mean", "Mean hydraulic aperture", APERTURE),
 ];
+
+/// What an axis measures, and its unit.
+type Measured = (&'static str, &'static str);
+
+const APERTURE: Measured = ("aperture", "m");
+const TIME: Measured = ("time", "");
 
 /// A value of a fracture after each load step: names, and times with values.
 type Curves = Vec<(String, Vec<(f64, f64)>)>;
@@ -34,7 +33,7 @@ pub fn of_history(text: &str) -> Vec<Chart> {
     let over_time = COLUMNS.iter().filter_map(|(column, title, axis)| {
         let curves = curves(text, column);
         let varies = curves.iter().any(|(_, points)| spread(points) > 0.0);
-        varies.then(|| chart(&format!("{title} of fractures"), ["time", axis], curves))
+        varies.then(|| chart(&format!("{title} of fractures"), [TIME, *axis], curves))
     });
     let mut charts: Vec<Chart> = over_time.collect();
     charts.extend(closure(text));
@@ -50,7 +49,7 @@ pub fn of_sources(steps: &[StepSummary]) -> Option<Chart> {
         }
     }
     let varies = curves.iter().any(|(_, points)| points.len() > 1);
-    varies.then(|| chart("Inflow", ["time", "rate (m³/s)"], curves))
+    varies.then(|| chart("Inflow", [TIME, ("rate", "m³/s")], curves))
 }
 
 /// Compression over aperture.
@@ -66,10 +65,10 @@ fn closure(text: &str) -> Option<Chart> {
     let varies = curves
         .iter()
         .any(|(_, points)| points.len() > 2 && spread(points) > 0.0);
-    varies.then(|| chart("Closure", ["aperture (m)", "compression (Pa)"], curves))
+    varies.then(|| chart("Closure", [APERTURE, ("compression", "Pa")], curves))
 }
 
-fn chart(title: &str, [across, up]: [&str; 2], curves: Curves) -> Chart {
+fn chart(title: &str, axes: [Measured; 2], curves: Curves) -> Chart {
     let count = curves.len();
     let mut best = curves;
     // A curve that moves says more than one that does not; ties keep the order of the file.
@@ -79,11 +78,25 @@ fn chart(title: &str, [across, up]: [&str; 2], curves: Curves) -> Chart {
         0 => title.to_owned(),
         left => format!("{title} ({left} more move less)"),
     };
-    let series = best.into_iter();
-    let series = series.map(|(name, points)| Series::line(shortened(&name), thinned(points)));
+    let points = || best.iter().flat_map(|(_, points)| points);
+    let (across, x) = scaled(axes[0], points().map(|point| point.0));
+    let (up, y) = scaled(axes[1], points().map(|point| point.1));
+    let series = best.iter().map(|(name, points)| {
+        let points = thinned(points).map(|(a, b)| (a / across, b / up));
+        Series::line(shortened(name), points.collect())
+    });
     Chart {
         series: series.collect(),
-        ..Chart::new(title, Axis::linear(across), Axis::linear(up))
+        ..Chart::new(title, Axis::linear(x), Axis::linear(y))
+    }
+}
+
+/// A multiple of a unit that suits values, and the title of their axis.
+fn scaled((what, unit): Measured, values: impl Iterator<Item = f64>) -> (f64, String) {
+    let (factor, unit) = prefixed(values.map(f64::abs).fold(0.0, f64::max), unit);
+    match unit.is_empty() {
+        true => (factor, what.to_owned()),
+        false => (factor, format!("{what} ({unit})")),
     }
 }
 
@@ -126,13 +139,12 @@ fn spread(points: &[(f64, f64)]) -> f64 {
 }
 
 /// Every so many points, and the last.
-fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+fn thinned(points: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> {
     let every = points.len().div_ceil(MOST_POINTS).max(1);
     let last = points.len().saturating_sub(1);
-    let kept = points.into_iter().enumerate();
-    kept.filter(|(i, _)| i % every == 0 || *i == last)
+    let kept = points.iter().copied().enumerate();
+    kept.filter(move |(i, _)| i % every == 0 || *i == last)
         .map(|(_, point)| point)
-        .collect()
 }
 
 /// A name that fits below a chart.
@@ -163,14 +175,15 @@ mod tests {
             "Closure",
         ];
         assert_eq!(titles, wanted);
-        assert_eq!(
-            charts[0].series[0].points,
-            [(0.5, 3e-4), (1.0, 2e-4), (1.5, 1e-4)]
-        );
-        assert_eq!(
-            charts[2].series[0].points,
-            [(3e-4, 1e6), (2e-4, 2e6), (1e-4, 4e6)]
-        );
+        let close = |chart: usize, wanted: [(f64, f64); 3]| {
+            let pairs = charts[chart].series[0].points.iter().zip(wanted);
+            let off = pairs.map(|(a, b)| (a.0 - b.0).abs() + (a.1 - b.1).abs());
+            off.fold(0.0, f64::max) < 1e-9
+        };
+        assert!(close(0, [(0.5, 300.0), (1.0, 200.0), (1.5, 100.0)]));
+        assert_eq!(charts[0].y.title, "aperture (µm)");
+        assert!(close(2, [(300.0, 1.0), (200.0, 2.0), (100.0, 4.0)]));
+        assert_eq!(charts[2].y.title, "compression (MPa)");
     }
 
     #[test]
