@@ -78,7 +78,12 @@ fn what_cannot_be_assumed_is_said() {
     fs::write(&mesh, include_str!("bad_input/base.msh")).expect("written");
     assert_eq!(on("init", &mesh).code, Some(0));
     let text = fs::read_to_string(folder.path().join("scene.toml")).expect("a scene");
-    for part in ["# [boundary.top]", "not flat", "[[fixed_point]]", "pressure"] {
+    for part in [
+        "# [boundary.top]",
+        "not flat",
+        "[[fixed_point]]",
+        "pressure",
+    ] {
         assert!(text.contains(part), "{part}:\n{text}");
     }
 }

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use crate::xml::escape;
 
-/// Facts about a grid. Readers other than VTK's know no texts there, so that a fact is the name of a
-/// number: `fracture fault` is the number of the fracture `fault`, `title My scene` is 1.
+/// Facts about a grid. Readers other than VTK's know no texts there, so that a fact is the name of
+/// a number: `fracture fault` is the number of the fracture `fault`, `title My scene` is 1.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct About {
     /// The time that it speaks of.

@@ -10,9 +10,10 @@ mod picture;
 mod raster;
 mod scale;
 mod surface;
+mod text;
 mod view;
 
-pub use page::{Page, Table, escaped};
+pub use page::{Page, Table};
 pub use picture::{Frame, Picture};
 pub use scale::{prefixed, quantity};
 pub use surface::Surface;

@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use kluft_io::printable::lines;
-
 use crate::picture::Picture;
+use crate::text::escaped;
 
 const STYLE: &str = include_str!("page.css");
 /// Of axes and text in charts; on a page they take the colour of its text.
@@ -192,22 +191,6 @@ fn inline(svg: &str, title: &str) -> String {
         .map_or("", |(_, rest)| rest.trim_end());
     let named = format!("<svg role=\"img\" aria-label=\"{}\" ", escaped(title));
     named + &svg.replace(INK, "\"currentColor\"")
-}
-
-/// Text in which nothing is markup, and nothing commands who prints the page.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in lines(text).chars() {
-        match c {
-            '&' => out += "&amp;",
-            '<' => out += "&lt;",
-            '>' => out += "&gt;",
-            '"' => out += "&quot;",
-            '\'' => out += "&#39;",
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 
 use crate::colours;
-use crate::page::escaped;
 use crate::raster::Raster;
 use crate::scale::Scale;
 use crate::surface::{Surface, bounds};
+use crate::text::escaped;
 use crate::view::View;
 
 /// Of a picture (pixels).

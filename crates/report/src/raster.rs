@@ -41,7 +41,7 @@ impl Raster {
     pub fn add(&mut self, triangle: u32, [a, b, c]: [DVec3; 3]) {
         let (ab, ac) = (b - a, c - a);
         let twice = ab.x * ac.y - ab.y * ac.x;
-        if !(twice.abs() > 0.0) {
+        if twice == 0.0 || !twice.is_finite() {
             return;
         }
         let span = |low: f64, high: f64, count: usize| {

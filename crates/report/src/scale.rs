@@ -50,7 +50,13 @@ impl Scale {
         let (factor, unit) = prefixed(low.abs().max(high.abs()), unit);
         let largest = low.abs().max(high.abs());
         // Rounding beside values that count.
-        let shown = |value: f64| if value.abs() > f64::from(SAME) * largest { value } else { 0.0 };
+        let shown = |value: f64| {
+            if value.abs() > f64::from(SAME) * largest {
+                value
+            } else {
+                0.0
+            }
+        };
         let number = |value: f64| significant(shown(value) / factor).replace('-', "−");
         let mark = |is_beyond: bool, sign: &str| {
             if is_beyond {

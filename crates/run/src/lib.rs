@@ -37,6 +37,7 @@
 mod accuracy;
 mod adapt;
 mod advance;
+mod begin;
 mod cases;
 mod checkpoint;
 mod crack_front;

@@ -13,6 +13,7 @@ use kluft_solver::{
     Workload,
 };
 
+use crate::begin::provenance;
 use crate::checkpoint::{self, Identity};
 use crate::decisions;
 use crate::facts::facts;
@@ -26,7 +27,7 @@ use crate::output::{Output, SUMMARY};
 use crate::page::{self, Iterations, Told};
 use crate::prepare::{self, MeshFile};
 use crate::probes::ProbeTable;
-use crate::provenance::{InputFile, Provenance};
+use crate::provenance::InputFile;
 use crate::request::{MeshInput, Request};
 use crate::resume::FormerRun;
 use crate::summary::{MeshSummary, Seconds, StepMeasures, Summary, UnknownSummary};
@@ -117,7 +118,7 @@ impl<'a> Run<'a> {
         let mut summary = Summary {
             kluft: env!("CARGO_PKG_VERSION"),
             title: request.scene.title.clone(),
-            provenance: Provenance::of(&request, &identity),
+            provenance: provenance(&request, &identity),
             threads: rayon::current_num_threads(),
             ..Summary::default()
         };

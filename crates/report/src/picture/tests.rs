@@ -1,3 +1,5 @@
+//! Pictures of a wall in a cube.
+
 use kluft_io::{Field, Grid, Values};
 use kluft_mesh::Shape;
 

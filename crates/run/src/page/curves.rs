@@ -12,10 +12,18 @@ const MOST_POINTS: usize = 60;
 /// Columns that are charted where they are, with their titles.
 const COLUMNS: [(&str, &str, Measured); 5] = [
     ("aperture_mean", "Mean aperture", APERTURE),
-    ("normal_traction_mean", "Mean normal traction", ("traction", "Pa")),
+    (
+        "normal_traction_mean",
+        "Mean normal traction",
+        ("traction", "Pa"),
+    ),
     ("slip_mean", "Mean slip", ("slip", "m")),
     ("pressure_mean", "Mean fluid pressure", ("pressure", "Pa")),
-    ("hydraulic_aperture_mean", "Mean hydraulic aperture", APERTURE),
+    (
+        "hydraulic_aperture_mean",
+        "Mean hydraulic aperture",
+        APERTURE,
+    ),
 ];
 
 /// What an axis measures, and its unit.

@@ -1,3 +1,5 @@
+//! Pages of hostile and of large runs.
+
 use super::*;
 use crate::flow_summary::{SourceFlow, StepFlow};
 use crate::measure::Measure;
