@@ -10,6 +10,7 @@ use crate::gmsh::GmshArgs;
 #[cfg(target_os = "linux")]
 use crate::gmsh::START;
 use crate::import::ImportOptions;
+use crate::init::InitOptions;
 use crate::inspect::InspectOptions;
 use crate::network::NetworkOptions;
 use crate::printing::WIDTH;
@@ -35,6 +36,9 @@ pub struct Cli {
 /// The commands.
 #[derive(Subcommand)]
 pub enum Command {
+    /// Write a scene for a mesh or a geometry, with what its groups suggest
+    #[command(after_help = include_str!("help/init.txt").trim_end())]
+    Init(InitArgs),
     /// Mesh, enrich, solve and write a scene
     #[command(after_help = include_str!("help/run.txt").trim_end())]
     Run(RunArgs),
@@ -61,10 +65,29 @@ pub enum Command {
         #[arg(value_enum, default_value = "scene")]
         document: SchemaOf,
     },
+    /// Print what lets a shell complete commands and options
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual, a page of man(1)
+    Man,
     /// Become gmsh
     #[cfg(target_os = "linux")]
     #[command(name = START, hide = true)]
     StartGmsh(StartArgs),
+}
+
+/// Arguments of `kluft init`.
+#[derive(Args)]
+pub struct InitArgs {
+    /// A mesh (.msh) or a geometry (.geo) of gmsh
+    pub input: PathBuf,
+    /// The scene to write [default: `scene.toml` beside the input]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    gmsh: GmshArgs,
 }
 
 /// A document that has a schema.
@@ -91,7 +114,7 @@ impl From<SchemaOf> for Document {
 /// Arguments of `kluft study`.
 #[derive(Args)]
 pub struct StudyArgs {
-    /// The scene file (TOML)
+    /// The scene file (TOML), or the folder that holds it
     pub scene: PathBuf,
     /// Folder for the results [default: `study` beside the scene]
     #[arg(long, value_name = "DIR")]
@@ -125,7 +148,7 @@ fn share(text: &str) -> Result<f64, String> {
 /// Arguments of `kluft run`.
 #[derive(Args)]
 pub struct RunArgs {
-    /// The scene file (TOML)
+    /// The scene file (TOML), or the folder that holds it
     pub scene: PathBuf,
     /// Folder for the results [default: `out` beside the scene]
     #[arg(long, value_name = "DIR")]
@@ -137,6 +160,9 @@ pub struct RunArgs {
     /// Go on after the last load step that an interrupted run of the same scene finished
     #[arg(long)]
     resume: bool,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     gmsh: GmshArgs,
     /// End when the standard input is closed, as it is when a study dies that runs this
@@ -257,7 +283,7 @@ pub struct ImportArgs {
 /// Arguments of `kluft inspect`.
 #[derive(Args)]
 pub struct InspectArgs {
-    /// The scene file (TOML), or a gmsh mesh (.msh)
+    /// The scene file (TOML), the folder that holds it, or a gmsh mesh (.msh)
     pub input: PathBuf,
     /// Print the report as JSON
     #[arg(long)]
@@ -269,6 +295,15 @@ pub struct InspectArgs {
     gmsh: GmshArgs,
 }
 
+impl From<InitArgs> for InitOptions {
+    fn from(args: InitArgs) -> Self {
+        Self {
+            out: args.out,
+            gmsh: args.gmsh.into(),
+        }
+    }
+}
+
 impl From<RunArgs> for RunOptions {
     fn from(args: RunArgs) -> Self {
         Self {
@@ -276,6 +311,7 @@ impl From<RunArgs> for RunOptions {
             threads: args.threads.map(usize::from),
             verbosity: verbosity(args.quiet, args.verbose),
             resume: args.resume,
+            report: !args.no_report,
             is_tied: args.tied,
             gmsh: args.gmsh.into(),
         }

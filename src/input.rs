@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use kluft_mesh::Defect;
 
@@ -62,6 +62,58 @@ pub fn expect_scene(path: &Path) -> Result<(), Defect> {
     }
 }
 
+/// The scene that a path means: the file itself, or the scene in a folder.
+///
+/// # Errors
+/// A folder with no scene, or with several of which none is called `scene.toml`.
+pub fn scene_at(path: &Path) -> Result<PathBuf, Defect> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let usual = path.join("scene.toml");
+    if usual.is_file() {
+        return Ok(usual);
+    }
+    let mut found = scenes_in(path);
+    match (found.pop(), found.is_empty()) {
+        (Some(only), true) => Ok(only),
+        (None, _) => Err(refusal(FileKind::Folder, path)),
+        (Some(last), false) => {
+            found.push(last);
+            let names: Vec<String> = found
+                .iter()
+                .map(|file| file.display().to_string())
+                .collect();
+            let remedy = format!("give one of {}", names.join(", "));
+            let problem = "this folder holds several scenes";
+            Err(Defect::new(path.display().to_string(), problem, remedy))
+        }
+    }
+}
+
+/// The files in a folder that have the section of a mesh, in the order of their names.
+fn scenes_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.map(|entry| entry.path());
+    let is_toml = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
+    let has_mesh = |file: &PathBuf| {
+        let text = std::fs::read_to_string(file).unwrap_or_default();
+        text.lines()
+            .any(|line| line.trim_start().starts_with("[mesh"))
+            && text
+                .lines()
+                .any(|line| line.trim_start().starts_with("[fracture."))
+    };
+    let mut found: Vec<PathBuf> = files.filter(is_toml).filter(has_mesh).collect();
+    found.sort();
+    found
+}
+
+/// Whether a file is a geometry of gmsh, by its name.
+pub fn is_geometry(path: &Path) -> bool {
+    of_name(path) == Some(FileKind::Geometry)
+}
+
 /// Whether a file is a mesh of gmsh, by its name or by its first line.
 pub fn is_mesh(path: &Path) -> bool {
     path.extension().is_some_and(|end| end == "msh") || kind_of(path) == Some(FileKind::Mesh)
@@ -112,21 +164,19 @@ fn refusal(kind: FileKind, path: &Path) -> Defect {
                    scene: `[mesh] file = \"mesh.msh\"`";
     let (what, remedy) = match kind {
         FileKind::Folder => (
-            "a folder",
-            format!(
-                "give the scene file in it, e.g. {}",
-                path.join("scene.toml").display()
-            ),
+            "a folder without a scene",
+            "give a scene file, or make one: `kluft init` writes it for a mesh or a geometry"
+                .into(),
         ),
         FileKind::Mesh => (
             "a mesh of gmsh",
             format!(
-                "`kluft inspect {shown}` looks at it; to run, write a scene with `[mesh] file = \"{name}\"`"
+                "`kluft inspect {shown}` looks at it; `kluft init {shown}` writes a scene with `[mesh] file = \"{name}\"`"
             ),
         ),
         FileKind::Geometry => (
             "a geometry",
-            format!("write a scene with `[mesh] geometry = \"{name}\"`, rock, fractures and loads"),
+            format!("`kluft init {shown}` writes a scene with `[mesh] geometry = \"{name}\"`"),
         ),
         FileKind::Vtk => (
             "a file of VTK",

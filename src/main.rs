@@ -8,12 +8,14 @@ mod explain;
 mod failure;
 mod gmsh;
 mod import;
+mod init;
 mod input;
 mod inspect;
 mod network;
 mod printing;
 mod report;
 mod run;
+mod shell;
 #[cfg(target_os = "linux")]
 mod start_gmsh;
 mod stdout;
@@ -27,6 +29,7 @@ use args::{Cli, Command};
 
 fn main() -> ExitCode {
     let done = match arguments().command {
+        Command::Init(args) => init::init(&args.input.clone(), &args.into()),
         Command::Run(args) => run::run(&args.scene.clone(), &args.into()),
         Command::Network(args) => network::make_network(&args.input.clone(), &args.into()),
         Command::Import(args) => import::import(&args.input.clone(), &args.into()),
@@ -34,6 +37,8 @@ fn main() -> ExitCode {
         Command::Study(args) => study::study(&args.scene.clone(), &args.into()),
         Command::Explain { key } => explain::explain(key.as_deref()),
         Command::Schema { document } => explain::print_schema(document.into()),
+        Command::Completions { shell } => shell::print_completions(shell),
+        Command::Man => shell::print_manual(),
         #[cfg(target_os = "linux")]
         Command::StartGmsh(args) => return start_gmsh::start(&args),
     };

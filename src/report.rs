@@ -2,8 +2,9 @@
 
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use clap::builder::styling::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressStyle};
 use kluft_run::{FractureSummary, Measure, Observer, Stage, StepStart};
 use kluft_solver::Iteration;
@@ -28,6 +29,16 @@ const ROWS: usize = 30;
 /// Characters of a name in it.
 const NAME: usize = 16;
 
+/// The kind of entry that stands out.
+const WARNING: &str = "warning";
+const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
+
+/// Whether the user has not asked for none (https://no-color.org).
+fn wants_colours() -> bool {
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    set("NO_COLOR").is_none() && set("TERM").is_none_or(|term| term != "dumb")
+}
+
 /// Where the report goes.
 pub struct Report {
     speaks: bool,
@@ -35,6 +46,10 @@ pub struct Report {
     /// Whether long lines are broken; those of a log are searched.
     wraps: bool,
     spinner: Option<ProgressBar>,
+    /// Whether kinds that warn have a colour.
+    colours: bool,
+    /// When the first load step began, and its number.
+    began: Option<(Instant, usize)>,
 }
 
 impl Report {
@@ -51,6 +66,8 @@ impl Report {
             verbose: verbosity == Verbosity::Verbose,
             wraps: terminal,
             spinner: None,
+            colours: terminal && wants_colours(),
+            began: None,
         }
     }
 
@@ -75,9 +92,16 @@ impl Report {
     /// Prints one line of a named kind.
     pub fn entry(&self, kind: &str, text: &str) {
         let line = format!("{kind:<INDENT$} {}", one_line(text));
-        match self.wraps {
-            true => self.print(&wrapped(&line, INDENT + 1)),
-            false => self.print(&line),
+        let line = match self.wraps {
+            true => wrapped(&line, INDENT + 1),
+            false => line,
+        };
+        match line
+            .strip_prefix(kind)
+            .filter(|_| self.colours && kind == WARNING)
+        {
+            Some(rest) => self.print(&format!("{YELLOW}{kind}{YELLOW:#}{rest}")),
+            None => self.print(&line),
         }
     }
 
@@ -132,6 +156,19 @@ impl Report {
                 &format!("{fracture}: {what} {:.3} % off", 100.0 * error),
             );
         }
+    }
+}
+
+/// How long the steps that are left take, if they are like those that are done; nothing before one
+/// is done, and for less than some seconds.
+fn left(passed: Duration, done: usize, steps: usize) -> String {
+    const WORTH_SAYING: f64 = 5.0;
+    let seconds = passed.as_secs_f64() / done as f64 * steps as f64;
+    match seconds {
+        seconds if done == 0 || seconds < WORTH_SAYING => String::new(),
+        seconds if seconds < 100.0 => format!(" (about {seconds:.0} s left)"),
+        seconds if seconds < 6000.0 => format!(" (about {:.0} min left)", seconds / 60.0),
+        seconds => format!(" (about {:.1} h left)", seconds / 3600.0),
     }
 }
 
@@ -201,7 +238,9 @@ impl Observer for Report {
             what,
         } = step;
         self.line("");
-        self.line(&format!("step {number} of {count}, {what}"));
+        let (began, first) = *self.began.get_or_insert((Instant::now(), number));
+        let left = left(began.elapsed(), number - first, count + 1 - number);
+        self.line(&format!("step {number} of {count}, {what}{left}"));
         self.line(
             "  iteration  force balance      increment  closure error  smallest aperture [m]",
         );
@@ -252,6 +291,16 @@ mod tests {
             aperture_uncertainty: None,
             slip_uncertainty: None,
         }
+    }
+
+    #[test]
+    fn what_is_left_is_told_in_units_that_suit() {
+        let seconds = Duration::from_secs;
+        assert_eq!(left(seconds(60), 0, 9), "");
+        assert_eq!(left(seconds(1), 2, 4), "");
+        assert_eq!(left(seconds(10), 2, 8), " (about 40 s left)");
+        assert_eq!(left(seconds(600), 2, 3), " (about 15 min left)");
+        assert_eq!(left(seconds(3600), 1, 2), " (about 2.0 h left)");
     }
 
     #[test]

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use kluft_io::GmshOptions;
 use kluft_run::{
-    Ending, MeshInput, Origin, Outcome, Request, ThreadCount, folder_for, pool, thread_count,
+    Caller, Ending, MeshInput, Origin, Outcome, REPORT, Request, ThreadCount, folder_for, pool,
+    thread_count,
 };
 use kluft_scene::Scene;
 
 use crate::failure::Failure;
-use crate::input::expect_scene;
+use crate::input::{expect_scene, scene_at};
 use crate::report::{Report, Verbosity};
 
 /// How to run a scene.
@@ -23,6 +24,8 @@ pub struct RunOptions {
     pub verbosity: Verbosity,
     /// Whether to go on after the last load step that an interrupted run of the scene finished.
     pub resume: bool,
+    /// Whether to write `report.html`.
+    pub report: bool,
     /// Whether to end when the standard input is closed.
     pub is_tied: bool,
     /// How gmsh is started, and what a geometry may do.
@@ -38,6 +41,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     if options.is_tied {
         end_with_standard_input();
     }
+    let scene_file = &scene_at(scene_file)?;
     expect_scene(scene_file)?;
     let text = Scene::text(scene_file)?;
     let scene = Scene::parse_file(scene_file, &text)?;
@@ -59,6 +63,11 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
         }),
         resume: options.resume,
         keep_results: false,
+        report: options.report,
+        caller: Caller {
+            command: Some(&command()),
+            commit: option_env!("KLUFT_COMMIT"),
+        },
         gmsh: options.gmsh.clone(),
     };
     let outcome = kluft_run::run(request, &mut report)?;
@@ -69,6 +78,21 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
         Ending::Solved | Ending::NothingLeft => Ok(()),
         Ending::NotConverged(why) => Err(Failure::NotConverged(why)),
         Ending::Stopped => Err(Failure::NotConverged("the run was stopped".into())),
+    }
+}
+
+/// How the program was called, such that a shell takes it.
+fn command() -> String {
+    let words = std::env::args_os().map(|word| quoted(&word.to_string_lossy()));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:+@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
     }
 }
 
@@ -99,5 +123,27 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
         let fractures = folder.join("fractures.pvd");
         let text = format!("{} and {}", rock.display(), fractures.display());
         report.entry("open", &text);
+    }
+    let page = folder.join(REPORT);
+    if page.exists() {
+        report.entry("page", &page.display().to_string());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_read_more_into_them() {
+        assert_eq!(quoted("--out=a/b-1.5"), "--out=a/b-1.5");
+        for (word, wanted) in [
+            ("", "''"),
+            ("a b", "'a b'"),
+            ("it's", r"'it'\''s'"),
+            ("$x", "'$x'"),
+        ] {
+            assert_eq!(quoted(word), wanted);
+        }
     }
 }

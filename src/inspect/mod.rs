@@ -19,7 +19,7 @@ use kluft_mesh::{Defect, Draft, Faces, Mesh, SurfaceRole, Survey, outer_surfaces
 use kluft_solver::{Discretisation, FlowWorkload, Problem, Workload};
 
 use crate::failure::Failure;
-use crate::input::{expect_scene, is_mesh};
+use crate::input::{expect_scene, is_mesh, scene_at};
 use crate::printing;
 use crate::stdout::print;
 use kluft_run::{
@@ -55,7 +55,8 @@ pub struct InspectOptions {
 /// in spite of them is printed before.
 pub fn inspect(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
     let pool = pool(thread_count(None).count).map_err(|defect| Failure::Machine(vec![defect]))?;
-    pool.install(|| inspect_here(input, options))
+    let input = scene_at(input)?;
+    pool.install(|| inspect_here(&input, options))
 }
 
 /// Inspects on the present thread pool.

@@ -91,6 +91,7 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
         threads: None,
         verbosity: options.verbosity,
         resume: false,
+        report: true,
         is_tied: false,
         gmsh: options.gmsh.clone(),
     };

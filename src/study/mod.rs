@@ -9,7 +9,6 @@ mod charts;
 mod dimension;
 mod edits;
 mod files;
-mod machine;
 mod page;
 mod point;
 mod reference;
@@ -25,19 +24,19 @@ use std::path::{Path, PathBuf};
 
 use kluft_io::{sync_folder, write_atomically};
 use kluft_mesh::Defect;
-use kluft_run::{ThreadCount, thread_count};
+use kluft_run::{Machine, ThreadCount, thread_count};
 
 use crate::failure::Failure;
 use crate::gmsh::GmshArgs;
-use crate::input::expect_scene;
+use crate::input::{expect_scene, scene_at};
 use crate::printing::{lines, one_line};
 use crate::report::{Report, Verbosity};
 use crate::stdout::print;
 use assess::{Assessment, assess};
 use files::{PAGE, TABLE};
 use kluft_io::fingerprint_of;
+use kluft_io::gmsh::version;
 use kluft_scene::Scene;
-use machine::Machine;
 use point::{PointOutcome, PointRecord, Runner};
 use settings::StudyPlan;
 use under_way::Study;
@@ -104,6 +103,7 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
 
 impl Study {
     fn begin(scene_file: &Path, options: &StudyOptions) -> Result<Self, Failure> {
+        let scene_file = &scene_at(scene_file)?;
         expect_scene(scene_file)?;
         let text = Scene::text(scene_file)?;
         let plan = StudyPlan::read(scene_file, &text)?;
@@ -136,7 +136,8 @@ impl Study {
             runner,
             folders,
             records,
-            machine: Machine::this(options.gmsh),
+            machine: Machine::this(),
+            gmsh: version(&options.gmsh.into()).unwrap_or_else(|| "unknown".to_owned()),
             thread_word: word,
             claimed,
         })

@@ -167,6 +167,7 @@ impl Runner {
                     "run",
                     "--quiet",
                     "--tied",
+                    "--no-report",
                     "--threads",
                     &self.threads.to_string(),
                 ])

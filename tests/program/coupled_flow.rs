@@ -64,7 +64,7 @@ fn a_filling_joint_is_the_same_on_any_threads() {
     let one = workshop.solve("one", &["--threads", "1"]);
     let two = workshop.solve("two", &["--threads", "2"]);
     let (mut ones, mut twos) = (files(&one), files(&two));
-    for name in ["summary.json", "resume.bin"] {
+    for name in ["summary.json", "resume.bin", "report.html"] {
         assert!(
             ones.remove(name).is_some() && twos.remove(name).is_some(),
             "{name}"

@@ -154,6 +154,13 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
+/// Takes the files that hold times off those of a folder.
+pub fn without_times(files: &mut BTreeMap<String, Vec<u8>>) {
+    for name in ["summary.json", "report.html"] {
+        assert!(files.remove(name).is_some(), "{name}");
+    }
+}
+
 /// `summary.json` of a folder of results.
 pub fn summary(folder: &Path) -> Value {
     let text = fs::read_to_string(folder.join("summary.json")).expect("summary.json");

@@ -238,7 +238,7 @@ fn what_is_no_scene_is_told_in_one_sentence() {
         ),
         (file("scene.toml", b"\x7fELF\0\0\0\xff"), "binary data"),
         (file("list.csv", b"name,set\n"), "kluft network"),
-        (inside, "a folder"),
+        (inside, "a folder without a scene"),
     ];
     for command in ["run", "inspect", "study"] {
         for (path, named) in &others {

@@ -28,8 +28,9 @@ fn every_load_step_is_an_entry_of_the_collections() {
     assert!(steps.iter().all(|step| step["converged"] == json!(true)));
     assert_eq!(
         files(&out).len(),
-        12,
-        "three steps, the mesh, two collections, a summary, a history, a checkpoint"
+        14,
+        "three steps, the mesh, two collections, the last step in one, a summary, a page, a history, \
+         a checkpoint"
     );
 }
 
@@ -68,8 +69,9 @@ fn a_step_that_cannot_converge_leaves_the_ones_before() {
     assert_eq!(converged, [&json!(true), &json!(true), &json!(false)]);
     assert_eq!(
         files(&out).len(),
-        10,
-        "two steps, the mesh, two collections, a summary, a history, a checkpoint"
+        12,
+        "two steps, the mesh, two collections, the last step in one, a summary, a page, a history, \
+         a checkpoint"
     );
 }
 

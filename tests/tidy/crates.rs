@@ -8,7 +8,7 @@ use crate::Violation;
 const PROGRAM: &str = "kluft";
 
 /// Every package of ours with those that it may depend on.
-const ALLOWED: [(&str, &[&str]); 15] = [
+const ALLOWED: [(&str, &[&str]); 16] = [
     ("kluft-defect", &[]),
     ("kluft-algebra", &[]),
     ("kluft-chart", &[]),
@@ -18,6 +18,7 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     ("lie-core", &["kluft-mesh"]),
     ("kluft-network", &["kluft-defect"]),
     ("kluft-io", &["kluft-defect", "kluft-mesh"]),
+    ("kluft-report", &["kluft-io", "kluft-mesh"]),
     (
         "kluft-solver",
         &[
@@ -42,9 +43,11 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     (
         "kluft-run",
         &[
+            "kluft-chart",
             "kluft-defect",
             "kluft-io",
             "kluft-mesh",
+            "kluft-report",
             "kluft-scene",
             "kluft-solver",
             "lie-core",
@@ -69,6 +72,7 @@ const ALLOWED: [(&str, &[&str]); 15] = [
             "kluft-keys",
             "kluft-mesh",
             "kluft-network",
+            "kluft-report",
             "kluft-run",
             "kluft-scene",
             "kluft-solver",

@@ -6,8 +6,6 @@ use plotters::coord::ranged1d::{
     KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter as Formatter,
 };
 
-/// Most ticks on an axis.
-const MOST_TICKS: usize = 11;
 /// Logarithmic axes of fewer decades have ticks between the powers of ten.
 const FEW_DECADES: f64 = 2.0;
 /// Free space beyond the outermost values, as a share of their range.
@@ -75,8 +73,8 @@ impl Axis {
         }
     }
 
-    /// The range of the axis for values it takes.
-    pub(super) fn over(&self, values: impl Iterator<Item = f64>) -> Spanned {
+    /// The range of the axis for values it takes, with so many ticks at most.
+    pub(super) fn over(&self, values: impl Iterator<Item = f64>, most_ticks: usize) -> Spanned {
         let forth = |value: f64| self.scale.forth(self.at(value));
         let places: Vec<f64> = values
             .filter(|&value| self.takes(value))
@@ -97,6 +95,7 @@ impl Axis {
         Spanned {
             scale: self.scale,
             floor: self.floor,
+            most_ticks,
             counts: places.iter().all(|place| place.fract() == 0.0),
             low: low - MARGIN * width,
             high: high + MARGIN * width,
@@ -125,6 +124,7 @@ impl Scale {
 pub(super) struct Spanned {
     scale: Scale,
     floor: Option<f64>,
+    most_ticks: usize,
     /// Whether all values are whole, so that ticks between whole numbers would mean nothing.
     counts: bool,
     low: f64,
@@ -142,11 +142,11 @@ impl Spanned {
     fn ticks(&self) -> Vec<f64> {
         let range = self.high - self.low;
         let step = match self.scale {
-            Scale::Linear if self.counts => nice_step(range).max(1.0),
-            Scale::Linear => nice_step(range),
+            Scale::Linear if self.counts => self.nice_step(range).max(1.0),
+            Scale::Linear => self.nice_step(range),
             Scale::Logarithmic if self.is_narrow() => return self.ticks_within_a_decade(),
             Scale::Logarithmic if range < FEW_DECADES => return self.ticks_within_decades(),
-            Scale::Logarithmic => whole_step(range),
+            Scale::Logarithmic => self.whole_step(range),
         };
         let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
         let count = (last - first) as usize;
@@ -171,7 +171,7 @@ impl Spanned {
     fn ticks_within_a_decade(&self) -> Vec<f64> {
         let (low, high) = (self.scale.back(self.low), self.scale.back(self.high));
         // Labels with decimals are long.
-        let step = nice_step(2.0 * (high - low));
+        let step = self.nice_step(2.0 * (high - low));
         let (first, last) = ((low / step).ceil(), (high / step).floor());
         (0..=(last - first) as usize)
             .map(|i| (first + i as f64) * step)
@@ -182,6 +182,19 @@ impl Spanned {
     fn is_plain(&self) -> bool {
         let (low, high) = (self.scale.back(self.low), self.scale.back(self.high));
         (1e-2..1e5).contains(&low.abs().max(high.abs()))
+    }
+
+    /// 1, 2 or 5 times a power of ten, so that a range has few enough ticks.
+    fn nice_step(&self, range: f64) -> f64 {
+        let power = 10.0_f64.powf((range / self.most_ticks as f64).log10().floor());
+        let fits = |step: &f64| range / step <= self.most_ticks as f64;
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
+        steps.into_iter().find(fits).unwrap_or(10.0 * power)
+    }
+
+    /// Whole decades, so that a range has few enough ticks.
+    fn whole_step(&self, range: f64) -> f64 {
+        (range / self.most_ticks as f64).ceil().max(1.0)
     }
 
     fn label(&self, value: f64) -> String {
@@ -196,19 +209,6 @@ impl Spanned {
             _ => text,
         }
     }
-}
-
-/// 1, 2 or 5 times a power of ten, so that a range has at most eleven ticks.
-fn nice_step(range: f64) -> f64 {
-    let power = 10.0_f64.powf((range / MOST_TICKS as f64).log10().floor());
-    let fits = |step: &f64| range / step <= MOST_TICKS as f64;
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
-    steps.into_iter().find(fits).unwrap_or(10.0 * power)
-}
-
-/// Whole decades, so that a range has at most eleven ticks.
-fn whole_step(range: f64) -> f64 {
-    (range / MOST_TICKS as f64).ceil().max(1.0)
 }
 
 /// Without the rounding that sums of steps leave.
@@ -275,9 +275,9 @@ mod tests {
 
     #[test]
     fn ticks_are_powers_of_ten_at_most_eleven() {
-        let axis = Axis::logarithmic("error").over([3e-14, 2e5].into_iter());
+        let axis = Axis::logarithmic("error").over([3e-14, 2e5].into_iter(), 11);
         let ticks = axis.ticks();
-        assert!(ticks.len() <= MOST_TICKS && ticks.len() >= 5, "{ticks:?}");
+        assert!(ticks.len() <= 11 && ticks.len() >= 5, "{ticks:?}");
         let labels: Vec<String> = ticks.iter().map(|&tick| axis.label(tick)).collect();
         assert!(labels.contains(&"10⁻¹²".to_owned()), "{labels:?}");
         assert!(labels.contains(&"10⁰".to_owned()), "{labels:?}");
@@ -285,7 +285,7 @@ mod tests {
 
     #[test]
     fn linear_ticks_are_round_and_start_at_zero() {
-        let axis = Axis::linear("iterations").over([3.0, 26.0].into_iter());
+        let axis = Axis::linear("iterations").over([3.0, 26.0].into_iter(), 11);
         let labels: Vec<String> = axis.ticks().iter().map(|&tick| axis.label(tick)).collect();
         assert_eq!(labels[0], "0");
         assert_eq!(labels[1], "5");
@@ -295,7 +295,7 @@ mod tests {
 
     #[test]
     fn few_decades_have_ticks_between() {
-        let axis = Axis::logarithmic("error").over([3e-3, 0.06].into_iter());
+        let axis = Axis::logarithmic("error").over([3e-3, 0.06].into_iter(), 11);
         let labels: Vec<String> = axis.ticks().iter().map(|&tick| axis.label(tick)).collect();
         assert_eq!(labels, ["5·10⁻³", "10⁻²", "2·10⁻²", "5·10⁻²"]);
     }
@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn less_than_a_decade_has_ticks_too() {
         let labels = |low: f64, high: f64| -> Vec<String> {
-            let axis = Axis::logarithmic("unknowns").over([low, high].into_iter());
+            let axis = Axis::logarithmic("unknowns").over([low, high].into_iter(), 11);
             axis.ticks().iter().map(|&tick| axis.label(tick)).collect()
         };
         assert_eq!(labels(0.28, 0.42), ["0.3", "0.35", "0.4"]);
@@ -315,7 +315,7 @@ mod tests {
     #[test]
     fn small_and_large_linear_values_are_multiples_of_powers() {
         let labels = |low: f64, high: f64| -> Vec<String> {
-            let axis = Axis::linear("aperture (m)").over([low, high].into_iter());
+            let axis = Axis::linear("aperture (m)").over([low, high].into_iter(), 11);
             axis.ticks().iter().map(|&tick| axis.label(tick)).collect()
         };
         assert_eq!(labels(-2e-6, 6e-6)[..3], ["−2·10⁻⁶", "−10⁻⁶", "0"]);
@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn counts_have_no_ticks_between() {
-        let axis = Axis::linear("iterations").over([1.0, 3.0].into_iter());
+        let axis = Axis::linear("iterations").over([1.0, 3.0].into_iter(), 11);
         assert_eq!(axis.ticks(), [0.0, 1.0, 2.0, 3.0]);
     }
 
@@ -334,14 +334,17 @@ mod tests {
         let axis = Axis::logarithmic("error").from(1e-16);
         assert!(axis.takes(0.0) && !axis.takes(f64::NAN));
         assert_eq!(axis.at(0.0), 1e-16);
-        assert_eq!(axis.over([0.0, 1.0].into_iter()).label(1e-16), "≤ 10⁻¹⁶");
+        assert_eq!(
+            axis.over([0.0, 1.0].into_iter(), 11).label(1e-16),
+            "≤ 10⁻¹⁶"
+        );
         assert!(!Axis::logarithmic("size").takes(0.0));
     }
 
     #[test]
     fn an_axis_without_values_or_with_one_has_a_range() {
         for values in [vec![], vec![7.0], vec![0.0]] {
-            let axis = Axis::linear("any").over(values.into_iter());
+            let axis = Axis::linear("any").over(values.into_iter(), 11);
             assert!(axis.high > axis.low && axis.high.is_finite());
         }
     }

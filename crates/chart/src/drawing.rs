@@ -16,12 +16,37 @@ use super::names::apart;
 use super::notes::{Bounds, along, beside};
 use super::style::{COLOURS, INK, UNIT, marker};
 
-/// Of the area inside the axes (pixels).
-const SIZE: (i32, i32) = (600, 400);
+/// How large a chart is, and where its names stand.
+#[derive(Debug, Clone, Copy)]
+struct Layout {
+    /// Of the area inside the axes (pixels).
+    size: Place,
+    /// Whether names stand below the chart, one a line, and not beside it.
+    below: bool,
+    /// Most ticks across and up.
+    ticks: (usize, usize),
+}
+
+/// For wide pages.
+const WIDE: Layout = Layout {
+    size: (600, 400),
+    below: false,
+    ticks: (11, 11),
+};
+/// As wide as a telephone.
+const NARROW: Layout = Layout {
+    size: (270, 200),
+    below: true,
+    ticks: (5, 7),
+};
 /// Room left of it, above and below (pixels).
 const ROOM: (i32, i32, i32) = (80, 50, 52);
 /// Free edge left of it (pixels).
 const EDGE: i32 = 5;
+/// Free right of a chart whose names are below (pixels).
+const RIGHT: i32 = 25;
+/// Between the title of the lower axis and names below it (pixels).
+const GAP: i32 = 8;
 /// Height of text (pixels).
 const TEXT: f64 = 15.0;
 /// Distance between names (pixels).
@@ -37,24 +62,50 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 impl Chart {
     /// The chart as an SVG document.
     pub fn svg(&self) -> String {
-        svg(self)
+        svg(self, WIDE)
+    }
+
+    /// The same so narrow that it can be read on a telephone, with the names below.
+    pub fn narrow_svg(&self) -> String {
+        svg(self, NARROW)
     }
 }
 
-fn svg(chart: &Chart) -> String {
-    let (width, height) = size(chart);
+fn svg(chart: &Chart, layout: Layout) -> String {
+    let (width, height) = layout.whole(chart);
     let mut text = String::new();
     let backend =
         SVGBackend::with_string(&mut text, ((width * UNIT) as u32, (height * UNIT) as u32));
     // A backend that writes into memory has no error to report.
-    let drawn = draw(chart, &backend.into_drawing_area());
+    let drawn = draw(chart, layout, &backend.into_drawing_area());
     debug_assert!(drawn.is_ok(), "{drawn:?}");
     let units = format!("width=\"{}\" height=\"{}\"", width * UNIT, height * UNIT);
     text.replacen(&units, &format!("width=\"{width}\" height=\"{height}\""), 1)
 }
 
-/// Width and height (pixels), with room for the longest name.
-fn size(chart: &Chart) -> Place {
+impl Layout {
+    /// Width and height (pixels), with room for all names.
+    fn whole(self, chart: &Chart) -> Place {
+        let (width, height) = (ROOM.0 + self.size.0, ROOM.1 + self.size.1 + ROOM.2);
+        match self.below {
+            true => (width + RIGHT, height + GAP + LINE * names(chart) as i32),
+            false => (width + beside_width(chart), height),
+        }
+    }
+
+    /// Lower edge of the area inside the axes (units).
+    fn bottom(self) -> i32 {
+        (ROOM.1 + self.size.1) * UNIT
+    }
+}
+
+/// Number of names that a chart has.
+fn names(chart: &Chart) -> usize {
+    chart.series.len() + usize::from(chart.front) + usize::from(chart.band.is_some())
+}
+
+/// Width of names beside a chart (pixels), with room for the longest.
+fn beside_width(chart: &Chart) -> i32 {
     let names = chart
         .series
         .iter()
@@ -65,8 +116,7 @@ fn size(chart: &Chart) -> Place {
         .map_or(0, |band| band.name.chars().count());
     let notes = [FRONT.chars().count(), band];
     let longest = names.chain(notes).max().unwrap_or(0) as f64;
-    let names = 45 + (0.53 * TEXT * longest).ceil() as i32;
-    (ROOM.0 + SIZE.0 + names, ROOM.1 + SIZE.1 + ROOM.2)
+    45 + (0.53 * TEXT * longest).ceil() as i32
 }
 
 /// Name of the front.
@@ -105,17 +155,20 @@ enum Mark {
     Band,
 }
 
-fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
+fn draw(chart: &Chart, layout: Layout, area: &Area<'_>) -> Drawn {
     let points = || chart.series.iter().flat_map(|series| &series.points);
-    let x = chart.x.over(points().map(|point| point.0));
+    let x = chart.x.over(points().map(|point| point.0), layout.ticks.0);
     let shown = points().filter(|&&point| chart.shows(point));
     let band = chart.band.iter().map(|band| band.below);
-    let y = chart.y.over(shown.map(|point| point.1).chain(band));
-    let (width, _) = size(chart);
+    let heights = shown.map(|point| point.1).chain(band);
+    let y = chart.y.over(heights, layout.ticks.1);
+    let (width, height) = layout.whole(chart);
+    let below = height - ROOM.1 - layout.size.1 - ROOM.2;
     let mut context = ChartBuilder::on(area)
         .margin_left(EDGE * UNIT)
         .margin_top(ROOM.1 * UNIT)
-        .margin_right((width - ROOM.0 - SIZE.0) * UNIT)
+        .margin_right((width - ROOM.0 - layout.size.0) * UNIT)
+        .margin_bottom(below * UNIT)
         .x_label_area_size(ROOM.2 * UNIT)
         .y_label_area_size((ROOM.0 - EDGE) * UNIT)
         .build_cartesian_2d(x, y)?;
@@ -128,6 +181,7 @@ fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
     ))?;
     let sheet = Sheet {
         chart,
+        layout,
         area,
         top: y.top(),
         place: &|x, y| context.backend_coord(&(x, y)),
@@ -164,6 +218,7 @@ fn draw_axes(chart: &Chart, context: &mut Context<'_, '_>) -> Drawn {
 /// What is drawn on.
 struct Sheet<'a, 'b> {
     chart: &'a Chart,
+    layout: Layout,
     area: &'a Area<'b>,
     /// Value of `y` at the upper edge.
     top: f64,
@@ -238,13 +293,13 @@ impl Sheet<'_, '_> {
         Ok(())
     }
 
-    /// Names right of the chart, as high as the last points are, each with its marker.
+    /// Names right of the chart, as high as the last points are, or below it, each with its marker.
     fn draw_names(&self) -> Drawn {
         let last = |number: usize| {
             let mut points = self.chart.series[number].points.iter().rev();
             points.find_map(|&point| self.at(point).or(self.cross_of(number, point)))
         };
-        let bottom = (ROOM.1 + SIZE.1) * UNIT;
+        let bottom = self.layout.bottom();
         let mut ends: Vec<(Mark, &str, i32)> = Vec::new();
         for (number, series) in self.chart.series.iter().enumerate() {
             let height = last(number).map_or(bottom, |place| place.1);
@@ -261,8 +316,17 @@ impl Sheet<'_, '_> {
             ends.push((Mark::Band, &band.name, edge));
         }
         let wanted: Vec<i32> = ends.iter().map(|end| end.2).collect();
-        let heights = apart(&wanted, LINE * UNIT, ROOM.1 * UNIT, bottom);
-        let left = (ROOM.0 + SIZE.0 + 18) * UNIT;
+        let (heights, left) = match self.layout.below {
+            true => {
+                let first = bottom + (ROOM.2 + GAP + LINE / 2) * UNIT;
+                let lines = (0..ends.len() as i32).map(|line| first + line * LINE * UNIT);
+                (lines.collect(), 30 * UNIT)
+            }
+            false => {
+                let heights = apart(&wanted, LINE * UNIT, ROOM.1 * UNIT, bottom);
+                (heights, (ROOM.0 + self.layout.size.0 + 18) * UNIT)
+            }
+        };
         for ((mark, name, _), height) in ends.into_iter().zip(heights) {
             let sample = vec![(left - 9 * UNIT, height), (left + 9 * UNIT, height)];
             match mark {
@@ -327,8 +391,8 @@ impl Sheet<'_, '_> {
         let Some(edge) = self.edge_of_band() else {
             return Ok(());
         };
-        let (left, right) = (ROOM.0 * UNIT, (ROOM.0 + SIZE.0) * UNIT);
-        let corners = [(left, edge), (right, (ROOM.1 + SIZE.1) * UNIT)];
+        let (left, right) = (ROOM.0 * UNIT, (ROOM.0 + self.layout.size.0) * UNIT);
+        let corners = [(left, edge), (right, self.layout.bottom())];
         self.area.draw(&Rectangle::new(corners, band_style()))?;
         self.path(vec![(left, edge), (right, edge)], stroke(INK, 1.0))
     }
@@ -353,7 +417,8 @@ impl Sheet<'_, '_> {
             taken.extend(along(&places, 4 * UNIT));
         }
         let low = (ROOM.0 * UNIT, ROOM.1 * UNIT);
-        let area = Bounds([low.0, low.1, low.0 + SIZE.0 * UNIT, low.1 + SIZE.1 * UNIT]);
+        let right = low.0 + self.layout.size.0 * UNIT;
+        let area = Bounds([low.0, low.1, right, self.layout.bottom()]);
         for (number, series) in all.enumerate() {
             let Some(note) = &series.note else {
                 continue;

@@ -173,3 +173,27 @@ fn charts_without_data_are_charts() {
     )];
     parsed(&alone.svg());
 }
+
+#[test]
+fn a_narrow_chart_has_the_same_texts_and_fits_a_telephone() {
+    let texts = |svg: &str| -> Vec<String> {
+        let (texts, _) = parsed(svg);
+        texts.into_iter().filter(|text| !text.is_empty()).collect()
+    };
+    let chart = sample();
+    let (wide, narrow) = (texts(&chart.svg()), texts(&chart.narrow_svg()));
+    for name in [
+        "ours <linear> & exact",
+        "theirs",
+        "exact",
+        "best of all",
+        "unknowns",
+    ] {
+        let name = name.to_owned();
+        assert!(wide.contains(&name) && narrow.contains(&name), "{name}");
+    }
+    let (_, attributes) = parsed(&chart.narrow_svg());
+    let width = attributes.iter().find(|(name, _)| name == "width");
+    let width: f64 = width.expect("a width").1.parse().expect("a number");
+    assert!(width <= 390.0, "{width}");
+}

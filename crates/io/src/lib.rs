@@ -1,5 +1,6 @@
 //! Files: gmsh's meshes in, ParaView's results out; no scene, no physics.
 
+mod about;
 mod atomic;
 mod claimed_folder;
 mod fingerprint;
@@ -9,9 +10,12 @@ mod load;
 pub mod msh;
 pub mod printable;
 mod pvd;
+mod vtm;
 mod vtu;
 mod vtu_array;
+mod xml;
 
+pub use about::About;
 pub use atomic::{NOT_WRITTEN, sync_folder, write_atomically};
 pub use claimed_folder::ClaimedFolder;
 pub use fingerprint::{Fingerprint, fingerprint, fingerprint_of};
@@ -21,4 +25,7 @@ pub use gmsh::{
 pub use load::{arrange_large, load_msh};
 pub use msh::{parse_msh, read_msh, shape_of_gmsh_element, write_msh};
 pub use pvd::write_pvd;
-pub use vtu::{Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu};
+pub use vtm::write_vtm;
+pub use vtu::{
+    Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu, write_vtu_with,
+};

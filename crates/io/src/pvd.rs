@@ -7,6 +7,7 @@ use std::path::Path;
 use kluft_mesh::Defect;
 
 use crate::atomic::write_atomically;
+use crate::xml::escape;
 
 /// Writes a `.pvd` that lists `entries`: a time, and a file name relative to the folder of `path`.
 ///
@@ -34,25 +35,6 @@ fn write_collection(out: &mut BufWriter<File>, entries: &[(f64, String)]) -> io:
     }
     writeln!(out, "  </Collection>")?;
     writeln!(out, "</VTKFile>")
-}
-
-/// Escapes what ends or bends a quoted attribute; a bare line break or tab would be read as a
-/// space.
-fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\n' => escaped.push_str("&#10;"),
-            '\r' => escaped.push_str("&#13;"),
-            '\t' => escaped.push_str("&#9;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use std::path::Path;
 use kluft_mesh::{Defect, Shape};
 use rayon::prelude::*;
 
+use crate::about::About;
 use crate::atomic::write_atomically;
 use crate::vtu_array::{COMPRESSOR, EncodedArray};
 
@@ -65,6 +66,17 @@ impl Values {
 /// # Panics
 /// When the lengths of the parts of `grid` do not fit together: an error of the caller.
 pub fn write_vtu(path: &Path, grid: Grid) -> Result<(), Defect> {
+    write_vtu_with(path, grid, &About::default())
+}
+
+/// As [`write_vtu`], with what the grid says of itself.
+///
+/// # Errors
+/// If the file cannot be written.
+///
+/// # Panics
+/// As [`write_vtu`].
+pub fn write_vtu_with(path: &Path, grid: Grid, about: &About) -> Result<(), Defect> {
     check_lengths(&grid);
     let grid = if grid.shapes.is_empty() {
         Grid {
@@ -81,7 +93,7 @@ pub fn write_vtu(path: &Path, grid: Grid) -> Result<(), Defect> {
             "report this as an error of the program, with the scene",
         )
     })?;
-    write_atomically(path, |out| encoded.write(out))
+    write_atomically(path, |out| encoded.write(out, about))
 }
 
 fn check_lengths(grid: &Grid) {
@@ -149,10 +161,15 @@ impl EncodedGrid {
         })
     }
 
-    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+    fn write(&self, out: &mut impl Write, about: &About) -> io::Result<()> {
         write!(
             out,
-            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="{COMPRESSOR}"><UnstructuredGrid><Piece NumberOfPoints="{}" NumberOfCells="{}">"#,
+            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="{COMPRESSOR}"><UnstructuredGrid>"#
+        )?;
+        about.write(out)?;
+        write!(
+            out,
+            r#"<Piece NumberOfPoints="{}" NumberOfCells="{}">"#,
             self.points, self.cells
         )?;
         write_arrays(out, "PointData", &self.point_data)?;

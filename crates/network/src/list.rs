@@ -9,7 +9,7 @@ use crate::fracture::InputFracture;
 use crate::list_row::{Decimals, Row, place_of, polygon, suggestion};
 use crate::polygon::check_name;
 
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 23] = [
     "name",
     "set",
     "shape",
@@ -23,6 +23,7 @@ const COLUMNS: [&str; 22] = [
     "normal_x",
     "normal_y",
     "normal_z",
+    "strike",
     "radius",
     "semi_major",
     "semi_minor",
@@ -32,6 +33,14 @@ const COLUMNS: [&str; 22] = [
     "sides",
     "points",
     "comment",
+];
+
+/// Other names of columns, as geologists and their programs write them.
+const OTHER_NAMES: [(&str, &str); 4] = [
+    ("dipdir", "dip_direction"),
+    ("dip_dir", "dip_direction"),
+    ("dip_azimuth", "dip_direction"),
+    ("azimuth", "dip_direction"),
 ];
 
 /// Reads the text of a list; `file` is for messages. Fractures of a line without a set belong to
@@ -182,7 +191,9 @@ fn columns(
     let mut found = HashMap::new();
     for (index, name) in headers.iter().enumerate() {
         let name = name.trim_start_matches('\u{feff}');
-        let known = COLUMNS.iter().copied().find(|known| *known == name);
+        let other = OTHER_NAMES.iter().find(|(other, _)| *other == name);
+        let meant = other.map_or(name, |(_, meant)| meant);
+        let known = COLUMNS.iter().copied().find(|known| *known == meant);
         let Some(known) = known else {
             defects.push(Defect::new(
                 &place,
@@ -280,9 +291,34 @@ d, , polygon,,,,,,,,,,,, 0 0 0; 2 0 0; 0 2 0
     }
 
     #[test]
+    fn geologists_words_mean_the_same() {
+        let read = |head: &str, value: &str, shape: &str| {
+            let text = format!("shape,x,y,z,dip,radius,{head}\n{shape},1,2,3,30,2,{value}\n");
+            read_list(&text, "list.csv", "rest", false).map(|list| list[0].polygon.clone())
+        };
+        let plain = read("dip_direction", "135", "disc").expect("a list");
+        for (head, value, shape) in [
+            ("dipdir", "135", "disc"),
+            ("azimuth", "135", "disk"),
+            ("dip_azimuth", "135", "disc"),
+            ("strike", "45", "disc"),
+            ("strike", "-315", "disk"),
+        ] {
+            let found = read(head, value, shape).expect(head);
+            let corners = plain.corners().iter().zip(found.corners());
+            let apart = corners.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            assert!(apart < 1e-12, "{head} {shape}: {apart}");
+        }
+        let both = read("dipdir,strike", "135,45", "disc").expect_err("two directions");
+        assert!(both[0].to_string().contains("column `strike`"), "{both:?}");
+        let twice = read("dipdir,azimuth", "135,135", "disc").expect_err("a column twice");
+        assert!(twice[0].to_string().contains("stands twice"), "{twice:?}");
+    }
+
+    #[test]
     fn every_defect_is_told_at_once_with_line_and_column() {
         let text = LIST
-            .replace("disc, 1", "disk, one")
+            .replace("disc, 1", "dics, one")
             .replace("ellipse, 1", "ellipse, one")
             .replace("rectangle, 1, 2, 3, 90", "rectangle, 1, 2, 3, 95")
             .replace("2 0 0;", "2 0;");

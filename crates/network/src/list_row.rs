@@ -155,6 +155,7 @@ impl<'a> Row<'a> {
             "normal_x",
             "normal_y",
             "normal_z",
+            "strike",
             "radius",
             "semi_major",
             "semi_minor",
@@ -185,7 +186,7 @@ impl<'a> Row<'a> {
 pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
     let outline = match row.text("shape") {
         Some("polygon") => return through_points(row),
-        Some("disc") => disc(row),
+        Some("disc" | "disk") => disc(row),
         Some("ellipse") => ellipse(row),
         Some("rectangle") => rectangle(row),
         Some(other) => {
@@ -215,7 +216,11 @@ pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
 /// How the plane of a line lies: by dip and dip direction, by trend and plunge of its normal, or by
 /// its normal.
 fn orientation(row: &mut Row<'_>) -> Option<Orientation> {
-    let ways = [&["dip", "dip_direction"][..], &["trend", "plunge"], &NORMAL];
+    let ways = [
+        &["dip", "dip_direction", "strike"][..],
+        &["trend", "plunge"],
+        &NORMAL,
+    ];
     let mut given = ways
         .iter()
         .filter(|way| way.iter().any(|c| row.text(c).is_some()));
@@ -247,13 +252,29 @@ fn orientation(row: &mut Row<'_>) -> Option<Orientation> {
         }
         _ => {
             let dip = row.number("dip", steep, "an angle from 0 to 90 degrees");
-            let dip_direction = row.number("dip_direction", turn, clockwise);
+            let dip_direction = dip_direction(row);
             Some(Orientation {
                 dip: dip?,
                 dip_direction: dip_direction?,
             })
         }
     }
+}
+
+/// The dip direction, or by the right-hand rule the strike and a quarter turn: who looks along the
+/// strike has the dip on the right.
+fn dip_direction(row: &mut Row<'_>) -> Option<f64> {
+    let turn = |angle: f64| (-360.0..=360.0).contains(&angle);
+    let wanted = "an angle in degrees, clockwise from north";
+    if row.text("strike").is_none() {
+        return row.number("dip_direction", turn, wanted);
+    }
+    if row.text("dip_direction").is_some() {
+        let remedy = "write one of them";
+        row.refuse("strike", "there is a dip direction as well", remedy);
+    }
+    let strike = row.number("strike", turn, wanted)?;
+    Some((strike + 90.0) % 360.0)
 }
 
 fn disc(row: &mut Row<'_>) -> Option<Outline> {
@@ -265,6 +286,7 @@ fn disc(row: &mut Row<'_>) -> Option<Outline> {
             "z",
             "dip",
             "dip_direction",
+            "strike",
             "radius",
             "rotation",
             "sides",
@@ -285,6 +307,7 @@ fn ellipse(row: &mut Row<'_>) -> Option<Outline> {
         "z",
         "dip",
         "dip_direction",
+        "strike",
         "semi_major",
         "semi_minor",
         "rotation",
@@ -310,6 +333,7 @@ fn rectangle(row: &mut Row<'_>) -> Option<Outline> {
             "z",
             "dip",
             "dip_direction",
+            "strike",
             "length",
             "width",
             "rotation",

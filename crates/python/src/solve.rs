@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use kluft_mesh::Defect;
-use kluft_run::{Ending, MeshInput, Outcome, Request, run};
+use kluft_run::{Caller, Ending, MeshInput, Outcome, Request, run};
 use pyo3::prelude::*;
 
 use crate::asked::threads;
@@ -37,6 +37,10 @@ pub fn solve(
         let request = Request {
             folder: folder.as_deref(),
             keep_results: keeps,
+            caller: Caller {
+                command: None,
+                commit: option_env!("KLUFT_COMMIT"),
+            },
             ..Request::in_memory(&scene.get().scene, mesh, &pool)
         };
         run(request, told)

@@ -8,7 +8,11 @@ use serde_json::Value;
 use crate::checkpoint;
 use crate::flow::SOURCES;
 use crate::history;
+use crate::page;
 use crate::probes;
+
+/// The list of the grids of the last load step.
+pub const TOGETHER: &str = "results.vtm";
 
 /// The files that the collections, the summary and the report of an inspection name, and these
 /// themselves. What nothing names is not ours.
@@ -21,6 +25,11 @@ pub fn named_files(folder: &Path) -> Vec<String> {
             names.extend(grids);
             names.push(collection);
         }
+    }
+    // The list of the last load step, beside the collections that list its grids too.
+    let of_last = "type=\"vtkMultiBlockDataSet\"";
+    if !names.is_empty() && read(TOGETHER).is_some_and(|text| text.contains(of_last)) {
+        names.push(TOGETHER.into());
     }
     let json = |name: &str, key: &str| -> Option<Value> {
         let value: Value = serde_json::from_str(&read(name)?).ok()?;
@@ -50,6 +59,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
     }
     if read(probes::NAME).is_some_and(|text| probes::is_probes(&text)) {
         names.push(probes::NAME.into());
+    }
+    if read(page::NAME).is_some_and(|text| page::is_page(&text)) {
+        names.push(page::NAME.into());
     }
     if checkpoint::is_checkpoint(&folder.join(checkpoint::NAME)) {
         names.push(checkpoint::NAME.into());

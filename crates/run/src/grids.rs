@@ -30,7 +30,10 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Acc
         shapes: mesh.cells.shapes.clone(),
         offsets: mesh.cells.offsets.clone(),
         nodes: points.of_cell_node.clone(),
-        point_fields: vec![real_field("displacement", displacements)],
+        point_fields: [real_field("displacement", displacements)]
+            .into_iter()
+            .chain(tags(mesh, &points.node))
+            .collect(),
         cell_fields: vec![
             real_field("stress", solution.stresses.iter().copied()),
             integer_field("rock", rocks),
@@ -38,6 +41,26 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Acc
     };
     grid.cell_fields.extend(errors);
     grid
+}
+
+/// The numbers that nodes have in the mesh file, if it gives any that fit.
+fn tags(mesh: &Mesh, nodes: &[u32]) -> Option<Field> {
+    let largest = mesh.node_tags.iter().copied().max()?;
+    let fits = mesh.node_tags.len() == mesh.nodes.len() && i32::try_from(largest).is_ok();
+    let tags = nodes
+        .iter()
+        .map(|&node| mesh.node_tags[node as usize] as i32);
+    fits.then(|| integer_field("node", tags))
+}
+
+/// Shear traction over compression; 0 where nothing presses the walls together.
+fn tendency(result: &FacetResult) -> f64 {
+    let normal = result.normal_traction;
+    let shear = result.traction.length_squared() - normal * normal;
+    match normal < 0.0 {
+        true => shear.max(0.0).sqrt() / -normal,
+        false => 0.0,
+    }
 }
 
 /// The fractures; every facet has its own points, so that fields may jump between facets. `results`
@@ -61,6 +84,10 @@ pub fn fracture_grid(
             real_field(
                 "normal_traction",
                 results.iter().map(|result| [result.normal_traction]),
+            ),
+            real_field(
+                "slip_tendency",
+                results.iter().map(|result| [tendency(result)]),
             ),
             integer_field("state", results.iter().map(|result| result.state as i32)),
         ],

@@ -17,6 +17,7 @@
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
 //! | `output`, `grids`, `checkpoint`, `resume`, `former`, `save` | files |
+//! | `page`, `provenance`, `machine` | the page of a run; what it was made with |
 //! | `decisions`, `failures` | what the program decided, and why a run failed, in words |
 //!
 //! ```
@@ -38,11 +39,13 @@
 mod accuracy;
 mod adapt;
 mod advance;
+mod begin;
 mod cases;
 mod checkpoint;
 mod crack_front;
 mod decisions;
 mod doubts;
+mod facts;
 mod failures;
 mod flow;
 mod flow_history;
@@ -52,16 +55,19 @@ mod former;
 mod fractures;
 mod grids;
 mod history;
+mod machine;
 mod measure;
 mod measures;
 pub mod memory;
 mod observer;
 mod outcome;
 mod output;
+mod page;
 mod permeability;
 mod permeability_summary;
 mod prepare;
 mod probes;
+mod provenance;
 mod request;
 mod resume;
 mod rigid;
@@ -85,13 +91,16 @@ pub use flow_summary::{
     ConduitSummary, FlowSummary, Hydraulics, NetworkSummary, SourceFlow, StepFlow,
 };
 pub use grids::{integer_field, real_field};
+pub use machine::Machine;
 pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};
 pub use outcome::{Ending, Outcome, StepResult};
 pub use output::Output;
+pub use page::NAME as REPORT;
 pub use permeability_summary::{PermeabilitySummary, PrincipalPermeability, TensorSummary};
 pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
-pub use request::{MeshInput, Origin, Request};
+pub use provenance::{InputFile, Provenance};
+pub use request::{Caller, MeshInput, Origin, Request};
 pub use run::run;
 pub use save::Saving;
 pub use spread::Spread;

@@ -2,27 +2,32 @@
 
 use std::path::{Path, PathBuf};
 
-use kluft_io::{ClaimedFolder, Grid, fingerprint_of, sync_folder, write_pvd, write_vtu};
+use kluft_io::{
+    About, ClaimedFolder, Grid, fingerprint_of, sync_folder, write_pvd, write_vtm, write_vtu_with,
+};
 use kluft_mesh::Defect;
+use kluft_report::Surface;
 use rayon::prelude::*;
 use tempfile::TempDir;
 
 use crate::checkpoint::{self, StepFiles};
 use crate::flow::SOURCES;
-use crate::former;
+use crate::former::{self, TOGETHER};
 use crate::history;
+use crate::page::{self, Shown};
 use crate::probes;
 
 /// The collections of the grids of all load steps.
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
 
 /// Files of every run beside the grids of its load steps.
-pub const OWN: [&str; 5] = [
+pub const OWN: [&str; 6] = [
     SUMMARY,
     history::NAME,
     checkpoint::NAME,
     COLLECTIONS[0],
     COLLECTIONS[1],
+    TOGETHER,
 ];
 
 /// The numbers of a run.
@@ -39,6 +44,12 @@ pub struct Output {
     fractures: Vec<(f64, String)>,
     /// The sums of the grids of each load step.
     sums: Vec<StepFiles>,
+    /// What the grids say of themselves, but their times.
+    about: About,
+    /// Whether what the page shows is kept.
+    shows: bool,
+    /// What the page shows: the load step that was written last.
+    shown: Option<Shown>,
 }
 
 enum Place {
@@ -85,7 +96,26 @@ impl Output {
             rock: Vec::new(),
             fractures: Vec::new(),
             sums: Vec::new(),
+            about: About::default(),
+            shows: false,
+            shown: None,
         }
+    }
+
+    /// Keeps of the last load step what the page of a run shows.
+    #[must_use]
+    pub fn with_page(self, shows: bool) -> Self {
+        Self { shows, ..self }
+    }
+
+    /// Lets the grids say these facts of themselves.
+    pub fn tell(&mut self, facts: Vec<(String, i32)>) {
+        self.about.facts = facts;
+    }
+
+    /// What the page shows, if a load step was written.
+    pub fn shown(&self) -> Option<&Shown> {
+        self.shown.as_ref()
     }
 
     /// Whether results are kept.
@@ -259,10 +289,20 @@ impl Output {
             return Ok(());
         }
         let [rock, fractures] = names(self.rock.len() + 1);
-        let of_rock = || self.write_grid(&rock, rock_grid);
-        let of_fractures = || self.write_grid(&fractures, fracture_grid);
-        let (rock_sum, fracture_sum) = rayon::join(of_rock, of_fractures);
+        self.about.time = Some(time);
+        let of_rock = || {
+            let grid = rock_grid();
+            let body = box_of(&grid.points);
+            (self.write_grid(&rock, grid), body)
+        };
+        let of_fractures = || {
+            let grid = fracture_grid();
+            let surface = self.shows.then(|| Surface::of(&grid, &page::fields()));
+            (self.write_grid(&fractures, grid), surface)
+        };
+        let ((rock_sum, body), (fracture_sum, surface)) = rayon::join(of_rock, of_fractures);
         let sums = [rock_sum?, fracture_sum?];
+        self.shown = surface.map(|surface| Shown { surface, body });
         self.publish(&rock)?;
         self.publish(&fractures)?;
         self.sums.push(sums);
@@ -271,13 +311,19 @@ impl Output {
         for (name, entries) in COLLECTIONS.into_iter().zip([&self.rock, &self.fractures]) {
             self.write(name, |path| write_pvd(path, entries))?;
         }
-        Ok(())
+        let last = self.rock.last().zip(self.fractures.last());
+        let Some(((_, rock), (_, fractures))) = last else {
+            return Ok(());
+        };
+        let blocks = [("rock", rock.as_str()), ("fractures", fractures.as_str())];
+        self.write(TOGETHER, |path| write_vtm(path, &blocks))
     }
 
     /// Writes a grid that is not yet published, and sums up its bytes.
-    fn write_grid(&self, name: &str, grid: impl FnOnce() -> Grid) -> Result<u128, Defect> {
+    fn write_grid(&self, name: &str, grid: Grid) -> Result<u128, Defect> {
         let unfinished = self.unfinished(name);
-        let written = write_vtu(&unfinished, grid()).and_then(|()| fingerprint_of(&unfinished));
+        let written = write_vtu_with(&unfinished, grid, &self.about)
+            .and_then(|()| fingerprint_of(&unfinished));
         written.map_err(|defect| Defect {
             place: self.path(name).display().to_string(),
             ..defect
@@ -285,9 +331,23 @@ impl Output {
     }
 }
 
+/// Lowest and highest coordinates.
+fn box_of(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for point in points {
+        for axis in 0..3 {
+            bounds[0][axis] = bounds[0][axis].min(point[axis]);
+            bounds[1][axis] = bounds[1][axis].max(point[axis]);
+        }
+    }
+    bounds
+}
+
 /// Whether a file belongs to one run and must not outlive it.
 fn is_of_run(name: &str) -> bool {
-    [checkpoint::NAME, history::NAME, probes::NAME, SOURCES].contains(&name)
+    let tables = [history::NAME, probes::NAME, SOURCES];
+    tables.contains(&name)
+        || [checkpoint::NAME, page::NAME, TOGETHER].contains(&name)
         || former::is_step(name)
 }
 

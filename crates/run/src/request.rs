@@ -25,6 +25,15 @@ pub struct Origin<'a> {
     pub text: &'a str,
 }
 
+/// Who asks for a run, for whoever reads its results.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Caller<'a> {
+    /// The command line, if one asks.
+    pub command: Option<&'a str>,
+    /// Commit that the program was built from, if it is known.
+    pub commit: Option<&'a str>,
+}
+
 /// What to run.
 #[derive(Debug, Clone)]
 pub struct Request<'a> {
@@ -42,6 +51,10 @@ pub struct Request<'a> {
     pub resume: bool,
     /// Whether the outcome holds the grids of all load steps.
     pub keep_results: bool,
+    /// Whether the folder gets `report.html`.
+    pub report: bool,
+    /// Who asks.
+    pub caller: Caller<'a>,
     /// How gmsh is started, and what a geometry may do.
     pub gmsh: GmshOptions,
 }
@@ -57,6 +70,8 @@ impl<'a> Request<'a> {
             origin: None,
             resume: false,
             keep_results: true,
+            report: true,
+            caller: Caller::default(),
             gmsh: GmshOptions::default(),
         }
     }

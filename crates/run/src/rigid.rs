@@ -11,7 +11,6 @@ use kluft_solver::{Flow, LinearFailure, Problem, Step, TransientFlow};
 
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
-use crate::flow_history::FlowHistory;
 use crate::flow_summary;
 use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, in_plane, integer_field, real_field};
@@ -53,10 +52,9 @@ impl Run<'_> {
         }
         let accuracy = newton_settings(&self.request.scene.solver).time;
         let mut in_time = is_stored.then(|| made.in_time(&problem.schedule, accuracy));
-        let mut history = FlowHistory::default();
         for index in 0..steps {
             let solved = self.flow_at(problem, (&made, in_time.as_mut()), index)?;
-            self.flow_step(problem, (&made, &solved, &mut history), index)?;
+            self.flow_step(problem, (&made, &solved), index)?;
         }
         Ok(())
     }
@@ -106,7 +104,7 @@ impl Run<'_> {
     fn flow_step(
         &mut self,
         problem: &Problem,
-        (made, solved, history): (&RunFlow<'_>, &SolvedFlow, &mut FlowHistory),
+        (made, solved): (&RunFlow<'_>, &SolvedFlow),
         index: usize,
     ) -> Result<(), Interruption> {
         let step: &Step = &problem.schedule.steps[index];
@@ -124,7 +122,8 @@ impl Run<'_> {
         });
         let summary = made.summary(solved);
         self.summary.measures = flow_summary::measures(&solved.step, &summary.fractures);
-        history.add(index + 1, step, &solved.step, &summary.fractures);
+        let (number, conduits) = (index + 1, &summary.fractures);
+        self.flow_history.add(number, step, &solved.step, conduits);
         self.summary.flow = Some(summary);
         self.stage(Stage::Write, |run| {
             let mesh = &problem.mesh;
@@ -132,7 +131,7 @@ impl Run<'_> {
             let fractures = || in_plane(mesh, fracture_grid(mesh, made, solved));
             run.output.write_step(step.load.time, rock, fractures)?;
             run.write_sources()?;
-            let text = history.text().as_bytes();
+            let text = run.flow_history.text().as_bytes();
             let write = |path: &Path| write_atomically(path, |out| out.write_all(text));
             if run.output.is_kept() {
                 run.output.write(history::NAME, write)?;

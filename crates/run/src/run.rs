@@ -10,6 +10,7 @@ use crate::flow::SOURCES;
 use crate::observer::Observer;
 use crate::outcome::{Ending, Outcome};
 use crate::output::{OWN, Output};
+use crate::page;
 use crate::prepare::{MESH, inputs};
 use crate::probes;
 use crate::request::{MeshInput, Request};
@@ -70,6 +71,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     if request.scene.strength_reduction.is_some() {
         names.extend(strength::GRIDS);
     }
+    names.extend(request.report.then_some(page::NAME));
     if !request.scene.probes.is_empty() {
         names.push(probes::NAME);
     }
@@ -83,7 +85,8 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
         Some(origin) => inputs(origin.file, Some(request.scene)),
         None => Vec::new(),
     };
-    Output::prepare(folder, &names, &inputs)
+    let output = Output::prepare(folder, &names, &inputs)?;
+    Ok(output.with_page(request.report))
 }
 
 fn solve(

@@ -9,6 +9,7 @@ use kluft_mesh::Defect;
 use crate::flow::{SOURCES, write_sources};
 use crate::history;
 use crate::output::{OWN, Output, SUMMARY};
+use crate::page::{self, Iterations, Told};
 use crate::summary::Summary;
 
 /// A folder that takes the results of a run, load step by load step.
@@ -31,10 +32,12 @@ impl<'a> Saving<'a> {
         history: &'a str,
     ) -> Result<Self, Vec<Defect>> {
         let mut names = OWN.to_vec();
+        names.push(page::NAME);
         if has_flow(summary) {
             names.push(SOURCES);
         }
-        let mut output = Output::prepare(folder, &names, &[])?;
+        let mut output = Output::prepare(folder, &names, &[])?.with_page(true);
+        output.tell(summary.facts.clone());
         output.expect_steps(summary.steps.len())?;
         output.remove_former().map_err(|defect| vec![defect])?;
         Ok(Self {
@@ -67,6 +70,18 @@ impl<'a> Saving<'a> {
             output.write(SOURCES, |path| write_sources(path, &self.summary.steps))?;
         }
         output.write(SUMMARY, |path| self.summary.write(path))?;
+        let told = Told {
+            summary: self.summary,
+            ending: None,
+            history: self.history,
+            iterations: &Iterations::default(),
+            shown: output.shown(),
+            scene: None,
+        };
+        let html = told.html();
+        output.write(page::NAME, |path| {
+            write_atomically(path, |out| out.write_all(html.as_bytes()))
+        })?;
         output.sync()?;
         self.output.close()
     }

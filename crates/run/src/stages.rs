@@ -1,10 +1,11 @@
 //! The stages of a run that are done once: mesh, problem, unknowns, matrix, linear solver.
 
+use std::io::Write;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use kluft_io::{Meshed, fingerprint_of};
+use kluft_io::{Meshed, fingerprint_of, write_atomically};
 use kluft_mesh::{Defect, Draft, Mesh};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
@@ -12,16 +13,21 @@ use kluft_solver::{
     Workload,
 };
 
+use crate::begin::provenance;
 use crate::checkpoint::{self, Identity};
 use crate::decisions;
+use crate::facts::facts;
 use crate::failures;
+use crate::flow_history::FlowHistory;
 use crate::history::History;
 use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::outcome::{Ending, Outcome, StepResult};
 use crate::output::{Output, SUMMARY};
+use crate::page::{self, Iterations, Told};
 use crate::prepare::{self, MeshFile};
 use crate::probes::ProbeTable;
+use crate::provenance::InputFile;
 use crate::request::{MeshInput, Request};
 use crate::resume::FormerRun;
 use crate::summary::{MeshSummary, Seconds, StepMeasures, Summary, UnknownSummary};
@@ -64,6 +70,10 @@ pub struct Run<'a> {
     pub finished: Vec<StepMeasures>,
     /// How they went.
     pub history: History,
+    /// How they went in rigid rock.
+    pub flow_history: FlowHistory,
+    /// Every iteration, for the page.
+    pub iterations: Iterations,
     /// Values of probes after all of them, a table.
     pub probes: ProbeTable,
     /// The results that are kept.
@@ -108,6 +118,7 @@ impl<'a> Run<'a> {
         let mut summary = Summary {
             kluft: env!("CARGO_PKG_VERSION"),
             title: request.scene.title.clone(),
+            provenance: provenance(&request, &identity),
             threads: rayon::current_num_threads(),
             ..Summary::default()
         };
@@ -128,6 +139,8 @@ impl<'a> Run<'a> {
             identity,
             finished: Vec::new(),
             history: History::default(),
+            flow_history: FlowHistory::default(),
+            iterations: Iterations::default(),
             probes: ProbeTable::default(),
             kept: Vec::new(),
             choice: Default::default(),
@@ -142,6 +155,7 @@ impl<'a> Run<'a> {
 
     /// Tells the observer of an iteration, and asks whether to go on.
     pub fn ask_after(&mut self, number: usize, iteration: &Iteration) -> ControlFlow<()> {
+        self.iterations.add(iteration);
         let answer = self.observer.iteration(number, iteration);
         self.is_stopped |= answer.is_break();
         answer
@@ -238,6 +252,10 @@ impl<'a> Run<'a> {
         let draft = prepare::read_mesh(&file.path, scene.refine, &scratch, &self.request.gmsh)?;
         let fingerprint = fingerprint_of(&file.path);
         self.identity.mesh = fingerprint.map_err(|defect| vec![defect])?;
+        let input = InputFile::new(&file.path, self.identity.mesh);
+        let inputs = &mut self.summary.provenance.inputs;
+        inputs.retain(|known| known.file != input.file);
+        inputs.push(input);
         if former.is_some_and(|former| former.mesh != self.identity.mesh) {
             let is_made = file.meshed.is_some();
             return Err(vec![checkpoint::other_mesh(&file.path, is_made)]);
@@ -248,6 +266,15 @@ impl<'a> Run<'a> {
     fn bind(&mut self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let mut binding = self.request.scene.problem(draft)?;
         self.summary.decisions.append(&mut binding.decisions);
+        let rocks: Vec<&str> = self
+            .request
+            .scene
+            .rocks
+            .iter()
+            .map(|r| r.name.as_str())
+            .collect();
+        self.summary.facts = facts(&self.summary, &rocks, &binding.problem.mesh.fractures);
+        self.output.tell(self.summary.facts.clone());
         self.doubts = std::mem::take(&mut binding.warnings);
         self.summary.warnings.clone_from(&self.doubts);
         self.count_mesh(&binding.problem.mesh);
@@ -298,6 +325,7 @@ impl<'a> Run<'a> {
 
     /// Tells where a mesh came from.
     fn note_meshed(&mut self, meshed: &Meshed, geometry: &str) {
+        self.summary.provenance.gmsh.clone_from(&meshed.version);
         if meshed.is_kept {
             self.summary.seconds.mesh_spared += meshed.seconds;
             let text = format!(
@@ -409,14 +437,36 @@ impl<'a> Run<'a> {
     /// # Errors
     /// If the summary or the list of files cannot be written.
     pub fn finish(mut self, ending: Ending) -> Result<Outcome, Vec<Defect>> {
-        self.close().map_err(|defect| vec![defect])?;
+        self.close(&ending).map_err(|defect| vec![defect])?;
         Ok(self.into_outcome(ending))
     }
 
-    fn close(&mut self) -> Result<(), Defect> {
+    fn close(&mut self, ending: &Ending) -> Result<(), Defect> {
         self.write_summary()?;
+        self.write_page(ending)?;
         self.output.sync()?;
         self.output.close()
+    }
+
+    fn write_page(&self, ending: &Ending) -> Result<(), Defect> {
+        if !self.output.is_kept() || !self.request.report {
+            return Ok(());
+        }
+        let history = match self.history.text() {
+            "" => self.flow_history.text(),
+            text => text,
+        };
+        let told = Told {
+            summary: &self.summary,
+            ending: Some(ending),
+            history,
+            iterations: &self.iterations,
+            shown: self.output.shown(),
+            scene: self.request.origin.map(|origin| origin.text),
+        };
+        let html = told.html();
+        let write = |path: &Path| write_atomically(path, |out| out.write_all(html.as_bytes()));
+        self.output.write(page::NAME, write)
     }
 
     /// What came out of it.

@@ -70,6 +70,7 @@ impl Run<'_> {
             self.solve_step(&mut prepared, index)?;
         }
         self.summary.steps.clear();
+        self.iterations.clear();
         let solution = solution(&system, &prepared.state);
         let unknowns = system.discretisation().unknown_count();
         let estimator = Estimator::of(&system);

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
 use crate::permeability_summary::PermeabilitySummary;
+use crate::provenance::Provenance;
 use crate::spread::Spread;
 use crate::strength_summary::StrengthSummary;
 
@@ -215,6 +216,11 @@ pub struct Summary {
     pub kluft: &'static str,
     /// Title of the scene.
     pub title: String,
+    /// What it was made with, and of.
+    pub provenance: Provenance,
+    /// What the grids say of themselves: facts, each with its number.
+    #[serde(skip)]
+    pub facts: Vec<(String, i32)>,
     /// What the program decided, and why.
     pub decisions: Vec<String>,
     /// What the user should know about the result.

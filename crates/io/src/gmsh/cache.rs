@@ -34,6 +34,9 @@ pub(super) struct Record {
     pub(super) seconds: f64,
     /// What gmsh warned of.
     pub(super) warnings: Vec<String>,
+    /// The version of gmsh, if it said one.
+    #[serde(default)]
+    pub(super) version: Option<String>,
 }
 
 impl MeshCache {
@@ -77,13 +80,8 @@ impl MeshCache {
         record
     }
 
-    /// Keeps a mesh.
-    pub(super) fn keep(
-        &self,
-        key: Fingerprint,
-        mesh: &Path,
-        (seconds, warnings): (f64, &[String]),
-    ) -> io::Result<()> {
+    /// Keeps a mesh with what is known of it beside its sum.
+    pub(super) fn keep(&self, key: Fingerprint, mesh: &Path, about: Record) -> io::Result<()> {
         make_private(&self.folder)?;
         let unfinished = tempfile::Builder::new()
             .prefix(".unfinished-")
@@ -93,8 +91,7 @@ impl MeshCache {
         let sum = fingerprint_of(&copy).map_err(|defect| io::Error::other(defect.problem))?;
         let record = Record {
             sum: written(sum),
-            seconds,
-            warnings: warnings.to_vec(),
+            ..about
         };
         fs::write(
             unfinished.path().join(RECORD),
@@ -163,6 +160,15 @@ mod tests {
         cache: MeshCache,
     }
 
+    fn about() -> Record {
+        Record {
+            sum: String::new(),
+            seconds: 1.5,
+            warnings: vec!["w".into()],
+            version: Some("4.8.4".into()),
+        }
+    }
+
     impl Place {
         fn new() -> Self {
             let folder = tempfile::tempdir().expect("a folder");
@@ -176,15 +182,14 @@ mod tests {
 
         fn keep(&self, key: Fingerprint, mesh: &str) {
             fs::write(self.path("made"), mesh).expect("written");
-            let kept = self
-                .cache
-                .keep(key, &self.path("made"), (1.5, &["w".into()]));
+            let kept = self.cache.keep(key, &self.path("made"), about());
             kept.expect("kept");
         }
 
         fn fetch(&self, key: Fingerprint) -> Option<String> {
             let record = self.cache.fetch(key, &self.path("got"))?;
             assert_eq!((record.seconds, record.warnings.len()), (1.5, 1));
+            assert_eq!(record.version.as_deref(), Some("4.8.4"));
             fs::read_to_string(self.path("got")).ok()
         }
     }
@@ -200,9 +205,7 @@ mod tests {
         assert_eq!(place.fetch(3), None);
         let again = place.cache.clone().making_again();
         assert_eq!(again.fetch(1, &place.path("got")), None);
-        again
-            .keep(1, &place.path("made"), (1.5, &["w".into()]))
-            .expect("kept");
+        again.keep(1, &place.path("made"), about()).expect("kept");
         assert_ne!(place.fetch(1).as_deref(), Some("one"));
     }
 

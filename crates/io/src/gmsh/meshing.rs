@@ -7,12 +7,13 @@ use std::time::Instant;
 use kluft_mesh::Defect;
 
 use super::attempts::{Attempt, attempts, is_worth_another};
-use super::cache::MeshCache;
+use super::cache::{MeshCache, Record};
 use super::ending::{cannot_start, judge};
 use super::made::{check_cells, check_made};
 use super::options::{Dimension, Meshed, Meshing};
 use super::review::reviewed;
 use super::run::{Gmsh, Scope, path_argument};
+use super::version::version_of;
 use super::workspace::Workspace;
 use super::{ingredients, parameters, size_field};
 use crate::fingerprint::Fingerprint;
@@ -71,6 +72,7 @@ impl Kept<'_> {
         let record = self.cache.fetch(self.key, output)?;
         Some(Meshed {
             warnings: record.warnings,
+            version: record.version,
             seconds: record.seconds,
             is_kept: true,
         })
@@ -78,7 +80,12 @@ impl Kept<'_> {
 
     /// A mesh that cannot be kept is as good as any.
     fn keep(&self, output: &Path, meshed: &mut Meshed) {
-        let about = (meshed.seconds, meshed.warnings.as_slice());
+        let about = Record {
+            sum: String::new(),
+            seconds: meshed.seconds,
+            warnings: meshed.warnings.clone(),
+            version: meshed.version.clone(),
+        };
         if let Err(error) = self.cache.keep(self.key, output, about) {
             let problem = format!("the mesh is not kept for other runs: {error}");
             meshed.warnings.push(problem);
@@ -139,6 +146,7 @@ fn make(
     let used = (number > 0).then(|| format!("meshed in another way: {}", attempts[number].name));
     Ok(Meshed {
         warnings: failed.chain(used).chain(warnings).collect(),
+        version: version_of(gmsh),
         seconds: start.elapsed().as_secs_f64(),
         is_kept: false,
     })

@@ -18,11 +18,11 @@ mod review;
 mod run;
 mod script;
 mod size_field;
+mod version;
 mod workspace;
 
 use std::ffi::OsString;
 use std::path::Path;
-use std::time::Duration;
 
 use kluft_mesh::Defect;
 
@@ -35,24 +35,8 @@ pub use options::{Dimension, GmshOptions, Launcher, Meshed, Meshing, NOT_MESHED,
 use review::reviewed;
 use run::{Gmsh, Scope, path_argument};
 pub use size_field::write_size_field;
+pub use version::version;
 use workspace::Workspace;
-
-/// How long gmsh may take to say its version.
-const VERSION_LIMIT: Duration = Duration::from_secs(20);
-
-/// The version of gmsh, if it can be started.
-pub fn version(options: &GmshOptions) -> Option<String> {
-    let options = GmshOptions {
-        time_limit: Some(VERSION_LIMIT),
-        ..options.clone()
-    };
-    let gmsh = Gmsh::from_environment(&options);
-    let ended = gmsh.run(&["--version".into()], &Scope::default()).ok()?;
-    // gmsh prints its version on the error stream.
-    let said = ended.output + &ended.errors;
-    let said = said.trim();
-    (ended.status.success() && !said.is_empty()).then(|| said.to_owned())
-}
 
 /// Lets gmsh rewrite a mesh file as MSH 4.1 (binary), and hands on the bytes; physical groups and
 /// node tags stay. `scratch_dir` is where it may write meanwhile.

@@ -42,6 +42,8 @@ pub struct Meshing<'a> {
 pub struct Meshed {
     /// What gmsh warned of.
     pub warnings: Vec<String>,
+    /// Its version, if it said one.
+    pub version: Option<String>,
     /// How long gmsh took, at the time (s).
     pub seconds: f64,
     /// Whether it was made before.

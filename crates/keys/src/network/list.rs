@@ -38,7 +38,8 @@ pub static LIST: KeySection = KeySection {
         },
         Key {
             kind: number(Dimension::Angle, Range::Within(-360.0, 360.0)),
-            need: NOT_OF_A_POLYGON,
+            need: Need::Unless("the shape is `polygon` or there is a `strike`"),
+            says: "Direction in which it dips, clockwise from north; `dipdir` and `azimuth` mean the same",
             ..DIP_DIRECTION
         },
         Key {
@@ -61,6 +62,13 @@ pub static LIST: KeySection = KeySection {
         ),
         part("normal_y", "Part of the normal towards the north"),
         part("normal_z", "Part of the normal upwards"),
+        Key {
+            name: "strike",
+            kind: number(Dimension::Angle, Range::Within(-360.0, 360.0)),
+            need: Need::Without("the dip direction"),
+            example: "45",
+            says: "In the place of the dip direction: the direction of the horizontal in the plane with the dip on its right, clockwise from north",
+        },
         RADIUS,
         SEMI_MAJOR,
         SEMI_MINOR,

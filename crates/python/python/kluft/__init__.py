@@ -13,9 +13,11 @@ from .errors import Defect, InputError, NotConverged, Stopped
 from .grid import Grid
 from .keys import *  # noqa: F403
 from .mesh import Mesh, Survey
+from .networks import Network, network
 from .prepared import PreparedRun
 from .run import FractureResult, Run, Step, read
 from .scene import Scene
+from .studying import Setting, Study, study
 
 __all__ = [
     "Defect",
@@ -23,13 +25,18 @@ __all__ = [
     "Grid",
     "InputError",
     "Mesh",
+    "Network",
     "NotConverged",
     "PreparedRun",
     "Run",
     "Scene",
+    "Setting",
     "Step",
     "Stopped",
+    "Study",
     "Survey",
+    "network",
     "read",
+    "study",
     *keys.__all__,
 ]

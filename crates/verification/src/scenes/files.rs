@@ -4,7 +4,7 @@ use std::path::Path;
 
 use kluft_io::{Dimension, GmshOptions, Meshing, load_msh, mesh_geometry};
 use kluft_mesh::{Defect, Draft};
-use kluft_run::{MeshInput, Origin, Outcome, Request};
+use kluft_run::{Caller, MeshInput, Origin, Outcome, Request};
 use kluft_scene::Scene;
 use kluft_solver::Problem;
 
@@ -74,6 +74,8 @@ pub fn run_scene_file(file: &Path, out: &Path) -> Result<Outcome, Vec<Defect>> {
         origin: Some(Origin { file, text: &text }),
         resume: false,
         keep_results: false,
+        report: true,
+        caller: Caller::default(),
         gmsh: GmshOptions::default(),
     };
     kluft_run::run(request, &mut ())

@@ -99,6 +99,7 @@ impl Workshop {
 pub fn results(folder: &Path) -> Files {
     let mut files = visible(folder);
     files.remove("resume.bin");
+    files.remove("report.html");
     if let Some(summary) = files.get_mut("summary.json") {
         let mut value: Value = serde_json::from_slice(summary).unwrap_or_default();
         for key in [
@@ -106,6 +107,7 @@ pub fn results(folder: &Path) -> Files {
             "peak_memory_bytes",
             "predicted_memory_bytes",
             "threads",
+            "provenance",
         ] {
             value.as_object_mut().map(|object| object.remove(key));
         }

@@ -1,0 +1,179 @@
+"""Lays out the pages of the site: those of docs/, the gallery of geometries/, the Python package.
+
+    python make.py REPOSITORY FOLDER [KLUFT]
+
+With the program each scene of the gallery that is small is run, and its page shows the fractures.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+LARGEST = 400_000
+"""Bytes of a geometry whose scene is run."""
+PATIENCE = 60
+"""Seconds that a scene may take."""
+FORGE = "https://github.com/kluft/kluft/blob/main/"
+
+INDEX = """# Kluft
+
+How fractured rock deforms in three dimensions: joints close, slide and open, water flows in them.
+
+{{content}}
+
+```{{toctree}}
+:hidden:
+:caption: Tutorials
+:glob:
+tutorial/*
+```
+```{{toctree}}
+:hidden:
+:caption: How-to guides
+:glob:
+how-to/*
+```
+```{{toctree}}
+:hidden:
+:caption: Gallery
+gallery/index
+```
+```{{toctree}}
+:hidden:
+:caption: Theory
+:glob:
+theory/*
+```
+```{{toctree}}
+:hidden:
+:caption: Reference
+:glob:
+reference/*
+python
+```
+```{{toctree}}
+:hidden:
+:caption: Evidence
+:glob:
+verification/README
+verification/*
+verification/book/*
+performance/README
+performance/*
+design/README
+design/*
+changelog
+```
+"""
+
+PYTHON = """# The package for Python
+
+```{eval-rst}
+.. automodule:: kluft
+   :members: Scene, Mesh, Survey, Run, PreparedRun, Step, FractureResult, Grid, Study, Setting, Network,
+             InputError, NotConverged, Stopped, Defect, study, network, read
+   :undoc-members:
+```
+"""
+
+
+def comment_of(scene: str) -> str:
+    """What the head of a scene says of it and of its oracle."""
+    lines = []
+    for line in scene.splitlines():
+        if line.startswith("[") and lines:
+            break
+        if line.startswith("#") and not line.startswith("#:"):
+            lines.append(line[1:].strip())
+    return "\n".join(lines)
+
+
+def picture_of(folder: Path, kluft: str | None) -> str:
+    """The pictures of the page that a run of a scene leaves, as HTML; nothing if it is not run."""
+    sizes = [file.stat().st_size for file in folder.glob("*.geo")]
+    if kluft is None or (sizes and max(sizes) > LARGEST):
+        return ""
+    with tempfile.TemporaryDirectory() as out:
+        command = [kluft, "run", str(folder / "scene.toml"), "--out", out, "--quiet"]
+        try:
+            subprocess.run(command, timeout=PATIENCE, check=True, capture_output=True)
+        except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
+            print(f"{folder.name}: no picture: {error}", file=sys.stderr)
+            return ""
+        page = (Path(out) / "report.html").read_text("utf-8")
+    found = re.findall(r'<figure class="picture">.*?</figure>', page, re.S)
+    style = re.search(r"<style>(.*?)</style>", page, re.S)
+    rules = [rule for rule in (style.group(1) if style else "").splitlines() if rule.startswith((".grid", ".bar", ".picture", ".axes"))]
+    root = ":root { --ink: #444; --soft: #777; }"
+    return f"<style>{root} {' '.join(rules)}</style><div class=\"grid\">{''.join(found[:2])}</div>"
+
+
+def gallery(repository: Path, out: Path, kluft: str | None) -> None:
+    """A page for each scene."""
+    out.mkdir()
+    names = []
+    for folder in sorted((repository / "geometries").iterdir()):
+        file = folder / "scene.toml"
+        if not file.is_file():
+            continue
+        scene = file.read_text("utf-8")
+        title = re.search(r'^title = "(.*)"', scene, re.M)
+        shown = "\n".join(scene.splitlines()[:120])
+        picture = picture_of(folder, kluft)
+        raw = f"```{{raw}} html\n{picture}\n```\n" if picture else ""
+        text = f"# {title.group(1) if title else folder.name}\n\n`geometries/{folder.name}`\n\n{raw}\n"
+        text += f"## What it is, and its oracle\n\n```text\n{comment_of(scene)}\n```\n\n## Scene\n\n```toml\n{shown}\n```\n"
+        (out / f"{folder.name}.md").write_text(text, "utf-8")
+        names.append(folder.name)
+    listed = "\n".join(names)
+    index = f"# Gallery\n\nScenes that run, each with its oracle.\n\n```{{toctree}}\n:maxdepth: 1\n{listed}\n```\n"
+    (out / "index.md").write_text(index, "utf-8")
+
+
+def relink(text: str, page: Path, repository: Path) -> str:
+    """Links to files that are no pages lead to the repository."""
+
+    def link(match: re.Match[str]) -> str:
+        target = match.group(1)
+        path, _, anchor = target.partition("#")
+        if not path or re.match(r"[a-z]+:", target):
+            return match.group(0)
+        meant = (page.parent / path).resolve()
+        docs = repository / "docs"
+        if meant == repository / "geometries" / "README.md":
+            return f"]({'../' * len(page.relative_to(docs).parent.parts)}gallery/index.md)"
+        is_page = meant.is_relative_to(docs) and meant.suffix in (".md", ".ipynb", ".svg", ".png")
+        if is_page and not meant.is_relative_to(docs / "schema"):
+            return match.group(0)
+        if not meant.exists():
+            raise SystemExit(f"{page}: there is no {target}")
+        return f"]({FORGE}{meant.relative_to(repository)}{'#' + anchor if anchor else ''})"
+
+    return re.sub(r"\]\(([^)\s]+)\)", link, text)
+
+
+def main() -> None:
+    """Lays out all pages."""
+    repository, out = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    kluft = sys.argv[3] if len(sys.argv) > 3 else None
+    docs = repository / "docs"
+    shutil.rmtree(out, ignore_errors=True)
+    shutil.copytree(docs, out, ignore=shutil.ignore_patterns("site", "schema", "*.csv", "*.json"))
+    for page in docs.rglob("*.md"):
+        copy = out / page.relative_to(docs)
+        if copy.exists():
+            copy.write_text(relink(page.read_text("utf-8"), page, repository), "utf-8")
+    readme = (out / "README.md").read_text("utf-8").partition("\n")[2]
+    (out / "index.md").write_text(INDEX.format(content=readme), "utf-8")
+    (out / "README.md").unlink()
+    (out / "python.md").write_text(PYTHON, "utf-8")
+    changes = (repository / "CHANGELOG.md").read_text("utf-8")
+    (out / "changelog.md").write_text(relink(changes, repository / "CHANGELOG.md", repository), "utf-8")
+    gallery(repository, out / "gallery", kluft)
+    shutil.copy(docs / "site" / "conf.py", out / "conf.py")
+
+
+main()
