@@ -70,3 +70,29 @@ fn a_budget_ends_the_search() {
     let unknowns = said["unknowns"]["total"].as_f64().expect("a number");
     assert!(unknowns < 1.5e4, "{unknowns}");
 }
+
+/// The same by bisection: gmsh is asked once, the statement holds, and a run of the mesh that was
+/// found gives the same again.
+#[test]
+fn a_penny_is_bisected_until_its_opening_is_good_enough() {
+    let bisected = COARSE.1.replace("0.1 }", "0.1, by = \"bisection\" }");
+    let workshop = Workshop::new("penny", &[(COARSE.0, &bisected)]);
+    let out = workshop.solve("out", &[]);
+    let said = summary(&out);
+    let meshes = said["meshes"].as_array().expect("meshes");
+    let error = |mesh: &Value| mesh["error"].as_f64().expect("an error");
+    let (first, last) = (&meshes[0], &meshes[meshes.len() - 1]);
+    assert!(
+        meshes.len() > 1 && error(first) > 0.1 && error(last) <= 0.1,
+        "{meshes:?}"
+    );
+    let off = measure(&said, "volume")["error"]
+        .as_f64()
+        .expect("an error");
+    let stated = uncertainty(&said);
+    assert!(off < stated && stated < 0.1, "{off} {stated}");
+    assert!(!out.join("sizes.pos").exists());
+    let again = workshop.solve("again", &["--threads", "1"]);
+    let volume = |said: &Value| measure(said, "volume")["value"].clone();
+    assert_eq!(volume(&summary(&again)), volume(&said));
+}

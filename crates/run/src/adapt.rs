@@ -1,13 +1,15 @@
 //! Meshes a scene until the estimated error meets a tolerance.
 
 use std::path::Path;
+use std::time::Instant;
 
-use kluft_io::write_size_field;
+use kluft_io::{write_msh, write_size_field};
 use kluft_mesh::Mesh;
-use kluft_scene::{Adapt, MeshSource};
+use kluft_scene::{Adapt, AdaptBy, MeshSource};
 use kluft_solver::target_sizes;
 
 use crate::accuracy::Accuracy;
+use crate::prepare::{MESH, read_mesh};
 use crate::stages::{Interruption, Run};
 use crate::summary::MeshTrial;
 
@@ -31,7 +33,7 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
     }
     let mut aim = adapt.tolerance;
     for number in 1..=adapt.max_rounds {
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         let binding = run.prepare(None)?;
         let (unknowns, accuracy) = run.trial(&binding)?;
         let problem = &binding.problem;
@@ -61,9 +63,14 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
         }
         let budget = adapt.max_unknowns / unknowns as f64;
         let sizes = next_sizes(&problem.mesh, &accuracy, aim, budget);
-        let write = |path: &Path| write_size_field(path, &problem.mesh, &sizes);
-        run.output.write(SIZES, write)?;
-        run.mesh_again_with(run.output.path(SIZES));
+        match adapt.by {
+            AdaptBy::Meshing => {
+                let write = |path: &Path| write_size_field(path, &problem.mesh, &sizes);
+                run.output.write(SIZES, write)?;
+                run.mesh_again_with(run.output.path(SIZES));
+            }
+            AdaptBy::Bisection => run.bisect(&problem.mesh, &sizes)?,
+        }
     }
     Ok(())
 }
@@ -104,12 +111,43 @@ fn next_sizes(mesh: &Mesh, accuracy: &Accuracy, aim: f64, budget: f64) -> Vec<f6
     sizes
 }
 
+impl Run<'_> {
+    /// Bisects the cells of the mesh that was solved on where they are larger than these sizes of
+    /// its nodes (m).
+    fn bisect(&mut self, mesh: &Mesh, sizes: &[f64]) -> Result<(), Interruption> {
+        let start = Instant::now();
+        let scale = self.request.scene.scale;
+        let cells = 0..mesh.cells.len();
+        let targets: Vec<f64> = cells.map(|cell| size(mesh, sizes, cell) / scale).collect();
+        let scratch = self.output.unfinished("");
+        let mut draft = read_mesh(&self.output.path(MESH), 0, &scratch, &self.request.gmsh)?;
+        draft.bisect(&targets)?;
+        let count = draft.cells.elements.len();
+        self.output.write(MESH, |path| write_msh(path, &draft))?;
+        self.observer.note(
+            "bisected",
+            &format!(
+                "{} -> {count} cells ({:.2} s)",
+                mesh.cells.len(),
+                start.elapsed().as_secs_f64()
+            ),
+        );
+        self.summary.decisions.clear();
+        Ok(())
+    }
+}
+
+/// Geometric mean of sizes at the corners of a cell.
+fn size(mesh: &Mesh, sizes: &[f64], cell: usize) -> f64 {
+    let corners = &mesh.cells.nodes_of(cell)[..mesh.cells.shapes[cell].corner_count()];
+    let logarithms = corners.iter().map(|&node| sizes[node as usize].ln());
+    (logarithms.sum::<f64>() / corners.len() as f64).exp()
+}
+
 /// Number of cells that a mesh with these sizes will have, going by regular tetrahedra.
 fn cells(mesh: &Mesh, sizes: &[f64]) -> f64 {
     let of_cell = |cell: usize| {
-        let corners = &mesh.cells.nodes_of(cell)[..mesh.cells.shapes[cell].corner_count()];
-        let logarithms = corners.iter().map(|&node| sizes[node as usize].ln());
-        let size = (logarithms.sum::<f64>() / corners.len() as f64).exp();
+        let size = size(mesh, sizes, cell);
         let volume =
             kluft_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
         72.0_f64.sqrt() * volume / (size * size * size)

@@ -60,7 +60,7 @@ pub use refine::refine;
 pub use remedies::in_terms_of_scene;
 pub use rock::RockEntry;
 pub use roles::{Roles, repeated_name, roles};
-pub use scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
+pub use scene::{Adapt, AdaptBy, Isolated, MeshSource, Named, Scene, SolverEntry};
 pub use setting::{FluidUse, Setting};
 pub use stages::{StageBinding, Staged};
 pub use strength::StrengthReduction;

@@ -15,7 +15,7 @@ use crate::oracle;
 use crate::probe::read_probe;
 use crate::reader::{Section, Source};
 use crate::rock::read_rock;
-use crate::scene::{Adapt, Isolated, MeshSource, Named, Scene, SolverEntry};
+use crate::scene::{Adapt, AdaptBy, Isolated, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::Setting;
 use crate::strength::read_strength_reduction;
 
@@ -313,11 +313,16 @@ fn read_adapt(section: Section<'_, '_>) -> Option<Adapt> {
     let tolerance = section.number("tolerance");
     let max_unknowns = section.number("max_unknowns");
     let max_rounds = section.number("max_rounds");
+    let by = match section.choice("by") {
+        Some("bisection") => AdaptBy::Bisection,
+        _ => AdaptBy::Meshing,
+    };
     section.finish();
     Some(Adapt {
         tolerance: tolerance?,
         max_unknowns: max_unknowns.unwrap_or(1e6),
         max_rounds: max_rounds.map_or(8, |rounds| rounds.ceil() as usize),
+        by,
     })
 }
 

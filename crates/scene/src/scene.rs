@@ -55,6 +55,17 @@ pub struct Adapt {
     pub max_unknowns: f64,
     /// Most meshes.
     pub max_rounds: usize,
+    /// How the next mesh is made.
+    pub by: AdaptBy,
+}
+
+/// How a mesh that follows the error becomes finer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AdaptBy {
+    /// gmsh makes it anew.
+    Meshing,
+    /// Its tetrahedra are bisected.
+    Bisection,
 }
 
 /// What is asked of the linear solver.

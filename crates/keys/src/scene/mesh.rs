@@ -103,6 +103,13 @@ pub static ADAPT: KeySection = KeySection {
             says: "Unknowns beyond which no mesh goes",
         },
         Key {
+            name: "by",
+            kind: Kind::Choice("way to a finer mesh", &["meshing", "bisection"]),
+            need: Need::Default("\"meshing\""),
+            example: "\"bisection\"",
+            says: "Whether gmsh makes each mesh anew, with sizes by the error, or tetrahedra of the first mesh are cut in two where it asks for that, which starts no gmsh; surfaces stay as the first mesh has them",
+        },
+        Key {
             name: "max_rounds",
             kind: number(Dimension::One, Range::Positive),
             need: Need::Default("8"),

@@ -791,6 +791,9 @@ class Adapt(Section):
         tolerance: Largest estimated error of the mean jump of a fracture, as a share of it; > 0, <
             1. Required.
         max_unknowns: Unknowns beyond which no mesh goes; > 0. Without it 1e6.
+        by: Whether gmsh makes each mesh anew, with sizes by the error, or tetrahedra of the first
+            mesh are cut in two where it asks for that, which starts no gmsh; surfaces stay as the
+            first mesh has them. Without it "meshing".
         max_rounds: Most meshes; > 0. Without it 8.
     """
 
@@ -799,11 +802,13 @@ class Adapt(Section):
         *,
         tolerance: Quantity | None = None,
         max_unknowns: Quantity | None = None,
+        by: Literal["meshing", "bisection"] | None = None,
         max_rounds: Quantity | None = None,
     ) -> None:
         super().__init__(
             tolerance=tolerance,
             max_unknowns=max_unknowns,
+            by=by,
             max_rounds=max_rounds,
         )
 
