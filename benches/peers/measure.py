@@ -1,4 +1,4 @@
-"""Runs one command and prints its wall time (s) and peak resident memory (bytes) as JSON.
+"""Runs one command and prints its wall time, processor time (s) and peak resident memory (bytes) as JSON.
 
     python measure.py LOG COMMAND...
 
@@ -20,7 +20,9 @@ def main():
     child = os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ, file_actions=redirect)
     _, status, usage = os.wait4(child, 0)
     seconds = time.perf_counter() - start
-    print(json.dumps({"seconds": seconds, "peak_memory_bytes": 1024 * usage.ru_maxrss}))
+    processor = usage.ru_utime + usage.ru_stime
+    peak = 1024 * usage.ru_maxrss
+    print(json.dumps({"seconds": seconds, "processor_seconds": processor, "peak_memory_bytes": peak}))
     sys.exit(os.waitstatus_to_exitcode(status) != 0)
 
 

@@ -39,6 +39,7 @@ mod contact;
 mod degenerate_geometry;
 mod element_families;
 mod estimate;
+mod flow_pages;
 mod friction;
 mod geometries;
 mod jump_closure;

@@ -3,7 +3,7 @@
 
 use kluft_verification::report::{Effort, Finding, Study};
 use kluft_verification::stability::{
-    contact, contrast, cutoff, cycles, flow, front, hopeless, increments,
+    contact, contrast, coupled_flow, cutoff, cycles, flow, front, hopeless, increments,
 };
 use kluft_verification::stability::{locking, opening, sliding, slivers, steps, units};
 
@@ -49,6 +49,14 @@ fn newton_does_not_see_the_cutoff_and_plain_newton_does() {
 fn flow_does_not_see_small_angles_and_flat_facets() {
     let finding = hold(&flow::STUDY);
     assert!(column(&finding, "rates").iter().all(|error| *error < 1e-9));
+}
+
+#[test]
+fn flow_opens_and_closes_joints_in_few_iterations() {
+    let finding = hold(&coupled_flow::STUDY);
+    let most = column(&finding, "most of a part");
+    assert!(most.iter().all(|count| *count <= 14.0), "{most:?}");
+    assert!(column(&finding, "mass").iter().all(|error| *error < 1e-10));
 }
 
 #[test]

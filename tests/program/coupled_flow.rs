@@ -54,6 +54,79 @@ fn a_joint_that_fills_takes_up_what_the_closed_form_says() {
     );
 }
 
+/// A fault in contact slips by what its water takes from friction, in one step and in twenty.
+#[test]
+fn a_pressurised_fault_slips_by_its_closed_form() {
+    let twenty: Vec<String> = (1..=20)
+        .map(|n| format!("{}", f64::from(n) / 20.0))
+        .collect();
+    let twenty = format!("steps = [{}]", twenty.join(", "));
+    for steps in ["steps = [1]", &twenty] {
+        let edits = [("h = 0.02, half", "h = 0.16, half"), ("steps = [1]", steps)];
+        let said = summary(&Workshop::new("pressurised-fault", &edits).solve("out", &[]));
+        let measures = said["measures"].as_array().expect("measures");
+        let slip = measures.iter().find(|own| own["name"] == "slip_l2");
+        let error = number(&slip.expect("a measure")["error"]);
+        assert!(error < 0.01, "{steps}: {error}");
+    }
+}
+
+/// What a borehole feeds into three joints is in them or has left through the level one.
+#[test]
+fn an_injection_into_three_joints_loses_nothing() {
+    let edits = [
+        ("h = 1.5, h_joint = 0.6", "h = 2.5, h_joint = 1.2"),
+        (
+            "times = [1, 3, 10, 20, 40, 60, 61, 65, 75, 100, 150, 300]",
+            "times = [10, 30, 60]",
+        ),
+    ];
+    let out = Workshop::new("injection", &edits).solve("out", &[]);
+    let said = summary(&out);
+    let steps = said["steps"].as_array().expect("steps");
+    for step in steps {
+        assert!(number(&step["flow"]["mass_error"]) <= 1e-10, "{step}");
+    }
+    let sources = steps[2]["flow"]["sources"].as_array().expect("sources");
+    let of = |name: &str| {
+        let found = sources.iter().find(|source| source["name"] == name);
+        found.expect("a source")
+    };
+    let entered = number(&of("well")["volume"]);
+    is_close(entered, 6e-3, 1e-12);
+    assert!(number(&of("well")["pressure"]) > 4e6);
+    let left = -number(&of("[boundary.right]")["volume"]);
+    assert!(left > 0.5 * entered && left < entered, "{left}");
+    // All joints have opened.
+    let fractures = said["flow"]["fractures"].as_array().expect("fractures");
+    for fracture in fractures {
+        assert!(number(&fracture["pressure"]["mean"]) > 3.05e6, "{fracture}");
+    }
+}
+
+/// A joint whose fluid has left again takes its steps as they are.
+#[test]
+fn nothing_is_divided_where_nothing_moves_any_more() {
+    let edits = [
+        (
+            "viscosity = 1e-3",
+            "viscosity = 1e-3\ninitial_pressure = 3e6",
+        ),
+        (
+            "fluid_pressure = 0.9e6\nhistory = [[0, 1], [100, 1]]",
+            "fluid_pressure = 3e6\nhistory = [[0, 1.3], [10, 1.3], [20, 1], [2e9, 1]]",
+        ),
+        (
+            "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]",
+            "times = [10, 20, 1e9, 2e9]",
+        ),
+    ];
+    let said = summary(&Workshop::new("filling-joint", &edits).solve("out", &[]));
+    let steps = said["steps"].as_array().expect("steps");
+    let parts = steps[3]["substeps"].as_array().expect("parts");
+    assert!(parts.len() <= 3, "{}", steps[3]);
+}
+
 #[test]
 fn a_filling_joint_is_the_same_on_any_threads() {
     let short = (

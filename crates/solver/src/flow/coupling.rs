@@ -35,7 +35,8 @@ use crate::problem::{Conduit, Flow, Load, Problem};
 /// take it.
 const LEAST_SHARE: f64 = 0.1;
 
-/// Share of the displacements below which walls have not moved.
+/// Share of the largest displacement, and of the largest change of a pressure, below which nothing
+/// has moved.
 const LEAST_MOVED: f64 = 1e-6;
 
 /// Flow coupled with the motion of walls.
@@ -166,13 +167,13 @@ impl<'a> Coupling<'a> {
     /// How far two fluids are apart under a load: the larger of the volume that they fill at
     /// different places, as a share of what has moved since the run began,
     /// `sum |V_a - V_b| / sum |V_b - V_0|`, and of the same for pressures by the area of their
-    /// nodes, as root mean squares. Volumes count from a share of what walls would open for that
-    /// move by `displacement` (m).
+    /// nodes, as root mean squares. What has moved counts from a share of what it would be if all
+    /// walls had opened and all pressures changed by the `largest` so far (m, Pa).
     pub(crate) fn difference(
         &self,
         [a, b]: [&FluidState; 2],
         load: &Load,
-        displacement: f64,
+        largest: [f64; 2],
     ) -> f64 {
         let mut volumes = [0.0; 2];
         let mut squares = [0.0; 2];
@@ -184,7 +185,9 @@ impl<'a> Coupling<'a> {
             squares[1] += self.areas[row] * (second - self.initial(row)).powi(2);
         }
         let area: f64 = self.areas.iter().sum();
-        volumes[1] = volumes[1].max(LEAST_MOVED * area * displacement);
+        let least = largest.map(|largest| LEAST_MOVED * largest);
+        volumes[1] = volumes[1].max(area * least[0]);
+        squares[1] = squares[1].max(area * least[1].powi(2));
         let share = |[apart, moved]: [f64; 2]| if apart == 0.0 { 0.0 } else { apart / moved };
         share(volumes).max(share(squares).sqrt())
     }

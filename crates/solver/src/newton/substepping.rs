@@ -252,6 +252,7 @@ fn flows_apart(system: &System<'_>, a: &State, b: &State) -> f64 {
     let fluids = a.fluid.as_ref().zip(b.fluid.as_ref());
     let both = system.coupling().zip(fluids);
     both.map_or(0.0, |(flow, (first, second))| {
-        flow.difference([first, second], &b.load, b.reached.displacement)
+        let largest = [b.reached.displacement, b.reached.pressure];
+        flow.difference([first, second], &b.load, largest)
     })
 }

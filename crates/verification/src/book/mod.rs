@@ -4,13 +4,20 @@
 //! A new page is a file here and an entry of [`report`].
 
 mod estimate;
+mod filled_penny;
+mod filling_joint;
 mod joint_sets;
+mod line_source;
+mod opened_channel;
 mod oscillation;
 mod parts;
 mod patch_test;
 mod paths;
 mod permeability;
 mod plane_cracks;
+mod pressure_step;
+mod radial_flow;
+mod refinement;
 mod scene;
 mod steady_flow;
 
@@ -43,6 +50,12 @@ pub fn report() -> Report {
             estimate::PAGE,
             steady_flow::PAGE,
             permeability::PAGE,
+            radial_flow::PAGE,
+            opened_channel::PAGE,
+            pressure_step::PAGE,
+            line_source::PAGE,
+            filling_joint::PAGE,
+            filled_penny::PAGE,
         ],
         layout: Layout::PageEach,
     }

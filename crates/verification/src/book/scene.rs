@@ -19,8 +19,17 @@ pub struct Outcome {
 
 /// Runs `geometries/SCENE` with these lines in `[mesh]` (beside `geometry`).
 pub fn run(scene: &str, mesh: &str) -> Outcome {
+    run_edited(scene, mesh, &[])
+}
+
+/// The same with parts of its text replaced, each of which it must have.
+pub fn run_edited(scene: &str, mesh: &str, edits: &[(&str, &str)]) -> Outcome {
     let own = root().join("geometries").join(scene);
-    let text = fs::read_to_string(own.join("scene.toml")).expect("a scene");
+    let mut text = fs::read_to_string(own.join("scene.toml")).expect("a scene");
+    for (part, other) in edits {
+        assert!(text.contains(part), "{scene} has no {part}");
+        text = text.replace(part, other);
+    }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("scene.toml");
     fs::write(&file, varied(&text, &own, mesh)).expect("a scene of its own");
@@ -63,6 +72,11 @@ impl Outcome {
     /// Its closed form.
     pub fn exact(&self, name: &str) -> f64 {
         self.measure(name, "exact")
+    }
+
+    /// Its error.
+    pub fn error(&self, name: &str) -> f64 {
+        self.measure(name, "error")
     }
 
     /// Number of unknowns.

@@ -1,5 +1,7 @@
 //! Closed forms, written without any code of the workspace but for the types of its input.
 
+pub mod diffusion;
+pub mod similarity;
 pub mod spherical_joint;
 
 /// Aperture over `b0` under the closing load `q = -sigma_n / (K_n0 b0) > 0`, by bisection on the

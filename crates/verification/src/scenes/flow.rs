@@ -67,6 +67,14 @@ pub fn on_side(mesh: &Mesh, name: &str, value: f64) -> FlowCondition {
     }
 }
 
+/// A rate (m^3/s) that enters where fractures meet a side.
+pub fn fed_from_side(mesh: &Mesh, name: &str, rate: f64) -> FlowCondition {
+    FlowCondition {
+        drive: FlowDrive::Rate(rate),
+        ..on_side(mesh, name, 0.0)
+    }
+}
+
 /// A borehole at the node nearest to a place.
 pub fn well(mesh: &Mesh, at: DVec3, radius: f64, drive: FlowDrive) -> FlowCondition {
     let nodes = 0..mesh.nodes.len();

@@ -6,10 +6,12 @@ pub mod closing;
 pub mod crack_front;
 mod files;
 pub mod flow;
+pub mod flowing_cube;
 pub mod joint_sets;
 pub mod networks;
 pub mod pressed;
 mod shuffled;
+pub mod soft_slabs;
 mod solving;
 pub mod uniform_stress;
 

@@ -7,6 +7,8 @@ mod blocks;
 pub mod contact;
 pub mod contrast;
 mod counts;
+pub mod coupled_flow;
+mod coupled_steps;
 pub mod cutoff;
 pub mod cycles;
 pub mod flow;
@@ -53,6 +55,7 @@ pub fn report() -> Report {
             units::STUDY,
             steps::STUDY,
             flow::STUDY,
+            coupled_flow::STUDY,
         ],
         layout: Layout::OnePage { promise: promise() },
     }
