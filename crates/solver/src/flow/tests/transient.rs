@@ -35,6 +35,7 @@ fn schedule(end: f64, count: usize) -> Schedule {
     Schedule {
         steps: (0..count).map(step).collect(),
         is_timed: true,
+        goes_on_from: None,
         sudden: vec![1.0],
         ..Schedule::proportional(vec![1.0])
     }
