@@ -3,27 +3,22 @@
 //! Arguments come in, an exit code goes out. Only here anything is printed.
 
 mod args;
-mod defects;
 mod explain;
-mod failure;
-mod gmsh;
 mod import;
 mod init;
-mod input;
 mod inspect;
 mod network;
-mod printing;
-mod report;
 mod run;
 mod shell;
-#[cfg(target_os = "linux")]
-mod start_gmsh;
 mod stdout;
 mod study;
 
 use std::process::ExitCode;
 
 use clap::Parser;
+#[cfg(target_os = "linux")]
+use kluft_program::start_gmsh;
+use kluft_program::{defects, failure, gmsh, input, printing, report};
 
 use args::{Cli, Command};
 

@@ -8,7 +8,7 @@ use crate::Violation;
 const PROGRAM: &str = "kluft";
 
 /// Every package of ours with those that it may depend on.
-const ALLOWED: [(&str, &[&str]); 16] = [
+const ALLOWED: [(&str, &[&str]); 18] = [
     ("kluft-defect", &[]),
     ("kluft-algebra", &[]),
     ("kluft-chart", &[]),
@@ -64,6 +64,21 @@ const ALLOWED: [(&str, &[&str]); 16] = [
         ],
     ),
     (
+        "kluft-program",
+        &["kluft-io", "kluft-mesh", "kluft-run", "kluft-solver"],
+    ),
+    (
+        "kluft-mpi",
+        &[
+            "kluft-io",
+            "kluft-mesh",
+            "kluft-program",
+            "kluft-run",
+            "kluft-scene",
+            "kluft-solver",
+        ],
+    ),
+    (
         PROGRAM,
         &[
             "kluft-chart",
@@ -72,6 +87,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
             "kluft-keys",
             "kluft-mesh",
             "kluft-network",
+            "kluft-program",
             "kluft-report",
             "kluft-run",
             "kluft-scene",

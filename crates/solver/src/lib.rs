@@ -49,11 +49,14 @@ pub use flow::{
     FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor, TimeStep,
     TransientFlow,
 };
-pub use kluft_algebra::{Analysis, BlockMatrix, Cholesky, LinearFailure, NodeOrder, norm};
+pub use kluft_algebra::{
+    Analysis, BlockMatrix, BlockRows, Cholesky, FixedPart, InterfaceBlocks, LinearFailure, Lists,
+    NodeOrder, multigrid, norm, small,
+};
 pub use linear::{
     Condensed, Direct, ExtraMemory, FlowWorkload, Iterative, LinearMethod, LinearSolution,
     NonsymmetricSolver, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
-    Workload,
+    Workload, first_coarsening, first_guess, serves,
 };
 pub use newton::{
     Determinacy, Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord,

@@ -127,6 +127,16 @@ impl Factors {
         sum
     }
 
+    /// Block of `L^-T` of a cluster, as rows.
+    pub(super) fn transposed_inverse_block(
+        &self,
+        cluster: u32,
+        row: usize,
+        column: usize,
+    ) -> [[f64; 3]; 3] {
+        transpose(&block(self.inverse_of(cluster), column, row))
+    }
+
     /// The inverses as they are kept for the cycle.
     pub(super) fn compact(self) -> InverseFactors {
         InverseFactors {
@@ -155,18 +165,23 @@ fn gather(rows: &SumRows<'_>, clusters: &Clusters, cluster: usize, triangle: &mu
     }
 }
 
-/// Sets `matrix` to the scaled matrix without its diagonal blocks; blocks as columns.
+/// Sets `matrix` to the scaled matrix without its diagonal blocks; blocks as columns. Rows that are
+/// not `is_wanted` are empty.
 pub(super) fn set_matrix(
     matrix: &mut Sparse<3, 3>,
     rows: &SumRows<'_>,
     clusters: &Clusters,
     factors: &Factors,
+    is_wanted: impl Fn(usize) -> bool + Sync + Send,
 ) {
     matrix.rebuild(
         rows.count(),
         rows_per_task::<3>(),
         || Accumulator::<3, 3>::new(rows.count()),
         |sums, row| {
+            if !is_wanted(row) {
+                return 0;
+            }
             if let Some(count) = single_neighbours(rows, clusters, row) {
                 return count;
             }
@@ -178,6 +193,9 @@ pub(super) fn set_matrix(
         },
         #[inline(always)]
         |sums, row, columns, blocks| {
+            if columns.is_empty() {
+                return;
+            }
             let (own, at) = clusters.place[row];
             let left = factors.inverse_of(own);
             if single_neighbours(rows, clusters, row).is_some() {

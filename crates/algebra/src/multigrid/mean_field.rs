@@ -37,7 +37,7 @@ impl MeanField {
         let single = Clusters::single(rows.count());
         let factors = Factors::of(rows, &single)?;
         let mut matrix = Sparse::default();
-        block_jacobi::set_matrix(&mut matrix, rows, &single, &factors);
+        block_jacobi::set_matrix(&mut matrix, rows, &single, &factors, |_| true);
         let modes = block_jacobi::modes(&factors, modes);
         let bound = spectrum::largest_eigenvalue(&matrix);
         if !bound.is_finite() {

@@ -13,6 +13,7 @@ mod block_jacobi;
 mod clusters;
 mod coarsest;
 mod cycle;
+mod first_coarsening;
 mod galerkin;
 mod mean_field;
 mod prolongation;
@@ -40,6 +41,7 @@ use crate::block_rows::BlockRows;
 use crate::failure::MultigridFailure;
 use crate::interface::InterfaceBlocks;
 
+pub use first_coarsening::{BlockList, FirstCoarsening, LevelPart};
 pub use mean_field::{CoarseBasis, MeanField};
 
 /// A hierarchy of levels, and the V-cycle over them.

@@ -109,7 +109,7 @@ impl FixedHierarchy {
     }
 
     /// Whether the next level is worth having.
-    fn has_next(&self, rows: usize) -> bool {
+    pub(super) fn has_next(&self, rows: usize) -> bool {
         let next = self.basis.modes.len();
         3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
     }
@@ -127,7 +127,7 @@ impl FixedHierarchy {
             restrictor,
         } = buffers;
         let factors = Factors::of(rows, &self.clusters)?;
-        block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors);
+        block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors, |_| true);
         let bound = spectrum::largest_eigenvalue(&matrix);
         if !bound.is_finite() {
             return Err(MultigridFailure::NotFinite);
@@ -146,7 +146,7 @@ impl FixedHierarchy {
                 &factors,
             );
             let transpose = Transpose::of(&prolongator, columns);
-            let product = self.product(rows, &matrix, &prolongator, &transpose);
+            let product = self.product(rows, &matrix, &prolongator, &transpose, |_| true);
             let (transfer, next) = descend(
                 product,
                 prolongator,
@@ -169,32 +169,36 @@ impl FixedHierarchy {
         Ok((factors.compact(), level, next))
     }
 
-    /// `P^T A P`.
-    fn product(
+    /// What the rows of `A` that are `is_own` give to `P^T A P`.
+    pub(super) fn product(
         &mut self,
         rows: &SumRows<'_>,
         matrix: &Sparse<3, 3>,
         prolongator: &Sparse<3, 6>,
         transpose: &Transpose,
+        is_own: impl Fn(usize) -> bool + Sync,
     ) -> PartialProduct {
         let is_changed: Vec<bool> = (0..self.clusters.count())
             .into_par_iter()
             .map(|cluster| rows.is_changed(self.clusters.members.of(cluster)))
             .collect();
         let is_changed = |row: usize| is_changed[self.clusters.place[row].0 as usize];
-        let is_near = |row| is_changed(row) || matrix.row(row).any(|(at, _)| is_changed(at));
+        let is_near =
+            |row| is_own(row) && (is_changed(row) || matrix.row(row).any(|(at, _)| is_changed(at)));
         let is_near: Vec<bool> = (0..matrix.rows()).into_par_iter().map(is_near).collect();
         let near = is_near.iter().filter(|near| **near).count();
-        if near == 0 || near as f64 > MOST_NEAR * matrix.rows() as f64 {
-            return PartialProduct::whole(matrix, prolongator, transpose);
-        }
-        let of_rows = |near: bool| {
-            PartialProduct::of_rows(matrix, prolongator, transpose, |row| is_near[row] == near)
-        };
         let aggregates = transpose.columns();
+        let of_rows = |is_wanted: &(dyn Fn(usize) -> bool + Sync)| {
+            PartialProduct::of_rows(matrix, prolongator, transpose, is_wanted)
+        };
+        if near == 0 || near as f64 > MOST_NEAR * matrix.rows() as f64 {
+            return PartialProduct::sum(aggregates, &of_rows(&is_own));
+        }
         let far = self.far.take();
-        let far = far.unwrap_or_else(|| PartialProduct::sum(aggregates, &of_rows(false)));
-        let near = of_rows(true);
+        let far = far.unwrap_or_else(|| {
+            PartialProduct::sum(aggregates, &of_rows(&|row| is_own(row) && !is_near[row]))
+        });
+        let near = of_rows(&|row| is_near[row]);
         let whole = PartialProduct::sum(aggregates, std::iter::once(&far).chain(&near));
         self.far = Some(far);
         whole

@@ -113,7 +113,7 @@ fn rigid_motions_are_prolonged_exactly() {
     let single = Clusters::single(rows.count());
     let factors = Factors::of(&rows, &single).unwrap();
     let mut scaled = Sparse::default();
-    block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors);
+    block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
     let modes = block_jacobi::modes(&factors, &case.modes);
     let aggregates = aggregation::aggregate(&scaled, STRENGTH);
     let tentative = tentative::tentative(&aggregates, &modes);

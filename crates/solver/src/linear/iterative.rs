@@ -3,7 +3,7 @@
 //! changes the diagonal blocks of the nodes on them and the levels below.
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::multigrid::{Multigrid, Workspace, rigid_modes};
+use kluft_algebra::multigrid::{FirstCoarsening, Multigrid, Workspace, rigid_modes};
 use kluft_algebra::{
     ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks, LinearFailure,
     conjugate_gradients, norm, trace,
@@ -85,24 +85,37 @@ impl Iterative {
         self.built_for = Some(stiffness);
         Ok(())
     }
+}
 
-    /// Whether the multigrid was made with a stiffness of the fractures that is much like
-    /// `stiffness`.
-    fn is_current(&self, fixed: FixedPart<'_>, stiffness: &[DMat3]) -> bool {
-        let Some(built_for) = &self.built_for else {
-            return false;
-        };
-        let FixedPart { matrix, interface } = fixed;
-        let numbered = interface.rows.iter().enumerate();
-        let changed = numbered.filter(|&(row, unknown)| {
-            let columns = interface.columns.of(row);
-            let place = columns.partition_point(|column| column < unknown);
-            let own = interface.columns.offset[row] + place;
-            let rock = trace(matrix.diagonal(*unknown as usize)) / 3.0;
-            !is_spectrally_close(built_for[own], stiffness[own], BESIDE * rock)
-        });
-        changed.count() as f64 <= TOLERATED * interface.rows.len() as f64
-    }
+/// Whether a preconditioner that was made for a stiffness of the fractures, `built_for`, serves
+/// another one that is much like it.
+pub fn serves(fixed: FixedPart<'_>, built_for: &[DMat3], stiffness: &[DMat3]) -> bool {
+    let FixedPart { matrix, interface } = fixed;
+    let numbered = interface.rows.iter().enumerate();
+    let changed = numbered.filter(|&(row, unknown)| {
+        let columns = interface.columns.of(row);
+        let place = columns.partition_point(|column| column < unknown);
+        let own = interface.columns.offset[row] + place;
+        let rock = trace(matrix.diagonal(*unknown as usize)) / 3.0;
+        !is_spectrally_close(built_for[own], stiffness[own], BESIDE * rock)
+    });
+    changed.count() as f64 <= TOLERATED * interface.rows.len() as f64
+}
+
+/// Clusters of unknowns and the motions of cut aggregates, for a solver that divides the rows among
+/// processes.
+///
+/// # Errors
+/// If the rock is not positive definite.
+pub fn first_coarsening(system: &System<'_>) -> Result<FirstCoarsening, LinearFailure> {
+    let space = system.discretisation.space(system.problem);
+    let coarsening = FirstCoarsening::of(
+        system.rock_rows(),
+        &space.points.offset,
+        &modes(system),
+        |means| SplitAggregates::of(space, means).basis(),
+    )?;
+    Ok(coarsening)
 }
 
 /// Whether the stiffness of a fracture changes by less than a factor of [`FACTOR_OF_CHANGE`] in
@@ -143,7 +156,8 @@ fn modes(system: &System<'_>) -> Vec<[DVec3; 6]> {
 
 impl TangentSolver for Iterative {
     fn update(&mut self, fixed: FixedPart<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
-        if !self.is_current(fixed, &stiffness) {
+        let built_for = self.built_for.as_deref();
+        if !built_for.is_some_and(|built_for| serves(fixed, built_for, &stiffness)) {
             self.rebuild_for(fixed, stiffness.clone())?;
         }
         self.stiffness = Some(stiffness);
@@ -159,8 +173,12 @@ impl TangentSolver for Iterative {
         let stiffness = self.stiffness.as_deref().unwrap_or_default();
         let multiply =
             |vector: &[DVec3], product: &mut [DVec3]| fixed.multiply(stiffness, vector, product);
-        let (mut unknowns, residual) =
-            first_guess(&self.multigrid, fixed.interface.rows, multiply, rhs);
+        let (mut unknowns, residual) = first_guess(
+            |rest| self.multigrid.clusters_alone(rest),
+            fixed.interface.rows,
+            multiply,
+            rhs,
+        );
         let size = norm(&residual);
         let wanted = tolerance * norm(rhs) / size;
         let mut correction = vec![DVec3::ZERO; rhs.len()];
@@ -245,12 +263,13 @@ impl TangentSolver for Iterative {
 }
 
 /// Jumps alone, node by node, as long as that helps much; with the forces that remain.
+/// `clusters_alone` is the block Jacobi method of the tangent.
 ///
 /// Newton may leave the walls of a stiff facet so far from where its law is linearised that their
 /// forces exceed all others by more digits than there are. The guess moves those walls and leaves
 /// forces of an ordinary size.
-fn first_guess(
-    multigrid: &Multigrid,
+pub fn first_guess(
+    mut clusters_alone: impl FnMut(&[DVec3]) -> Vec<DVec3>,
     jumps: &[u32],
     multiply: impl Fn(&[DVec3], &mut [DVec3]),
     rhs: &[DVec3],
@@ -268,7 +287,7 @@ fn first_guess(
     }
     for _ in 0..MOST_GUESSES {
         let mut next = guess.clone();
-        let alone = multigrid.clusters_alone(&residual);
+        let alone = clusters_alone(&residual);
         for &unknown in jumps {
             next[unknown as usize] += alone[unknown as usize];
         }

@@ -19,6 +19,6 @@ pub use condensed::Condensed;
 pub use cost::{ExtraMemory, FlowWorkload, LinearMethod, Prediction, Unknowns, Workload};
 pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
-pub use iterative::Iterative;
+pub use iterative::{Iterative, first_coarsening, first_guess, serves};
 pub use nonsymmetric::NonsymmetricSolver;
 pub use tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};

@@ -20,12 +20,12 @@ pub struct LinearSolution {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SolverHistory {
     /// Blocks of the fractures that it solves with, or that its factor was made with.
-    pub(super) stiffness: Option<Vec<DMat3>>,
+    pub stiffness: Option<Vec<DMat3>>,
     /// Blocks of the fractures that its preconditioner was made with.
-    pub(super) preconditioned: Option<Vec<DMat3>>,
+    pub preconditioned: Option<Vec<DMat3>>,
     /// Factor by which the spectrum of the preconditioner turned out to reach further than
     /// estimated.
-    pub(super) margin: Option<f64>,
+    pub margin: Option<f64>,
 }
 
 impl SolverHistory {

@@ -6,7 +6,7 @@ use kluft_algebra::LinearFailure;
 use super::extrapolation::Path;
 use super::recycling::RecycledSpace;
 use super::settings::NewtonSettings;
-use crate::linear::{LinearMethod, NonsymmetricSolver, Plan, Unknowns, Workload};
+use crate::linear::{LinearMethod, NonsymmetricSolver, Plan, TangentSolver, Unknowns, Workload};
 use crate::system::System;
 
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
@@ -42,14 +42,25 @@ impl Newton {
         settings: NewtonSettings,
         plan: Plan,
     ) -> Result<Self, LinearFailure> {
+        let iterates = plan.method == LinearMethod::Iterative;
+        Ok(Self::on(system, settings, plan.prepare(system)?, iterates))
+    }
+
+    /// On top of a linear solver of the system, which may be the caller's own; whether it iterates.
+    pub fn on(
+        system: &System<'_>,
+        settings: NewtonSettings,
+        linear: Box<dyn TangentSolver>,
+        iterates: bool,
+    ) -> Self {
         // A guess in the recycled space knows of no pressures.
-        let recycles = plan.method == LinearMethod::Iterative && system.coupling().is_none();
-        Ok(Self {
+        let recycles = iterates && system.coupling().is_none();
+        Self {
             recycled: recycles.then(RecycledSpace::default),
-            linear: NonsymmetricSolver::new(plan.prepare(system)?),
+            linear: NonsymmetricSolver::new(linear),
             path: Path::default(),
             settings,
-        })
+        }
     }
 
     /// Unknowns (m) in answer to small `forces` (N) on top of the last state, to `tolerance` times
