@@ -69,6 +69,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
             commit: option_env!("KLUFT_COMMIT"),
         },
         gmsh: options.gmsh.clone(),
+        ranks: None,
     };
     let outcome = kluft_run::run(request, &mut report)?;
     if outcome.ending != Ending::NothingLeft {

@@ -104,7 +104,12 @@ impl ClaimedFolder {
 
     /// Where a file stands until it is finished: a folder that nobody else knows.
     pub fn unfinished(&self, name: &str) -> PathBuf {
-        self.path.join(INNER).join("tmp").join(name)
+        Self::unfinished_in(&self.path, name)
+    }
+
+    /// The same for a folder that another process has claimed, which writes together with this one.
+    pub fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
+        folder.join(INNER).join("tmp").join(name)
     }
 
     fn inner(&self, name: &str) -> PathBuf {

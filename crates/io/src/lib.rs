@@ -10,6 +10,7 @@ mod load;
 pub mod msh;
 pub mod printable;
 mod pvd;
+mod pvtu;
 mod vtm;
 mod vtu;
 mod vtu_array;
@@ -25,6 +26,7 @@ pub use gmsh::{
 pub use load::{arrange_large, load_msh};
 pub use msh::{parse_msh, read_msh, shape_of_gmsh_element, write_msh};
 pub use pvd::write_pvd;
+pub use pvtu::write_pvtu;
 pub use vtm::write_vtm;
 pub use vtu::{
     Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu, write_vtu_with,

@@ -45,6 +45,8 @@ pub struct Identity {
     pub values: Vec<Fingerprint>,
     /// The bytes of the mesh file.
     pub mesh: Fingerprint,
+    /// Number of processes; results depend on it in their last digits.
+    pub ranks: u32,
 }
 
 /// What is finished, and how to go on.
@@ -225,6 +227,14 @@ impl Identity {
             let remedy = format!("use that version, or {AFRESH}");
             Defect::new(NAME, problem, remedy)
         });
+        let ranks = (self.ranks != former.ranks).then(|| {
+            let problem = format!(
+                "the run was interrupted on {} ranks, and there are {} now",
+                former.ranks, self.ranks
+            );
+            let remedy = format!("give it as many ranks as before, or {AFRESH}");
+            Defect::new(NAME, problem, remedy)
+        });
         let scene = (self.scene != former.scene).then(|| changed(scene, "scene"));
         let geometry = geometry.filter(|_| self.geometry != former.geometry);
         let geometry = geometry.map(|path| changed(path, "geometry"));
@@ -235,7 +245,12 @@ impl Identity {
             Defect::new(NAME, problem, format!("undo the change, or {AFRESH}"))
         });
         let scene = scene.into_iter().chain(geometry);
-        version.into_iter().chain(scene).chain(values).collect()
+        version
+            .into_iter()
+            .chain(ranks)
+            .chain(scene)
+            .chain(values)
+            .collect()
     }
 }
 
@@ -269,6 +284,7 @@ mod tests {
             geometry: Some(1 << 127),
             values: vec![3],
             mesh: 7,
+            ranks: 2,
         }
     }
 
@@ -366,6 +382,13 @@ mod tests {
         other.values = vec![4];
         let defects = compare(&other);
         assert!(defects[0].problem.contains("file of values"), "{defects:?}");
+        (other.values, other.ranks) = (vec![3], 3);
+        let defects = compare(&other);
+        assert!(
+            defects[0].problem.contains("on 3 ranks, and there are 2"),
+            "{defects:?}"
+        );
+        other.ranks = 2;
         other.version = "1.2.2".into();
         other.scene ^= 1;
         other.geometry = None;

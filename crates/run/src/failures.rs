@@ -6,6 +6,7 @@ use kluft_scene::SolverEntry;
 use kluft_solver::{LinearFailure, Plan, Problem, Step, StepOutcome, StepRecord, System};
 
 use crate::decisions::{gigabytes, of_step};
+use crate::ranks::Ranks;
 
 /// A solver that does not fit in memory, and what would.
 pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
@@ -35,6 +36,20 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
         ),
         remedy,
     )
+}
+
+/// A rank that has no room for its part.
+pub fn rank_too_large(ranks: Ranks<'_>, needed: usize, limit: usize) -> Defect {
+    let problem = format!(
+        "rank {} of {} needs {} for its part of the solver and the estimate of errors, and may \
+         take {}",
+        ranks.rank,
+        ranks.count,
+        gigabytes(needed),
+        gigabytes(limit)
+    );
+    let remedy = "mesh coarser (a larger h), or spread the ranks over more machines";
+    Defect::new("memory of this machine", problem, remedy)
 }
 
 /// Says of files that could not be written what is kept nevertheless.

@@ -88,12 +88,15 @@ pub fn is_step(name: &str) -> bool {
         let Some(rest) = name.strip_prefix(kind) else {
             return false;
         };
-        let number = rest
-            .strip_prefix('_')
-            .and_then(|rest| rest.strip_suffix(".vtu"));
+        let numbers = rest.strip_prefix('_').and_then(|rest| {
+            let piece = rest.strip_suffix(".vtu");
+            piece.or_else(|| rest.strip_suffix(".pvtu"))
+        });
         let is_number =
             |text: &str| text.len() >= 4 && text.bytes().all(|byte| byte.is_ascii_digit());
-        rest == ".pvd" || number.is_some_and(is_number)
+        // A piece has a number of its own behind that of the step.
+        let are_numbers = |text: &str| text.splitn(2, '_').all(is_number);
+        rest == ".pvd" || numbers.is_some_and(are_numbers)
     };
     of_kind("rock") || of_kind("fractures")
 }

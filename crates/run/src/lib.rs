@@ -16,6 +16,7 @@
 //! | `rigid`, `fluid_step` | flow alone in rigid rock; what a fluid adds in rock that deforms |
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
+//! | `ranks`, `pieces` | a run that many processes share, and what each of them writes |
 //! | `output`, `grids`, `checkpoint`, `resume`, `former`, `save` | files |
 //! | `page`, `provenance`, `machine` | the page of a run; what it was made with |
 //! | `decisions`, `failures` | what the program decided, and why a run failed, in words |
@@ -65,9 +66,11 @@ mod output;
 mod page;
 mod permeability;
 mod permeability_summary;
+mod pieces;
 mod prepare;
 mod probes;
 mod provenance;
+mod ranks;
 mod request;
 mod resume;
 mod rigid;
@@ -100,11 +103,14 @@ pub use page::NAME as REPORT;
 pub use permeability_summary::{PermeabilitySummary, PrincipalPermeability, TensorSummary};
 pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
 pub use provenance::{InputFile, Provenance};
+pub use ranks::Ranks;
 pub use request::{Caller, MeshInput, Origin, Request};
 pub use run::run;
 pub use save::Saving;
 pub use spread::Spread;
 pub use stages::Interruption;
 pub use strength_summary::{MotionSummary, StrengthSummary, Trial};
-pub use summary::{FractureSummary, StepMeasures, StepSummary, Summary, Undetermined};
+pub use summary::{
+    FractureSummary, RankSummary, StepMeasures, StepSummary, Summary, Undetermined,
+};
 pub use threads::{ThreadCount, pool, thread_count};

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use kluft_io::{
-    About, ClaimedFolder, Grid, fingerprint_of, sync_folder, write_pvd, write_vtm, write_vtu_with,
+    About, ClaimedFolder, Fingerprint, Grid, fingerprint_of, sync_folder, write_pvd, write_pvtu,
+    write_vtm, write_vtu_with,
 };
 use kluft_mesh::Defect;
 use kluft_report::Surface;
@@ -15,7 +16,9 @@ use crate::flow::SOURCES;
 use crate::former::{self, TOGETHER};
 use crate::history;
 use crate::page::{self, Shown};
+use crate::pieces::Piece;
 use crate::probes;
+use crate::ranks::Ranks;
 
 /// The collections of the grids of all load steps.
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
@@ -50,10 +53,14 @@ pub struct Output {
     shows: bool,
     /// What the page shows: the load step that was written last.
     shown: Option<Shown>,
+    /// How many files hold a grid together.
+    pub pieces: usize,
 }
 
 enum Place {
     Kept(ClaimedFolder),
+    /// The first rank has claimed it, and writes everything but the pieces.
+    Beside(PathBuf),
     Nowhere(TempDir),
 }
 
@@ -90,8 +97,17 @@ impl Output {
         Ok(Self::at(Place::Nowhere(temporary)))
     }
 
+    /// An output into a folder that the first of several ranks has claimed: pieces alone.
+    pub fn beside(folder: &Path, ranks: usize) -> Self {
+        Self {
+            pieces: ranks,
+            ..Self::at(Place::Beside(folder.to_owned()))
+        }
+    }
+
     fn at(place: Place) -> Self {
         Self {
+            pieces: 1,
             place,
             rock: Vec::new(),
             fractures: Vec::new(),
@@ -132,6 +148,7 @@ impl Output {
     pub fn path(&self, name: &str) -> PathBuf {
         match &self.place {
             Place::Kept(folder) => folder.path().join(name),
+            Place::Beside(folder) => folder.join(name),
             Place::Nowhere(folder) => folder.path().join(name),
         }
     }
@@ -140,6 +157,7 @@ impl Output {
     pub fn unfinished(&self, name: &str) -> PathBuf {
         match &self.place {
             Place::Kept(folder) => folder.unfinished(name),
+            Place::Beside(folder) => ClaimedFolder::unfinished_in(folder, name),
             Place::Nowhere(folder) => folder.path().join(name),
         }
     }
@@ -151,7 +169,7 @@ impl Output {
     pub fn publish(&self, name: &str) -> Result<(), Defect> {
         match &self.place {
             Place::Kept(folder) => folder.publish(name),
-            Place::Nowhere(_) => Ok(()),
+            Place::Beside(_) | Place::Nowhere(_) => Ok(()),
         }
     }
 
@@ -166,6 +184,7 @@ impl Output {
     ) -> Result<(), Defect> {
         match &self.place {
             Place::Kept(folder) => folder.write(name, write),
+            Place::Beside(_) => Ok(()),
             Place::Nowhere(folder) => write(&folder.path().join(name)),
         }
     }
@@ -177,7 +196,7 @@ impl Output {
     pub fn sync(&self) -> Result<(), Defect> {
         match &self.place {
             Place::Kept(folder) => sync_folder(folder.path()),
-            Place::Nowhere(_) => Ok(()),
+            Place::Beside(_) | Place::Nowhere(_) => Ok(()),
         }
     }
 
@@ -188,14 +207,14 @@ impl Output {
     pub fn close(&mut self) -> Result<(), Defect> {
         match &mut self.place {
             Place::Kept(folder) => folder.forget_missing(),
-            Place::Nowhere(_) => Ok(()),
+            Place::Beside(_) | Place::Nowhere(_) => Ok(()),
         }
     }
 
     /// Goes on after load steps that a former run has written, which end at `times`.
     pub fn go_on_after(&mut self, times: impl Iterator<Item = f64>, sums: Vec<StepFiles>) {
         for (index, time) in times.enumerate() {
-            let [rock, fractures] = names(index + 1);
+            let [rock, fractures] = names(index + 1, self.pieces);
             self.rock.push((time, rock));
             self.fractures.push((time, fractures));
         }
@@ -212,12 +231,16 @@ impl Output {
     /// # Errors
     /// Those that are not.
     pub fn check_steps(&self, sums: &[StepFiles]) -> Result<(), Vec<Defect>> {
+        if matches!(self.place, Place::Beside(_)) {
+            return Ok(());
+        }
         let files = sums.iter().enumerate();
-        let files = files.flat_map(|(index, sums)| names(index + 1).into_iter().zip(*sums));
+        let files =
+            files.flat_map(|(index, sums)| names(index + 1, self.pieces).into_iter().zip(*sums));
         let files: Vec<(String, u128)> = files.collect();
         let check = |(name, sum): &(String, u128)| -> Option<Defect> {
             let file = self.path(name);
-            let problem = match fingerprint_of(&file) {
+            let problem = match self.sum_of(name) {
                 Ok(found) if found == *sum => return None,
                 Ok(_) => "the results of a finished load step are not those of this run",
                 Err(_) => "the results of a finished load step are gone",
@@ -241,7 +264,11 @@ impl Output {
         let Place::Kept(folder) = &mut self.place else {
             return Ok(());
         };
-        let names: Vec<String> = (1..=count).flat_map(names).collect();
+        let pieces = self.pieces;
+        let grids = (1..=count).flat_map(|number| names(number, pieces));
+        let names: Vec<String> = grids
+            .flat_map(|name| [parts(&name, pieces), vec![name]].concat())
+            .collect();
         folder.protect(names.iter().map(String::as_str), &[])?;
         list(folder, names.iter().map(String::as_str))
     }
@@ -288,7 +315,7 @@ impl Output {
         if !self.is_kept() {
             return Ok(());
         }
-        let [rock, fractures] = names(self.rock.len() + 1);
+        let [rock, fractures] = names(self.rock.len() + 1, self.pieces);
         self.about.time = Some(time);
         let of_rock = || {
             let grid = rock_grid();
@@ -305,6 +332,12 @@ impl Output {
         self.shown = surface.map(|surface| Shown { surface, body });
         self.publish(&rock)?;
         self.publish(&fractures)?;
+        self.collect(time, [rock, fractures], sums)
+    }
+
+    /// Lets the collections list the grids of one load step, which are in their places.
+    fn collect(&mut self, time: f64, names: [String; 2], sums: StepFiles) -> Result<(), Defect> {
+        let [rock, fractures] = names;
         self.sums.push(sums);
         self.rock.push((time, rock));
         self.fractures.push((time, fractures));
@@ -317,6 +350,72 @@ impl Output {
         };
         let blocks = [("rock", rock.as_str()), ("fractures", fractures.as_str())];
         self.write(TOGETHER, |path| write_vtm(path, &blocks))
+    }
+
+    /// Writes the piece of this rank of the grids of one load step; the first rank gives all pieces
+    /// their places, and lists them.
+    ///
+    /// # Errors
+    /// If a file cannot be written, here or by another rank.
+    pub fn write_pieces(
+        &mut self,
+        time: f64,
+        grids: [&Grid; 2],
+        piece: &Piece,
+        ranks: Ranks<'_>,
+    ) -> Result<(), Vec<Defect>> {
+        if matches!(self.place, Place::Nowhere(_)) {
+            return Ok(());
+        }
+        let names = names(self.rock.len() + 1, self.pieces);
+        self.about.time = Some(time);
+        let own = [piece.of_rock(grids[0]), piece.of_fractures(grids[1])];
+        let mut written = Vec::new();
+        for (name, grid) in names.iter().zip(own) {
+            let name = &parts(name, self.pieces)[ranks.rank];
+            written.push(self.write_grid(name, grid));
+        }
+        let written: Result<Vec<u128>, Defect> = written.into_iter().collect();
+        ranks.agree(written.map_err(|defect| vec![defect]))?;
+        if !self.is_kept() {
+            self.rock.push((time, String::new()));
+            return Ok(());
+        }
+        let [rock, fractures] = grids;
+        self.shown = self.shows.then(|| Shown {
+            surface: Surface::of(fractures, &page::fields()),
+            body: box_of(&rock.points),
+        });
+        let placed = self.place_pieces(time, grids, names);
+        placed.map_err(|defect| vec![defect])
+    }
+
+    fn place_pieces(
+        &mut self,
+        time: f64,
+        grids: [&Grid; 2],
+        names: [String; 2],
+    ) -> Result<(), Defect> {
+        for (name, grid) in names.iter().zip(grids) {
+            let pieces = parts(name, self.pieces);
+            pieces.iter().try_for_each(|piece| self.publish(piece))?;
+            self.write(name, |path| write_pvtu(path, grid, &pieces))?;
+        }
+        let sums = [self.sum_of(&names[0])?, self.sum_of(&names[1])?];
+        self.collect(time, names, sums)
+    }
+
+    /// The sum of a grid, with those of its pieces.
+    fn sum_of(&self, name: &str) -> Result<Fingerprint, Defect> {
+        let pieces = parts(name, self.pieces);
+        let files = pieces.iter().map(String::as_str).chain([name]);
+        files
+            .enumerate()
+            .try_fold(0, |sum: Fingerprint, (place, file)| {
+                let own = fingerprint_of(&self.path(file))?;
+                // Turned by its place, so that exchanged files are told.
+                Ok(sum ^ own.rotate_left(place as u32))
+            })
     }
 
     /// Writes a grid that is not yet published, and sums up its bytes.
@@ -358,10 +457,18 @@ fn list<'a>(
     folder.list(names).map_err(|defect| vec![defect])
 }
 
-/// Names of the grids of a load step.
-fn names(number: usize) -> [String; 2] {
-    [
-        format!("rock_{number:04}.vtu"),
-        format!("fractures_{number:04}.vtu"),
-    ]
+/// Names of the grids of a load step, each in one file or in several pieces.
+fn names(number: usize, pieces: usize) -> [String; 2] {
+    let end = if pieces > 1 { "pvtu" } else { "vtu" };
+    ["rock", "fractures"].map(|kind| format!("{kind}_{number:04}.{end}"))
+}
+
+/// Names of the pieces of a grid; none if it stands in one file.
+fn parts(name: &str, pieces: usize) -> Vec<String> {
+    match name.strip_suffix(".pvtu") {
+        Some(name) => (0..pieces)
+            .map(|piece| format!("{name}_{piece:04}.vtu"))
+            .collect(),
+        None => Vec::new(),
+    }
 }

@@ -7,6 +7,8 @@ use kluft_mesh::Draft;
 use kluft_scene::Scene;
 use rayon::ThreadPool;
 
+use crate::ranks::Ranks;
+
 /// Where the mesh of a run comes from.
 #[derive(Debug, Clone)]
 pub enum MeshInput {
@@ -57,6 +59,8 @@ pub struct Request<'a> {
     pub caller: Caller<'a>,
     /// How gmsh is started, and what a geometry may do.
     pub gmsh: GmshOptions,
+    /// The other processes of the run, if there are any. A mesh from memory has none.
+    pub ranks: Option<Ranks<'a>>,
 }
 
 impl<'a> Request<'a> {
@@ -73,6 +77,7 @@ impl<'a> Request<'a> {
             report: true,
             caller: Caller::default(),
             gmsh: GmshOptions::default(),
+            ranks: None,
         }
     }
 }

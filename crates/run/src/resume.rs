@@ -40,6 +40,7 @@ pub fn identity(scene: &Scene, origin: Option<Origin<'_>>) -> Identity {
             .map(|file| fingerprint_of(file).unwrap_or_default())
             .collect(),
         mesh: 0,
+        ranks: 1,
     }
 }
 

@@ -13,6 +13,7 @@ use crate::output::{OWN, Output};
 use crate::page;
 use crate::prepare::{MESH, inputs};
 use crate::probes;
+use crate::ranks::agreed;
 use crate::request::{MeshInput, Request};
 use crate::resume::{self, FormerRun};
 use crate::stages::{Interruption, Run};
@@ -30,13 +31,15 @@ pub fn run(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome,
 
 /// Runs a scene on the present thread pool.
 fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome, Vec<Defect>> {
-    let output = output(&request)?;
+    let output = agreed(request.ranks, output(&request))?;
     let version = env!("CARGO_PKG_VERSION");
     observer.note("kluft", &format!("{version}  {}", request.scene.title));
-    let identity = resume::identity(request.scene, request.origin);
+    let mut identity = resume::identity(request.scene, request.origin);
+    identity.ranks = request.ranks.map_or(1, |ranks| ranks.count) as u32;
     let mut former = None;
     if let Some(origin) = request.origin.filter(|_| request.resume) {
-        former = resume::find(origin.file, request.scene, &identity, &output)?;
+        let found = resume::find(origin.file, request.scene, &identity, &output);
+        former = agreed(request.ranks, found)?;
         observer.note("resume", &what_is_left(former.as_ref(), &output));
     }
     if output.is_unguarded() {
@@ -66,6 +69,9 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     let Some(folder) = request.folder else {
         return Output::nowhere();
     };
+    if let Some(ranks) = request.ranks.filter(|ranks| !ranks.is_first()) {
+        return Ok(Output::beside(folder, ranks.count));
+    }
     let mut names = OWN.to_vec();
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
     if request.scene.strength_reduction.is_some() {
@@ -85,7 +91,8 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
         Some(origin) => inputs(origin.file, Some(request.scene)),
         None => Vec::new(),
     };
-    let output = Output::prepare(folder, &names, &inputs)?;
+    let mut output = Output::prepare(folder, &names, &inputs)?;
+    output.pieces = request.ranks.map_or(1, |ranks| ranks.count);
     Ok(output.with_page(request.report))
 }
 

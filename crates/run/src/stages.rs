@@ -9,8 +9,8 @@ use kluft_io::{Meshed, fingerprint_of, write_atomically};
 use kluft_mesh::{Defect, Draft, Mesh};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
-    Discretisation, Iteration, LinearFailure, Newton, NewtonSettings, Plan, Problem, System,
-    Workload,
+    Discretisation, Iteration, LinearFailure, LinearMethod, Newton, NewtonSettings, Plan, Problem,
+    System, Workload,
 };
 
 use crate::begin::provenance;
@@ -28,9 +28,10 @@ use crate::page::{self, Iterations, Told};
 use crate::prepare::{self, MeshFile};
 use crate::probes::ProbeTable;
 use crate::provenance::InputFile;
+use crate::ranks::{Ranks, agreed};
 use crate::request::{MeshInput, Request};
 use crate::resume::FormerRun;
-use crate::summary::{MeshSummary, Seconds, StepMeasures, Summary, UnknownSummary};
+use crate::summary::{MeshSummary, RankSummary, Seconds, StepMeasures, Summary, UnknownSummary};
 
 /// What ends a run early.
 pub enum Interruption {
@@ -310,13 +311,24 @@ impl<'a> Run<'a> {
             _ => None,
         };
         let scene = self.request.scene;
-        let file = prepare::mesh_file(
-            scene,
-            &self.output,
-            sizes,
-            &self.request.gmsh,
-            self.observer,
-        )?;
+        let ranks = self.request.ranks;
+        let made = match ranks.is_none_or(|ranks| ranks.is_first()) {
+            true => prepare::mesh_file(
+                scene,
+                &self.output,
+                sizes,
+                &self.request.gmsh,
+                self.observer,
+            ),
+            false => Ok(MeshFile {
+                path: match &scene.mesh {
+                    MeshSource::Geometry { .. } => self.output.path(prepare::MESH),
+                    MeshSource::File(file) => file.clone(),
+                },
+                meshed: None,
+            }),
+        };
+        let file = agreed(ranks, made)?;
         if let (Some(meshed), MeshSource::Geometry { geometry, .. }) = (&file.meshed, &scene.mesh) {
             self.note_meshed(meshed, &geometry.display().to_string());
         }
@@ -384,6 +396,9 @@ impl<'a> Run<'a> {
         let asked = self.request.scene.solver;
         let available = memory::available_bytes().unwrap_or(usize::MAX);
         let limit = asked.memory_limit.map_or(available, |limit| limit as usize);
+        if let Some(ranks) = self.request.ranks {
+            return self.plan_for_ranks(ranks, system, limit / ranks.on_machine.max(1));
+        }
         let before = former.and_then(|former| former.progress.choice.0.parse().ok());
         let plan = self.stage(Stage::ChooseSolver, |_| {
             let discretisation = system.discretisation();
@@ -407,12 +422,51 @@ impl<'a> Run<'a> {
         Ok(plan)
     }
 
+    /// The iterative solver with its rows divided, unless one of the ranks has no room for its
+    /// part.
+    fn plan_for_ranks(
+        &mut self,
+        ranks: Ranks<'_>,
+        system: &System<'_>,
+        limit: usize,
+    ) -> Result<Plan, Interruption> {
+        let discretisation = system.discretisation();
+        let workload = Workload::of(system.problem());
+        let points = discretisation.points().len();
+        let workload = workload.with_extra_memory(&system.problem().mesh, points);
+        let forced = Some(LinearMethod::Iterative);
+        let plan = self.stage(Stage::ChooseSolver, |_| {
+            Plan::of(discretisation.into(), workload, forced, limit)
+        });
+        let plan = solved(plan, system)?;
+        let blocks = discretisation.pattern().blocks.columns.len();
+        let own = (ranks.solver_bytes)(points, blocks).div_ceil(ranks.count);
+        let needed = workload.extra.always + workload.extra.iterative + own;
+        self.summary.predicted_memory_bytes = (memory::used_bytes() + needed) as u64;
+        let fits = match needed <= limit {
+            true => Ok(()),
+            false => Err(vec![failures::rank_too_large(ranks, needed, limit)]),
+        };
+        ranks.agree(fits)?;
+        let why = format!(
+            "linear solver: iterative, its rows divided among {} ranks",
+            ranks.count
+        );
+        self.choice = (plan.method.to_string(), why);
+        Ok(plan)
+    }
+
     /// Prepares what the linear solver needs once a run.
     pub fn set_up(&mut self, system: &System<'_>, plan: Plan) -> Result<Newton, Interruption> {
         let name = plan.method.name();
         let settings = newton_settings(&self.request.scene.solver);
-        let newton = self.stage(Stage::PrepareSolver, |_| {
-            Newton::planned(system, settings, plan)
+        let ranks = self.request.ranks;
+        let newton = self.stage(Stage::PrepareSolver, |_| match ranks {
+            Some(ranks) => {
+                let solver = (ranks.solver)(system)?;
+                Ok(Newton::on(system, settings, solver, true))
+            }
+            None => Newton::planned(system, settings, plan),
         });
         self.note_timed("prepared", &format!("{name} solver, once for the run"));
         solved(newton, system)
@@ -426,6 +480,14 @@ impl<'a> Run<'a> {
         self.summary.seconds.total = self.start.elapsed().as_secs_f64();
         let peak = memory::peak_bytes() as u64;
         self.summary.peak_memory_bytes = self.summary.peak_memory_bytes.max(peak);
+        if let Some(ranks) = self.request.ranks {
+            let peaks = (ranks.gather)(&[self.summary.peak_memory_bytes]);
+            self.summary.ranks = Some(RankSummary {
+                count: ranks.count,
+                largest_peak_memory_bytes: peaks.iter().copied().max().unwrap_or(0),
+                sum_of_peak_memory_bytes: peaks.iter().sum(),
+            });
+        }
         if !self.output.is_kept() {
             return Ok(());
         }

@@ -25,6 +25,7 @@ use crate::history::{self, Entry, History, Parts};
 use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
+use crate::pieces::Piece;
 use crate::probes::{self, Solved};
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
@@ -296,6 +297,7 @@ impl Run<'_> {
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
         self.summary.warnings.extend(unresolved);
         let time = prepared.state.load.time;
+        let ranks = self.request.ranks.filter(|ranks| ranks.count > 1);
         self.stage(Stage::Write, |run| {
             let rock = || in_plane(&problem.mesh, rock_grid(system, &solution, Some(&accuracy)));
             let fractures = || {
@@ -307,15 +309,22 @@ impl Run<'_> {
                 }
                 in_plane(&problem.mesh, grid)
             };
+            if let Some(ranks) = ranks {
+                let piece = Piece::of(system, &(ranks.owner)(), ranks.rank);
+                let grids = [&rock(), &fractures()];
+                return run.output.write_pieces(time, grids, &piece, ranks);
+            }
+            let of_one = |defect| vec![defect];
             if !run.request.keep_results {
-                return run.output.write_step(time, rock, fractures);
+                let written = run.output.write_step(time, rock, fractures);
+                return written.map_err(of_one);
             }
             let (rock, fractures) = rayon::join(rock, fractures);
             let written = run
                 .output
                 .write_step(time, || rock.clone(), || fractures.clone());
             run.keep(rock, fractures);
-            written
+            written.map_err(of_one)
         })?;
         self.write_sources()?;
         self.write_probes(prepared, &solution, &nodes)?;

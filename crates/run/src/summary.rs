@@ -209,6 +209,17 @@ pub struct Seconds {
     pub total: f64,
 }
 
+/// The processes of a run on several ranks.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct RankSummary {
+    /// Their number.
+    pub count: usize,
+    /// Largest resident memory of one of them (bytes).
+    pub largest_peak_memory_bytes: u64,
+    /// Sum of the largest resident memories of all (bytes).
+    pub sum_of_peak_memory_bytes: u64,
+}
+
 /// Everything `summary.json` holds.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Summary {
@@ -257,8 +268,11 @@ pub struct Summary {
     pub predicted_memory_bytes: u64,
     /// Largest resident memory of the process, gmsh left out (bytes).
     pub peak_memory_bytes: u64,
-    /// Number of threads.
+    /// Number of threads, of each rank if there are several.
     pub threads: usize,
+    /// The ranks, if the run was shared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ranks: Option<RankSummary>,
 }
 
 fn as_map<S: serde::Serializer>(

@@ -77,6 +77,7 @@ pub fn run_scene_file(file: &Path, out: &Path) -> Result<Outcome, Vec<Defect>> {
         report: true,
         caller: Caller::default(),
         gmsh: GmshOptions::default(),
+        ranks: None,
     };
     kluft_run::run(request, &mut ())
 }
