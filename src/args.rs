@@ -157,6 +157,9 @@ pub struct RunArgs {
     /// [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Run on N processes that share the work, by way of mpiexec and kluft-mpi
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    ranks: Option<u16>,
     /// Go on after the last load step that an interrupted run of the same scene finished
     #[arg(long)]
     resume: bool,
@@ -309,10 +312,12 @@ impl From<RunArgs> for RunOptions {
         Self {
             out: args.out,
             threads: args.threads.map(usize::from),
+            ranks: args.ranks,
             verbosity: verbosity(args.quiet, args.verbose),
             resume: args.resume,
             report: !args.no_report,
             is_tied: args.tied,
+            gmsh_arguments: args.gmsh.arguments(),
             gmsh: args.gmsh.into(),
         }
     }

@@ -8,6 +8,7 @@ mod import;
 mod init;
 mod inspect;
 mod network;
+mod ranks;
 mod run;
 mod shell;
 mod stdout;

@@ -1,5 +1,6 @@
 //! `kluft run`: a scene file, solved on threads of its own, followed by the terminal.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use kluft_io::GmshOptions;
@@ -11,6 +12,7 @@ use kluft_scene::Scene;
 
 use crate::failure::Failure;
 use crate::input::{expect_scene, scene_at};
+use crate::ranks;
 use crate::report::{Report, Verbosity};
 
 /// How to run a scene.
@@ -20,6 +22,8 @@ pub struct RunOptions {
     pub out: Option<PathBuf>,
     /// Number of threads; all cores if not given.
     pub threads: Option<usize>,
+    /// Number of processes that share the work; this one alone if not given.
+    pub ranks: Option<u16>,
     /// How much to tell.
     pub verbosity: Verbosity,
     /// Whether to go on after the last load step that an interrupted run of the scene finished.
@@ -30,6 +34,8 @@ pub struct RunOptions {
     pub is_tied: bool,
     /// How gmsh is started, and what a geometry may do.
     pub gmsh: GmshOptions,
+    /// The same as arguments of a program.
+    pub gmsh_arguments: Vec<String>,
 }
 
 /// Runs a scene.
@@ -43,6 +49,9 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
     }
     let scene_file = &scene_at(scene_file)?;
     expect_scene(scene_file)?;
+    if let Some(ranks) = options.ranks {
+        return ranks::run(ranks, &arguments(scene_file, options));
+    }
     let text = Scene::text(scene_file)?;
     let scene = Scene::parse_file(scene_file, &text)?;
     let folder = folder_for(scene_file, options.out.as_deref());
@@ -95,6 +104,21 @@ fn quoted(word: &str) -> String {
         true => word.to_owned(),
         false => format!("'{}'", word.replace('\'', r"'\''")),
     }
+}
+
+/// What the program for many ranks is told.
+fn arguments(scene_file: &Path, options: &RunOptions) -> Vec<OsString> {
+    let mut all: Vec<OsString> = vec!["run".into(), scene_file.into()];
+    if let Some(out) = &options.out {
+        all.extend(["--out".into(), out.into()]);
+    }
+    if let Some(threads) = options.threads {
+        all.extend(["--threads".into(), threads.to_string().into()]);
+    }
+    all.extend(options.resume.then(|| "--resume".into()));
+    all.extend(options.verbosity.argument().map(OsString::from));
+    all.extend(options.gmsh_arguments.iter().map(OsString::from));
+    all
 }
 
 /// Ends the process when whoever started it is gone.

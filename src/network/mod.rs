@@ -89,10 +89,12 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
     let running = RunOptions {
         out: None,
         threads: None,
+        ranks: None,
         verbosity: options.verbosity,
         resume: false,
         report: true,
         is_tied: false,
+        gmsh_arguments: Vec::new(),
         gmsh: options.gmsh.clone(),
     };
     run(&scene, &running)

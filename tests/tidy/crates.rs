@@ -114,8 +114,10 @@ const ALLOWED: [(&str, &[&str]); 18] = [
 ];
 
 /// What tests, examples and measurements of a package may use besides.
-const ALLOWED_IN_TESTS: [(&str, &[&str]); 1] =
-    [(PROGRAM, &["kluft-algebra", "kluft-verification"])];
+const ALLOWED_IN_TESTS: [(&str, &[&str]); 2] = [
+    (PROGRAM, &["kluft-algebra", "kluft-verification"]),
+    ("kluft-mpi", &["kluft-network"]),
+];
 
 pub fn check(manifests: &[(String, String)]) -> Vec<Violation> {
     let mut found = Vec::new();

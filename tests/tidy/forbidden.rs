@@ -11,11 +11,15 @@ const EVERYWHERE: [(&str, &str); 2] = [
     ("unsafe ", "no unsafe code"),
 ];
 
+/// The one file that speaks to a library of C.
+const SPEAKS_C: &str = "crates/mpi/src/petsc.rs";
+
 const PRINTING: [&str; 5] = ["println!", "eprintln!", "print!", "eprint!", "dbg!"];
 
 pub fn check(source: &Source) -> Vec<Violation> {
     let mut found = Vec::new();
-    for (word, problem) in EVERYWHERE {
+    let is_meant = |word: &str| !(word == "unsafe " && source.name == SPEAKS_C);
+    for (word, problem) in EVERYWHERE.into_iter().filter(|(word, _)| is_meant(word)) {
         found.extend(places(source, word).map(|line| Violation::new(&source.name, line, problem)));
     }
     if !may_print(&source.name) {
@@ -28,7 +32,7 @@ pub fn check(source: &Source) -> Vec<Violation> {
     found
 }
 
-/// The program, the tool that writes pages, and what is no library.
+/// The programs, the tool that writes pages, and what is no library.
 fn may_print(name: &str) -> bool {
     if name.ends_with("/tests.rs") || name.ends_with("_tests.rs") {
         return true;
@@ -36,7 +40,10 @@ fn may_print(name: &str) -> bool {
     let Some(inside) = name.strip_prefix("crates/") else {
         return true;
     };
-    let in_crate = inside.split_once('/').map_or("", |(_, rest)| rest);
+    let (name, in_crate) = inside.split_once('/').unwrap_or_default();
+    if ["mpi", "program"].contains(&name) {
+        return true;
+    }
     in_crate == "src/main.rs" || in_crate.starts_with("src/bin/") || !in_crate.starts_with("src/")
 }
 

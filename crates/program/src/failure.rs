@@ -23,6 +23,8 @@ pub enum Failure {
     NotReached(String),
     /// The machine did not do what was asked of it: a file was not written, no thread was given.
     Machine(Vec<Defect>),
+    /// Another program has failed and said why; its exit code.
+    Told(u8),
 }
 
 impl From<Vec<Defect>> for Failure {
@@ -64,16 +66,32 @@ impl Failure {
                 writeln!(err, "failed: {}", lines(&text.join("\n")))
             }
             Self::BadInput(defects) => write!(err, "{}", listed(defects)),
+            Self::Told(_) => Ok(()),
         };
     }
 
     /// The exit code of the program.
     pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.code())
+    }
+
+    /// The exit code as a number.
+    pub fn code(&self) -> u8 {
         match self {
             Self::NotConverged(_) | Self::NotReached(_) | Self::NotMeshed(_) | Self::Machine(_) => {
-                ExitCode::from(1)
+                1
             }
-            Self::BadInput(_) => ExitCode::from(2),
+            Self::BadInput(_) => 2,
+            Self::Told(code) => *code,
+        }
+    }
+
+    /// Whether it says anything: where several processes fail together, some leave it to others.
+    pub fn has_words(&self) -> bool {
+        match self {
+            Self::BadInput(defects) | Self::Machine(defects) => !defects.is_empty(),
+            Self::NotConverged(_) | Self::NotReached(_) | Self::NotMeshed(_) => true,
+            Self::Told(_) => false,
         }
     }
 }

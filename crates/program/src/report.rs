@@ -22,6 +22,18 @@ pub enum Verbosity {
     Verbose,
 }
 
+impl Verbosity {
+    /// The argument of a program that asks for it. A report for a terminal is asked for by name,
+    /// because a program that another one starts has none.
+    pub fn argument(self) -> Option<&'static str> {
+        match self {
+            Self::Quiet => Some("--quiet"),
+            Self::Verbose => Some("--verbose"),
+            Self::Terminal => std::io::stdout().is_terminal().then_some("--verbose"),
+        }
+    }
+}
+
 /// Column in which what an entry says begins, less one.
 const INDENT: usize = 10;
 /// Rows of the closing table.

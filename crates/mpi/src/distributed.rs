@@ -1,0 +1,298 @@
+//! The linear solver whose rows are divided among ranks: conjugate gradients of PETSc on Kluft's
+//! first coarsening, with PETSc's own levels below.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use kluft_solver::multigrid::{BlockList, FirstCoarsening, LevelPart};
+use kluft_solver::small::rows_of;
+use kluft_solver::{
+    FixedPart, InterfaceBlocks, LinearFailure, LinearSolution, SolverHistory, System,
+    TangentSolver, first_coarsening, first_guess, norm, serves,
+};
+
+use crate::next_level::NextNodes;
+use crate::partition::Partition;
+use crate::petsc::{Matrix, PetscFailure, Solver, SolverParts, World};
+
+/// Iterations after which a linear solve has failed.
+const MAX_ITERATIONS: usize = 2000;
+/// Residual, as a share of the right-hand side, at which an iteration that gains nothing more is
+/// taken for one that rounding ended.
+const ROUNDED: f64 = 1e-3;
+/// How often the spectrum may turn out wider than it was taken for, and by which factor.
+const MOST_WIDENINGS: usize = 4;
+const WIDENING: f64 = 1.4;
+/// A matrix with at most this many scalar unknowns is factorised if it has no next level.
+const LARGEST_FACTOR: usize = 6000;
+
+/// Solver of a system on all ranks. Every rank knows all unknowns, and has its own rows.
+pub struct Distributed {
+    world: Arc<World>,
+    partition: Arc<Partition>,
+    coarsening: FirstCoarsening,
+    nodes: NextNodes,
+    solver: Option<Solver>,
+    /// Stiffness of the fractures, one block for each of the interface's columns.
+    stiffness: Option<Vec<DMat3>>,
+    /// The one that the levels were made with.
+    built_for: Option<Vec<DMat3>>,
+    /// By how much the spectrum turned out to reach further than it was taken for.
+    margin: f64,
+}
+
+impl Distributed {
+    /// Prepares the solver of a system.
+    ///
+    /// # Errors
+    /// If the rock is not positive definite, and those of PETSc.
+    pub fn new(world: &Arc<World>, system: &System<'_>) -> Result<Self, LinearFailure> {
+        let coarsening = first_coarsening(system)?;
+        let partition = Partition::of(world, system.rock_rows(), coarsening.clusters())?;
+        Ok(Self {
+            nodes: NextNodes::of(coarsening.basis(), &partition.owner, world),
+            world: Arc::clone(world),
+            partition: Arc::new(partition),
+            coarsening,
+            solver: None,
+            stiffness: None,
+            built_for: None,
+            margin: 1.0,
+        })
+    }
+
+    /// Who owns which rows.
+    pub fn partition(&self) -> &Arc<Partition> {
+        &self.partition
+    }
+
+    /// Makes the levels anew for a stiffness of the fractures.
+    fn rebuild_for(
+        &mut self,
+        fixed: FixedPart<'_>,
+        stiffness: Vec<DMat3>,
+    ) -> Result<(), LinearFailure> {
+        (self.built_for, self.solver) = (None, None);
+        let blocks = InterfaceBlocks {
+            pattern: fixed.interface,
+            blocks: &stiffness,
+        };
+        let own = &self.partition.own;
+        let part = self.coarsening.part(fixed.matrix, blocks, own)?;
+        let parts = self.parts(fixed, blocks, part)?;
+        self.solver = Some(Solver::new(&self.world, own.len(), parts)?);
+        self.built_for = Some(stiffness);
+        Ok(())
+    }
+
+    fn parts(
+        &self,
+        fixed: FixedPart<'_>,
+        blocks: InterfaceBlocks<'_>,
+        mut part: LevelPart,
+    ) -> Result<SolverParts, LinearFailure> {
+        let rows = fixed.matrix.rows();
+        let modes = self.coarsening.modes();
+        let next = match self.coarsening.has_next(rows) {
+            true => Some(self.nodes.level(&self.world, &mut part, modes)?),
+            false => None,
+        };
+        Ok(SolverParts {
+            operator: self.operator(fixed, blocks)?,
+            inverse: self.matrix(&part.inverse)?,
+            next,
+            is_small: 3 * rows <= LARGEST_FACTOR,
+            margin: self.margin,
+        })
+    }
+
+    fn matrix(&self, rows: &BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
+        let Partition { own, number, .. } = &*self.partition;
+        Matrix::new(&self.world, rows, own.len(), |row| number[row as usize])
+    }
+
+    /// The rows of this rank of the whole tangent.
+    fn operator(
+        &self,
+        fixed: FixedPart<'_>,
+        blocks: InterfaceBlocks<'_>,
+    ) -> Result<Matrix, PetscFailure> {
+        let mut rows = BlockList {
+            offset: vec![0],
+            ..BlockList::default()
+        };
+        for &row in &self.partition.own {
+            let index = blocks.pattern.rows.binary_search(&row);
+            let added = index.into_iter().flat_map(|index| blocks.row(index));
+            let mut added = added.peekable();
+            for (column, block) in fixed.matrix.row(row as usize) {
+                let other = added.next_if(|(at, _)| *at == column);
+                let sum = other.map_or(*block, |(_, other)| *block + *other);
+                rows.columns.push(column);
+                rows.blocks.push(rows_of(&sum));
+            }
+            rows.offset.push(rows.columns.len());
+        }
+        self.matrix(&rows)
+    }
+
+    fn solver(&mut self) -> Result<&mut Solver, LinearFailure> {
+        let missing = || LinearFailure::Analysis("no tangent was given".into());
+        self.solver.as_mut().ok_or_else(missing)
+    }
+
+    /// The entries of this rank.
+    fn own(&self, vector: &[DVec3]) -> Vec<[f64; 3]> {
+        let own = self.partition.own.iter();
+        own.map(|&row| vector[row as usize].to_array()).collect()
+    }
+
+    /// The entries of all ranks, each in its place.
+    fn all(&self, own: &[[f64; 3]]) -> Result<Vec<DVec3>, PetscFailure> {
+        let Partition { all, counts, .. } = &*self.partition;
+        let gathered = self.world.gather_vectors(own, counts)?;
+        let mut vector = vec![DVec3::ZERO; all.len()];
+        for (&row, entry) in all.iter().zip(gathered) {
+            vector[row as usize] = DVec3::from_array(entry);
+        }
+        Ok(vector)
+    }
+
+    fn clusters_alone(&mut self, rest: &[DVec3]) -> Result<Vec<DVec3>, LinearFailure> {
+        let own = self.own(rest);
+        let alone = self.solver()?.clusters_alone(&own)?;
+        Ok(self.all(&alone)?)
+    }
+
+    /// The correction for a residual, and its iterations.
+    fn correction(
+        &mut self,
+        fixed: FixedPart<'_>,
+        residual: &[DVec3],
+        wanted: f64,
+    ) -> Result<(Vec<DVec3>, usize), LinearFailure> {
+        let own = self.own(residual);
+        let mut iterations = 0;
+        for attempt in 0..=MOST_WIDENINGS {
+            let (solution, solved) = self.solver()?.solve(&own, wanted, MAX_ITERATIONS)?;
+            iterations += solved.iterations;
+            if !solved.residual.is_finite() {
+                return Err(LinearFailure::NotFinite);
+            }
+            // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
+            if solved.converged || solved.residual <= wanted.max(ROUNDED) {
+                return Ok((self.all(&solution)?, iterations));
+            }
+            let built_for = match &self.built_for {
+                Some(built_for) if self.stiffness.as_ref() == Some(built_for) => built_for.clone(),
+                _ => break,
+            };
+            if !solved.broke || attempt == MOST_WIDENINGS {
+                break;
+            }
+            self.margin *= WIDENING;
+            self.rebuild_for(fixed, built_for)?;
+        }
+        Err(LinearFailure::Stalled(iterations))
+    }
+}
+
+impl TangentSolver for Distributed {
+    fn update(&mut self, fixed: FixedPart<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
+        let built_for = self.built_for.as_deref();
+        if !built_for.is_some_and(|built_for| serves(fixed, built_for, &stiffness)) {
+            self.rebuild_for(fixed, stiffness.clone())?;
+        } else if self.stiffness.as_ref() != Some(&stiffness) {
+            let blocks = InterfaceBlocks {
+                pattern: fixed.interface,
+                blocks: &stiffness,
+            };
+            let operator = self.operator(fixed, blocks)?;
+            self.solver()?.set_operator(operator)?;
+        }
+        self.stiffness = Some(stiffness);
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        fixed: FixedPart<'_>,
+        rhs: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
+        let stiffness = self.stiffness.clone().unwrap_or_default();
+        let multiply =
+            |vector: &[DVec3], product: &mut [DVec3]| fixed.multiply(&stiffness, vector, product);
+        let mut failure = None;
+        let alone = |rest: &[DVec3]| {
+            let alone = self.clusters_alone(rest);
+            alone.unwrap_or_else(|error| {
+                failure = Some(error);
+                vec![DVec3::ZERO; rest.len()]
+            })
+        };
+        let (mut unknowns, residual) = first_guess(alone, fixed.interface.rows, multiply, rhs);
+        if let Some(failure) = failure {
+            return Err(failure);
+        }
+        let size = norm(&residual);
+        if size == 0.0 {
+            return Ok(LinearSolution {
+                unknowns,
+                iterations: 0,
+            });
+        }
+        let wanted = tolerance * norm(rhs) / size;
+        let (correction, iterations) = self.correction(fixed, &residual, wanted)?;
+        for (unknown, change) in unknowns.iter_mut().zip(&correction) {
+            *unknown += *change;
+        }
+        Ok(LinearSolution {
+            unknowns,
+            iterations,
+        })
+    }
+
+    fn history(&self) -> SolverHistory {
+        SolverHistory {
+            stiffness: self.stiffness.clone(),
+            preconditioned: self.built_for.clone(),
+            margin: Some(self.margin),
+        }
+    }
+
+    fn restore(
+        &mut self,
+        fixed: FixedPart<'_>,
+        history: SolverHistory,
+    ) -> Result<(), LinearFailure> {
+        self.margin = history.margin.unwrap_or(1.0);
+        if let Some(stiffness) = history.preconditioned {
+            self.rebuild_for(fixed, stiffness)?;
+        }
+        match history.stiffness {
+            Some(stiffness) => self.update(fixed, stiffness),
+            None => Ok(()),
+        }
+    }
+
+    fn rebuild(&mut self, fixed: FixedPart<'_>) -> Result<bool, LinearFailure> {
+        match self.stiffness.clone() {
+            Some(stiffness) if self.built_for.as_ref() != Some(&stiffness) => {
+                self.rebuild_for(fixed, stiffness)?;
+                Ok(true)
+            }
+            _ => Ok(false),
+        }
+    }
+
+    fn precondition(
+        &mut self,
+        _: FixedPart<'_>,
+        rhs: &[DVec3],
+    ) -> Result<Vec<DVec3>, LinearFailure> {
+        let own = self.own(rhs);
+        let cycled = self.solver()?.precondition(&own)?;
+        Ok(self.all(&cycled)?)
+    }
+}

@@ -1,0 +1,165 @@
+//! `kluft-mpi run`: a scene, solved by all ranks together, followed by the terminal of the first.
+
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use kluft_mesh::Defect;
+use kluft_program::failure::Failure;
+use kluft_program::input::expect_scene;
+use kluft_program::report::{Report, Verbosity};
+use kluft_run::{Ending, MeshInput, Observer, Origin, Outcome, Ranks, Request, folder_for};
+use kluft_scene::{MeshSource, Scene};
+use kluft_solver::{LinearFailure, LinearMethod, System, TangentSolver};
+
+use crate::args::RunArgs;
+use crate::distributed::Distributed;
+use crate::memory::solver_bytes;
+use crate::partition::Partition;
+use crate::petsc::{PetscFailure, World};
+use crate::traffic;
+
+/// Runs a scene.
+///
+/// # Errors
+/// As `kluft run`; defects that another rank names are left out.
+pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
+    expect_scene(&args.scene)?;
+    let text = Scene::text(&args.scene)?;
+    let scene = Scene::parse_file(&args.scene, &text)?;
+    refuse_what_is_serial(&scene, &args.scene)?;
+    let folder = folder_for(&args.scene, args.out.as_deref());
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(args.threads))
+        .use_current_thread()
+        .build()
+        .map_err(|error| {
+            let remedy = "ask for fewer threads of each rank, e.g. --threads 1";
+            Failure::Machine(vec![Defect::new("threads", error.to_string(), remedy)])
+        })?;
+    let partition = OnceLock::new();
+    let on_machine = world.on_machine().map_err(machine)?;
+    let ranks = Ranks {
+        rank: world.rank(),
+        count: world.ranks(),
+        on_machine,
+        gather: &|own| gathered(world, own),
+        solver: &|system| solver(world, system, &partition),
+        owner: &|| partition.get().map_or(Vec::new(), |p| p.owner.clone()),
+        solver_bytes: &solver_bytes,
+    };
+    let request = Request {
+        scene: &scene,
+        mesh: MeshInput::OfScene,
+        pool: &pool,
+        folder: Some(&folder),
+        origin: Some(Origin {
+            file: &args.scene,
+            text: &text,
+        }),
+        resume: args.resume,
+        keep_results: false,
+        gmsh: args.gmsh.into(),
+        ranks: Some(ranks),
+    };
+    let mut report = Report::new(verbosity(args));
+    let mut silent = ();
+    let observer: &mut dyn Observer = match world.rank() {
+        0 => &mut report,
+        _ => &mut silent,
+    };
+    let outcome = kluft_run::run(request, observer)?;
+    let told = traffic::told(world, partition.get().map(|p| &**p), &outcome).map_err(machine)?;
+    if world.rank() == 0 && outcome.ending != Ending::NothingLeft {
+        closing_lines(&report, &outcome, &folder);
+        if args.verbose {
+            told.iter().for_each(|line| report.entry("ranks", line));
+        }
+    }
+    match outcome.ending {
+        Ending::Solved | Ending::NothingLeft => Ok(()),
+        Ending::NotConverged(why) => Err(Failure::NotConverged(why)),
+        Ending::Stopped => Err(Failure::NotConverged("the run was stopped".into())),
+    }
+}
+
+fn verbosity(args: &RunArgs) -> Verbosity {
+    match (args.quiet, args.verbose) {
+        (true, _) => Verbosity::Quiet,
+        (_, true) => Verbosity::Verbose,
+        _ => Verbosity::Terminal,
+    }
+}
+
+/// An error of PETSc or MPI outside of a linear solve.
+pub fn machine(PetscFailure(code): PetscFailure) -> Failure {
+    let problem = format!("MPI or PETSc reports its error {code}");
+    let remedy = "see what mpiexec says above, and the log of the batch system";
+    Failure::Machine(vec![Defect::new("ranks", problem, remedy)])
+}
+
+/// The numbers of all ranks. A rank that cannot be asked any more ends the run.
+fn gathered(world: &World, own: &[u64]) -> Vec<u64> {
+    world.gather(own).unwrap_or_else(|failure| {
+        machine(failure).print();
+        World::abort(1)
+    })
+}
+
+fn solver(
+    world: &Arc<World>,
+    system: &System<'_>,
+    partition: &OnceLock<Arc<Partition>>,
+) -> Result<Box<dyn TangentSolver>, LinearFailure> {
+    let solver = Distributed::new(world, system)?;
+    partition.get_or_init(|| Arc::clone(solver.partition()));
+    Ok(Box::new(solver))
+}
+
+/// What only one process can do, by the name that the scene gives it.
+fn refuse_what_is_serial(scene: &Scene, file: &Path) -> Result<(), Failure> {
+    let place = file.display().to_string();
+    let mut defects = Vec::new();
+    if let MeshSource::Geometry { adapt: Some(_), .. } = &scene.mesh {
+        let problem = "`adapt` searches for a mesh on one machine only";
+        let remedy = "let `kluft run` find the mesh, then name it: [mesh] file = \"out/mesh.msh\"";
+        defects.push(Defect::new(&place, problem, remedy));
+    }
+    let linear = scene.solver.linear;
+    if let Some(method @ (LinearMethod::Direct | LinearMethod::Condensed)) = linear {
+        let problem = format!("the {method} solver is not divided among ranks");
+        let remedy = "take `linear` out of [solver], or run the scene with `kluft run`";
+        defects.push(Defect::new(&place, problem, remedy));
+    }
+    if scene.is_rigid() {
+        let problem = "flow in rigid rock is solved on one machine only";
+        let remedy = "run the scene with `kluft run`";
+        defects.push(Defect::new(&place, problem, remedy));
+    }
+    match defects.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::BadInput(defects)),
+    }
+}
+
+fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
+    let summary = &outcome.summary;
+    report.fractures(&summary.fractures);
+    report.comparisons(&summary.measures);
+    for warning in &summary.warnings {
+        report.entry("warning", warning);
+    }
+    let ranks = summary.ranks.clone().unwrap_or_default();
+    let text = format!(
+        "{:.2} s, {} ranks with at most {:.0} MB each, {:.0} MB together",
+        summary.seconds.total,
+        ranks.count,
+        ranks.largest_peak_memory_bytes as f64 / 1e6,
+        ranks.sum_of_peak_memory_bytes as f64 / 1e6
+    );
+    report.entry("took", &text);
+    if !summary.steps.is_empty() {
+        let [rock, fractures] = ["rock.pvd", "fractures.pvd"].map(|name| folder.join(name));
+        let text = format!("{} and {}", rock.display(), fractures.display());
+        report.entry("open", &text);
+    }
+}

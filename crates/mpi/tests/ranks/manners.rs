@@ -1,0 +1,104 @@
+//! What the program says, and that it ends on all ranks.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use crate::harness::{finished, geometry, number, started};
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A scene of `geometries/` with a part of its text replaced, in a folder of its own.
+fn changed(name: &str, from: &str, to: &str) -> tempfile::TempDir {
+    let scene = geometry(name);
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = fs::read_to_string(&scene).expect("a scene");
+    assert!(text.contains(from), "{name} has no `{from}`");
+    for entry in fs::read_dir(scene.parent().expect("a folder")).expect("files") {
+        let entry = entry.expect("a file");
+        if entry.path().is_file() {
+            fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
+        }
+    }
+    fs::write(folder.path().join("scene.toml"), text.replace(from, to)).expect("written");
+    folder
+}
+
+#[test]
+fn defects_are_named_once_and_end_all_ranks() {
+    let folder = changed("closing-blocks", "young_modulus", "yuong_modulus");
+    let scene = folder.path().join("scene.toml").display().to_string();
+    for ranks in [1, 3] {
+        let begun = Instant::now();
+        let output = finished(ranks, &["run", &scene]);
+        let err = said(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{err}");
+        assert_eq!(err.matches("yuong_modulus").count(), 1, "{err}");
+        assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+    }
+}
+
+#[test]
+fn what_one_machine_alone_can_do_is_refused_by_name() {
+    let folder = changed("closing-blocks", "[mesh]", "[solver]\nlinear = \"direct\"\n\n[mesh]");
+    let direct = folder.path().join("scene.toml");
+    let adaptive = geometry("small-cube-adaptive");
+    for (scene, word) in [(&direct, "direct solver"), (&adaptive, "`adapt`")] {
+        let output = finished(2, &["run", &scene.display().to_string()]);
+        let err = said(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{err}");
+        assert!(err.contains(word) && err.contains("kluft run"), "{err}");
+    }
+}
+
+#[test]
+fn a_file_that_one_rank_cannot_write_ends_all() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    fs::write(&out, "no folder").expect("written");
+    let scene = geometry("closing-blocks").display().to_string();
+    let begun = Instant::now();
+    let output = finished(3, &["run", &scene, "--out", &out.display().to_string()]);
+    let err = said(&output.stderr);
+    assert_ne!(output.status.code(), Some(0), "{err}");
+    assert!(err.contains("remedy") || err.contains("failed"), "{err}");
+    assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+}
+
+#[test]
+fn arguments_are_explained_once() {
+    let output = finished(2, &["walk"]);
+    let err = said(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{err}");
+    assert_eq!(err.matches("Usage:").count(), 1, "{err}");
+}
+
+/// `KLUFT_STARTS` starts, by default a few; each must end by itself.
+#[test]
+fn no_start_hangs() {
+    for start in 0..number("KLUFT_STARTS", 20) {
+        let ranks = 1 + (start % 4) as usize;
+        let mut child = started(ranks, &["--version"]);
+        let begun = Instant::now();
+        while child.try_wait().expect("a child").is_none() {
+            assert!(begun.elapsed() < Duration::from_secs(60), "start {start} hangs");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+#[test]
+fn verbose_runs_count_what_the_ranks_exchange() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = geometry("network-20").display().to_string();
+    let out = folder.path().display().to_string();
+    let output = finished(2, &["run", &scene, "--out", &out, "-v"]);
+    let text = said(&output.stdout);
+    assert!(output.status.success(), "{}", said(&output.stderr));
+    let line = text.lines().find(|line| line.contains("reductions"));
+    let line = line.unwrap_or_else(|| panic!("no counts in\n{text}"));
+    let numbers = line.split_whitespace().filter_map(|word| word.parse::<f64>().ok());
+    let numbers: Vec<f64> = numbers.collect();
+    assert!(numbers.len() >= 4 && numbers[1] > 0.0 && numbers[2] > 0.0, "{line}");
+}
