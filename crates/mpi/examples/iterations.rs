@@ -86,7 +86,7 @@ impl Row {
         let stiffness = interface.stiffness(&self.tangents(system));
         let fixed = system.fixed_part();
         let rhs: Vec<DVec3> = system.load_forces(load);
-        let mut solved = |solver: &mut dyn TangentSolver| {
+        let solved = |solver: &mut dyn TangentSolver| {
             solver.update(fixed, stiffness.clone())?;
             solver.solve(fixed, &rhs, TOLERANCE)
         };

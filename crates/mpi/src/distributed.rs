@@ -48,7 +48,7 @@ impl Distributed {
     /// If the rock is not positive definite, and those of PETSc.
     pub fn new(world: &Arc<World>, system: &System<'_>) -> Result<Self, LinearFailure> {
         let coarsening = first_coarsening(system)?;
-        let partition = Partition::of(world, system.rock_rows(), coarsening.clusters())?;
+        let partition = Partition::of(world, system, coarsening.clusters());
         Ok(Self {
             nodes: NextNodes::of(coarsening.basis(), &partition.owner, world),
             world: Arc::clone(world),

@@ -1,13 +1,12 @@
 //! Which rank owns which unknowns.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use kluft_solver::{BlockRows, Lists};
+use glam::DVec3;
+use kluft_solver::{Lists, System};
 
-use crate::petsc::{PetscFailure, World};
-
-/// Clusters for each rank below which their graph is not worth a partition.
-const FEW: usize = 8;
+use crate::petsc::World;
 
 /// Rows and their owners. The rows of a rank have consecutive global numbers, rank by rank, in the
 /// order of the rows.
@@ -26,30 +25,29 @@ pub struct Partition {
 }
 
 impl Partition {
-    /// Divides rows so that the clusters stay whole, all ranks have about as many rows, and few
-    /// couplings are cut. It is the same on all ranks.
-    ///
-    /// # Errors
-    /// Those of PETSc.
-    pub fn of(
-        world: &Arc<World>,
-        matrix: BlockRows<'_>,
-        clusters: &Lists,
-    ) -> Result<Self, PetscFailure> {
-        let of_cluster = if world.ranks() == 1 {
-            vec![0; clusters.count()]
-        } else if clusters.count() < FEW * world.ranks() {
-            in_turn(clusters, world.ranks())
-        } else {
-            by_graph(world, matrix, clusters)?
-        };
-        let mut owner = vec![0; matrix.rows()];
-        for (cluster, rank) in of_cluster.iter().enumerate() {
-            for &row in clusters.of(cluster) {
-                owner[row as usize] = *rank as u32;
+    /// Divides the rows of a system so that the clusters stay whole, all ranks have about as many
+    /// rows, and what a rank has lies together. It is the same on all ranks, and in every run.
+    pub fn of(world: &Arc<World>, system: &System<'_>, clusters: &Lists) -> Self {
+        let nodes = &system.problem().mesh.nodes;
+        let points = system.discretisation().points();
+        let place = |row: &u32| nodes[points.node[*row as usize] as usize];
+        let bodies = (0..clusters.count()).map(|cluster| {
+            let rows = clusters.of(cluster);
+            let sum: DVec3 = rows.iter().map(place).sum();
+            Body {
+                cluster,
+                place: sum / rows.len() as f64,
+                rows: rows.len(),
             }
-        }
-        Ok(Self::of_owners(owner, world))
+        });
+        let mut bodies: Vec<Body> = bodies.collect();
+        let mut owner = vec![0; points.len()];
+        divide(&mut bodies, 0..world.ranks(), &mut |cluster, rank| {
+            for &row in clusters.of(cluster) {
+                owner[row as usize] = rank as u32;
+            }
+        });
+        Self::of_owners(owner, world)
     }
 
     fn of_owners(owner: Vec<u32>, world: &World) -> Self {
@@ -76,47 +74,43 @@ impl Partition {
     }
 }
 
-/// Clusters in their order, cut into parts of about as many rows.
-fn in_turn(clusters: &Lists, ranks: usize) -> Vec<i32> {
-    let rows = clusters.entries.len().max(1);
-    let mut before = 0;
-    let part = |cluster: usize| {
-        let part = before * ranks / rows;
-        before += clusters.of(cluster).len();
-        part as i32
-    };
-    (0..clusters.count()).map(part).collect()
+/// A cluster as what is divided.
+struct Body {
+    cluster: usize,
+    place: DVec3,
+    rows: usize,
 }
 
-/// The graph of clusters, cut by PETSc.
-fn by_graph(
-    world: &World,
-    matrix: BlockRows<'_>,
-    clusters: &Lists,
-) -> Result<Vec<i32>, PetscFailure> {
-    let mut cluster_of = vec![0_u32; matrix.rows()];
-    for cluster in 0..clusters.count() {
-        for &row in clusters.of(cluster) {
-            cluster_of[row as usize] = cluster as u32;
-        }
+/// Recursive coordinate bisection (Berger and Bokhari 1987): cuts across the longest extent, so
+/// that each side has rows in proportion to its ranks. PETSc's partitioners would cut fewer
+/// couplings, but PT-Scotch, which works on threads, cuts others in every run.
+fn divide(bodies: &mut [Body], ranks: Range<usize>, give: &mut impl FnMut(usize, usize)) {
+    if ranks.len() < 2 {
+        bodies.iter().for_each(|body| give(body.cluster, ranks.start));
+        return;
     }
-    let (mut offset, mut neighbours, mut weight) = (vec![0], Vec::new(), Vec::new());
-    let mut beside: Vec<u32> = Vec::new();
-    for cluster in 0..clusters.count() {
-        beside.clear();
-        for &row in clusters.of(cluster) {
-            let own = matrix.row_offset[row as usize]..matrix.row_offset[row as usize + 1];
-            let columns = matrix.columns[own].iter();
-            beside.extend(columns.map(|&column| cluster_of[column as usize]));
-        }
-        beside.sort_unstable();
-        beside.dedup();
-        let others = beside.iter().filter(|&&other| other as usize != cluster);
-        neighbours.extend(others.map(|&other| i64::from(other)));
-        offset.push(neighbours.len() as i64);
-        weight.push(clusters.of(cluster).len() as i64);
-    }
-    world.partition(&offset, &neighbours, &weight)
+    let bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = bodies.iter().fold(bounds, |(low, high), body| {
+        (low.min(body.place), high.max(body.place))
+    });
+    let extent = high - low;
+    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b]));
+    let axis = axis.unwrap_or(0);
+    bodies.sort_by(|a, b| {
+        let places = a.place[axis].total_cmp(&b.place[axis]);
+        places.then(a.cluster.cmp(&b.cluster))
+    });
+    let half = ranks.len() / 2;
+    let rows: usize = bodies.iter().map(|body| body.rows).sum();
+    let wanted = rows * half / ranks.len();
+    let mut before = 0;
+    let cut = bodies.iter().take_while(|body| {
+        before += body.rows;
+        before <= wanted
+    });
+    let (left, right) = bodies.split_at_mut(cut.count());
+    divide(left, ranks.start..ranks.start + half, give);
+    divide(right, ranks.start + half..ranks.end, give);
 }
 
 #[cfg(test)]
@@ -124,10 +118,40 @@ mod tests {
     use super::*;
 
     #[test]
-    fn clusters_in_turn_give_each_rank_about_as_many_rows() {
-        let clusters = Lists::collect(&[vec![0, 4], vec![1], vec![2], vec![3, 5]]);
-        assert_eq!(in_turn(&clusters, 2), [0, 0, 1, 1]);
-        assert_eq!(in_turn(&clusters, 3), [0, 1, 1, 2]);
-        assert!(in_turn(&Lists::collect(&[]), 3).is_empty());
+    fn every_rank_gets_its_share_of_what_lies_together() {
+        let mut bodies: Vec<Body> = (0..300)
+            .map(|cluster| Body {
+                cluster,
+                // Scattered along a line.
+                place: DVec3::new(f64::from((cluster as u32 * 7) % 300), 0.1, 0.0),
+                rows: 1 + cluster % 3,
+            })
+            .collect();
+        for ranks in 1..=7 {
+            let mut of_rank = vec![(0, f64::INFINITY, f64::NEG_INFINITY); ranks];
+            divide(&mut bodies, 0..ranks, &mut |cluster, rank| {
+                let place = f64::from((cluster as u32 * 7) % 300);
+                let (rows, low, high) = of_rank[rank];
+                of_rank[rank] = (rows + 1 + cluster % 3, low.min(place), high.max(place));
+            });
+            let total: usize = of_rank.iter().map(|(rows, ..)| rows).sum();
+            assert_eq!(total, 600);
+            for (rows, ..) in &of_rank {
+                assert!((*rows as f64 - 600.0 / ranks as f64).abs() < 10.0, "{rows} of {ranks}");
+            }
+            assert!(of_rank.windows(2).all(|pair| pair[0].2 < pair[1].1), "{of_rank:?}");
+        }
+    }
+
+    #[test]
+    fn more_ranks_than_clusters_leave_some_without_rows() {
+        let mut bodies = vec![Body {
+            cluster: 0,
+            place: DVec3::ZERO,
+            rows: 5,
+        }];
+        let mut given = Vec::new();
+        divide(&mut bodies, 0..3, &mut |cluster, rank| given.push((cluster, rank)));
+        assert_eq!(given.len(), 1);
     }
 }

@@ -35,14 +35,6 @@ unsafe extern "C" {
         into: *const c_int,
         received: *mut c_void,
     ) -> c_int;
-    fn km_partition(
-        vertices: i64,
-        offset: *const i64,
-        neighbour: *const i64,
-        weight: *const i64,
-        parts: c_int,
-        part: *mut c_int,
-    ) -> c_int;
     fn km_matrix(
         rows: i64,
         columns: i64,
@@ -116,13 +108,16 @@ pub struct World {
 /// What was counted on this rank since the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Traffic {
-    /// Halo exchanges in linear solves.
+    /// Iterations of linear solves, the first of each left out: smoothers look for the bounds of
+    /// their spectra in it.
+    pub iterations: f64,
+    /// Halo exchanges in them.
     pub exchanges: f64,
-    /// Messages in linear solves, sent and received.
+    /// Messages that this rank sent.
     pub messages: f64,
     /// Their bytes.
     pub bytes: f64,
-    /// Reductions in linear solves.
+    /// Reductions.
     pub reductions: f64,
 }
 
@@ -262,54 +257,18 @@ impl World {
         Ok(received)
     }
 
-    /// Parts of a graph of about equal sums of `weight`, with few edges between them; the same on
-    /// all ranks. Vertex `v` has the neighbours `offset[v]..offset[v + 1]`, each of which has it.
-    ///
-    /// # Errors
-    /// Those of PETSc.
-    ///
-    /// # Panics
-    /// If the lengths do not fit together.
-    pub fn partition(
-        &self,
-        offset: &[i64],
-        neighbours: &[i64],
-        weight: &[i64],
-    ) -> Result<Vec<i32>, PetscFailure> {
-        self.here();
-        let vertices = weight.len();
-        assert_eq!(
-            offset.len(),
-            vertices + 1,
-            "one offset a vertex, and the end"
-        );
-        assert_eq!(offset[vertices] as usize, neighbours.len(), "the end");
-        let mut part = vec![0; vertices];
-        // SAFETY: PETSc runs on this thread; lengths were checked, and `part` has one a vertex.
-        done(unsafe {
-            km_partition(
-                vertices as i64,
-                offset.as_ptr(),
-                neighbours.as_ptr(),
-                weight.as_ptr(),
-                self.ranks as c_int,
-                part.as_mut_ptr(),
-            )
-        })?;
-        Ok(part)
-    }
-
     /// What was counted on this rank so far.
     ///
     /// # Errors
     /// Those of PETSc.
     pub fn traffic(&self) -> Result<Traffic, PetscFailure> {
         self.here();
-        let mut counts = [0.0; 4];
-        // SAFETY: PETSc runs on this thread; the shim writes four numbers.
+        let mut counts = [0.0; 5];
+        // SAFETY: PETSc runs on this thread; the shim writes five numbers.
         done(unsafe { km_counts(counts.as_mut_ptr()) })?;
-        let [exchanges, messages, bytes, reductions] = counts;
+        let [iterations, exchanges, messages, bytes, reductions] = counts;
         Ok(Traffic {
+            iterations,
             exchanges,
             messages,
             bytes,

@@ -68,7 +68,7 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         _ => &mut silent,
     };
     let outcome = kluft_run::run(request, observer)?;
-    let told = traffic::told(world, partition.get().map(|p| &**p), &outcome).map_err(machine)?;
+    let told = traffic::told(world, partition.get().map(|p| &**p)).map_err(machine)?;
     if world.rank() == 0 && outcome.ending != Ending::NothingLeft {
         closing_lines(&report, &outcome, &folder);
         if args.verbose {
@@ -150,9 +150,12 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
     }
     let ranks = summary.ranks.clone().unwrap_or_default();
     let text = format!(
-        "{:.2} s, {} ranks with at most {:.0} MB each, {:.0} MB together",
+        "{:.2} s, {} with at most {:.0} MB each, {:.0} MB together",
         summary.seconds.total,
-        ranks.count,
+        match ranks.count {
+            1 => "1 rank".to_owned(),
+            count => format!("{count} ranks"),
+        },
         ranks.largest_peak_memory_bytes as f64 / 1e6,
         ranks.sum_of_peak_memory_bytes as f64 / 1e6
     );

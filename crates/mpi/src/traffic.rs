@@ -1,7 +1,5 @@
 //! What the ranks said to each other, in words.
 
-use kluft_run::Outcome;
-
 use crate::partition::Partition;
 use crate::petsc::{PetscFailure, World};
 
@@ -9,27 +7,22 @@ use crate::petsc::{PetscFailure, World};
 ///
 /// # Errors
 /// Those of MPI.
-pub fn told(
-    world: &World,
-    partition: Option<&Partition>,
-    outcome: &Outcome,
-) -> Result<Vec<String>, PetscFailure> {
+pub fn told(world: &World, partition: Option<&Partition>) -> Result<Vec<String>, PetscFailure> {
     let own = world.traffic()?;
     let all = world.gather(&[own.messages as u64, own.bytes as u64])?;
-    // Who sends and who receives count a message both.
-    let sum = |at: usize| all.chunks_exact(2).map(|numbers| numbers[at]).sum::<u64>() as f64 / 2.0;
-    let steps = outcome.summary.steps.iter();
-    let measures = steps.filter_map(|step| step.measures.as_ref());
-    let iterations: usize = measures.map(|measures| measures.linear_iterations).sum();
-    let each = 1.0 / iterations.max(1) as f64;
+    let each = 1.0 / own.iterations.max(1.0);
+    let mean = |at: usize| {
+        let sum: u64 = all.chunks_exact(2).map(|numbers| numbers[at]).sum();
+        sum as f64 * each / world.ranks() as f64
+    };
     Ok(vec![
         format!(
-            "{iterations} iterations of the linear solver; in each {:.1} reductions, {:.1} halo \
-             exchanges, {:.1} messages and {:.1} kB of all ranks together",
+            "an iteration of the linear solver takes {:.1} reductions and {:.1} halo exchanges; a \
+             rank sends {:.1} messages of {:.2} kB in it",
             own.reductions * each,
             own.exchanges * each,
-            sum(0) * each,
-            1e-3 * sum(1) * each
+            mean(0),
+            1e-3 * mean(1) / mean(0).max(1.0)
         ),
         format!(
             "the largest rank has {:.3} times the mean number of unknowns",

@@ -448,10 +448,10 @@ impl<'a> Run<'a> {
             false => Err(vec![failures::rank_too_large(ranks, needed, limit)]),
         };
         ranks.agree(fits)?;
-        let why = format!(
-            "linear solver: iterative, its rows divided among {} ranks",
-            ranks.count
-        );
+        let why = match ranks.count {
+            1 => "linear solver: iterative, on one rank".to_owned(),
+            count => format!("linear solver: iterative, its rows divided among {count} ranks"),
+        };
         self.choice = (plan.method.to_string(), why);
         Ok(plan)
     }

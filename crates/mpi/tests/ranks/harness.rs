@@ -1,5 +1,6 @@
 //! Runs of the program.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
@@ -79,4 +80,20 @@ pub fn serial(scene: &Path, out: &Path) -> Outcome {
 /// A scene of `geometries/`.
 pub fn geometry(name: &str) -> PathBuf {
     root().join("geometries").join(name).join("scene.toml")
+}
+
+/// A scene of `geometries/` with a part of its text replaced, in a folder of its own.
+pub fn changed(name: &str, from: &str, to: &str) -> tempfile::TempDir {
+    let scene = geometry(name);
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = fs::read_to_string(&scene).expect("a scene");
+    assert!(text.contains(from), "{name} has no `{from}`");
+    for entry in fs::read_dir(scene.parent().expect("a folder")).expect("files") {
+        let entry = entry.expect("a file");
+        if entry.path().is_file() {
+            fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
+        }
+    }
+    fs::write(folder.path().join("scene.toml"), text.replace(from, to)).expect("written");
+    folder
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
-use crate::harness::{geometry, number, solved, started};
+use crate::harness::{changed, geometry, number, solved, started};
 
 /// Time that all others may take to end (s).
 const END: Duration = Duration::from_secs(10);
@@ -60,7 +60,8 @@ fn are_whole(folder: &Path) {
 
 #[test]
 fn a_killed_rank_ends_all_and_the_run_goes_on_to_the_same_bits() {
-    let scene = geometry("pressed-joint");
+    let stepped = changed("closing-blocks", "[mesh]", "[load]\nsteps = [0.3, 0.5, 0.7, 0.85, 1.0]\n\n[mesh]");
+    let scene = stepped.path().join("scene.toml");
     let whole = tempfile::tempdir().expect("a folder");
     let begun = Instant::now();
     solved(RANKS, &scene, whole.path(), &[]);
