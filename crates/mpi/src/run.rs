@@ -1,7 +1,7 @@
 //! `kluft-mpi run`: a scene, solved by all ranks together, followed by the terminal of the first.
 
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use kluft_mesh::Defect;
 use kluft_program::failure::Failure;
@@ -36,7 +36,7 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
             let remedy = "ask for fewer threads of each rank, e.g. --threads 1";
             Failure::Machine(vec![Defect::new("threads", error.to_string(), remedy)])
         })?;
-    let partition = OnceLock::new();
+    let partition = Mutex::new(None);
     let on_machine = world.on_machine().map_err(machine)?;
     let ranks = Ranks {
         rank: world.rank(),
@@ -44,7 +44,7 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         on_machine,
         gather: &|own| gathered(world, own),
         solver: &|system| solver(world, system, &partition),
-        owner: &|| partition.get().map_or(Vec::new(), |p| p.owner.clone()),
+        owner: &|| present(&partition).map_or(Vec::new(), |present| present.owner.clone()),
         solver_bytes: &solver_bytes,
     };
     let request = Request {
@@ -68,7 +68,7 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         _ => &mut silent,
     };
     let outcome = kluft_run::run(request, observer)?;
-    let told = traffic::told(world, partition.get().map(|p| &**p)).map_err(machine)?;
+    let told = traffic::told(world, present(&partition).as_deref()).map_err(machine)?;
     if world.rank() == 0 && outcome.ending != Ending::NothingLeft {
         closing_lines(&report, &outcome, &folder);
         if args.verbose {
@@ -108,11 +108,18 @@ fn gathered(world: &World, own: &[u64]) -> Vec<u64> {
 fn solver(
     world: &Arc<World>,
     system: &System<'_>,
-    partition: &OnceLock<Arc<Partition>>,
+    partition: &Mutex<Option<Arc<Partition>>>,
 ) -> Result<Box<dyn TangentSolver>, LinearFailure> {
     let solver = Distributed::new(world, system)?;
-    partition.get_or_init(|| Arc::clone(solver.partition()));
+    let mut present = partition.lock().unwrap_or_else(PoisonError::into_inner);
+    *present = Some(Arc::clone(solver.partition()));
     Ok(Box::new(solver))
+}
+
+/// Who owns which rows of the system that was prepared last.
+fn present(partition: &Mutex<Option<Arc<Partition>>>) -> Option<Arc<Partition>> {
+    let present = partition.lock().unwrap_or_else(PoisonError::into_inner);
+    present.clone()
 }
 
 /// What only one process can do, by the name that the scene gives it.
@@ -132,6 +139,16 @@ fn refuse_what_is_serial(scene: &Scene, file: &Path) -> Result<(), Failure> {
     }
     if scene.is_rigid() {
         let problem = "flow in rigid rock is solved on one machine only";
+        let remedy = "run the scene with `kluft run`";
+        defects.push(Defect::new(&place, problem, remedy));
+    }
+    if scene.has_stages() {
+        let problem = "volumes are removed and added on one machine only";
+        let remedy = "run the scene with `kluft run`";
+        defects.push(Defect::new(&place, problem, remedy));
+    }
+    if scene.strength_reduction.is_some() {
+        let problem = "the strength is reduced on one machine only";
         let remedy = "run the scene with `kluft run`";
         defects.push(Defect::new(&place, problem, remedy));
     }
