@@ -116,6 +116,7 @@ fn arguments(scene_file: &Path, options: &RunOptions) -> Vec<OsString> {
         all.extend(["--threads".into(), threads.to_string().into()]);
     }
     all.extend(options.resume.then(|| "--resume".into()));
+    all.extend((!options.report).then(|| "--no-report".into()));
     all.extend(options.verbosity.argument().map(OsString::from));
     all.extend(options.gmsh_arguments.iter().map(OsString::from));
     all

@@ -44,6 +44,9 @@ pub struct RunArgs {
     /// Go on after the last load step that an interrupted run on as many ranks finished
     #[arg(long)]
     pub resume: bool,
+    /// Write no report.html
+    #[arg(long)]
+    pub no_report: bool,
     /// How gmsh is started.
     #[command(flatten)]
     pub gmsh: GmshArgs,

@@ -5,9 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use kluft_mesh::Defect;
 use kluft_program::failure::Failure;
-use kluft_program::input::expect_scene;
+use kluft_program::input::{expect_scene, scene_at};
 use kluft_program::report::{Report, Verbosity};
-use kluft_run::{Ending, MeshInput, Observer, Origin, Outcome, Ranks, Request, folder_for};
+use kluft_run::{Caller, Ending, MeshInput, Observer, Origin, Outcome, Ranks, Request, folder_for};
 use kluft_scene::{MeshSource, Scene};
 use kluft_solver::{LinearFailure, LinearMethod, System, TangentSolver};
 
@@ -23,11 +23,12 @@ use crate::traffic;
 /// # Errors
 /// As `kluft run`; defects that another rank names are left out.
 pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
-    expect_scene(&args.scene)?;
-    let text = Scene::text(&args.scene)?;
-    let scene = Scene::parse_file(&args.scene, &text)?;
-    refuse_what_is_serial(&scene, &args.scene)?;
-    let folder = folder_for(&args.scene, args.out.as_deref());
+    let file = &scene_at(&args.scene)?;
+    expect_scene(file)?;
+    let text = Scene::text(file)?;
+    let scene = Scene::parse_file(file, &text)?;
+    refuse_what_is_serial(&scene, file)?;
+    let folder = folder_for(file, args.out.as_deref());
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(usize::from(args.threads))
         .use_current_thread()
@@ -53,11 +54,13 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         pool: &pool,
         folder: Some(&folder),
         origin: Some(Origin {
-            file: &args.scene,
+            file,
             text: &text,
         }),
         resume: args.resume,
         keep_results: false,
+        report: !args.no_report,
+        caller: Caller::default(),
         gmsh: args.gmsh.into(),
         ranks: Some(ranks),
     };
