@@ -77,7 +77,10 @@ fn ended(world: &Arc<World>, done: Result<(), Failure>) -> ExitCode {
     let code = failure.as_ref().map_or(0, Failure::code);
     let has_words = failure.as_ref().is_some_and(Failure::has_words);
     if !arrived {
-        say(&format!("rank {} fails, and ends the others:", world.rank()));
+        say(&format!(
+            "rank {} fails, and ends the others:",
+            world.rank()
+        ));
         failure.iter().for_each(Failure::print);
         World::abort(code.max(1));
     }

@@ -86,7 +86,9 @@ struct Body {
 /// couplings, but PT-Scotch, which works on threads, cuts others in every run.
 fn divide(bodies: &mut [Body], ranks: Range<usize>, give: &mut impl FnMut(usize, usize)) {
     if ranks.len() < 2 {
-        bodies.iter().for_each(|body| give(body.cluster, ranks.start));
+        bodies
+            .iter()
+            .for_each(|body| give(body.cluster, ranks.start));
         return;
     }
     let bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -137,9 +139,15 @@ mod tests {
             let total: usize = of_rank.iter().map(|(rows, ..)| rows).sum();
             assert_eq!(total, 600);
             for (rows, ..) in &of_rank {
-                assert!((*rows as f64 - 600.0 / ranks as f64).abs() < 10.0, "{rows} of {ranks}");
+                assert!(
+                    (*rows as f64 - 600.0 / ranks as f64).abs() < 10.0,
+                    "{rows} of {ranks}"
+                );
             }
-            assert!(of_rank.windows(2).all(|pair| pair[0].2 < pair[1].1), "{of_rank:?}");
+            assert!(
+                of_rank.windows(2).all(|pair| pair[0].2 < pair[1].1),
+                "{of_rank:?}"
+            );
         }
     }
 
@@ -151,7 +159,9 @@ mod tests {
             rows: 5,
         }];
         let mut given = Vec::new();
-        divide(&mut bodies, 0..3, &mut |cluster, rank| given.push((cluster, rank)));
+        divide(&mut bodies, 0..3, &mut |cluster, rank| {
+            given.push((cluster, rank))
+        });
         assert_eq!(given.len(), 1);
     }
 }

@@ -53,10 +53,7 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         mesh: MeshInput::OfScene,
         pool: &pool,
         folder: Some(&folder),
-        origin: Some(Origin {
-            file,
-            text: &text,
-        }),
+        origin: Some(Origin { file, text: &text }),
         resume: args.resume,
         keep_results: false,
         report: !args.no_report,

@@ -110,7 +110,5 @@ pub use save::Saving;
 pub use spread::Spread;
 pub use stages::Interruption;
 pub use strength_summary::{MotionSummary, StrengthSummary, Trial};
-pub use summary::{
-    FractureSummary, RankSummary, StepMeasures, StepSummary, Summary, Undetermined,
-};
+pub use summary::{FractureSummary, RankSummary, StepMeasures, StepSummary, Summary, Undetermined};
 pub use threads::{ThreadCount, pool, thread_count};

@@ -90,7 +90,10 @@ fn is_equal(name: &str) {
     for ranks in 1..=4 {
         let difference = compared(&scene, ranks, &mut reference);
         println!("{name} on {ranks} ranks: {difference:.1e}");
-        assert!(difference < EQUAL, "{name} on {ranks} ranks: {difference:e}");
+        assert!(
+            difference < EQUAL,
+            "{name} on {ranks} ranks: {difference:e}"
+        );
     }
 }
 

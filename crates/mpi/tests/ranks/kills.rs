@@ -36,7 +36,9 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
         .filter_map(|entry| {
             let entry = entry.expect("a file");
             let name = entry.file_name().to_string_lossy().into_owned();
-            let counts = [".vtu", ".pvtu", ".pvd", ".csv"].iter().any(|end| name.ends_with(end));
+            let counts = [".vtu", ".pvtu", ".pvd", ".csv"]
+                .iter()
+                .any(|end| name.ends_with(end));
             counts.then(|| (name, fs::read(entry.path()).expect("bytes")))
         })
         .collect();
@@ -49,7 +51,10 @@ fn are_whole(folder: &Path) {
     for (name, bytes) in results(folder) {
         let ending = bytes.trim_ascii_end();
         let is_csv = name.ends_with(".csv");
-        assert!(is_csv || ending.ends_with(b"</VTKFile>"), "{name} is not whole");
+        assert!(
+            is_csv || ending.ends_with(b"</VTKFile>"),
+            "{name} is not whole"
+        );
         if name.ends_with(".pvtu") {
             for piece in crate::pieces::listed(&folder.join(&name)) {
                 assert!(folder.join(&piece).is_file(), "{name} lists {piece}");
@@ -60,7 +65,11 @@ fn are_whole(folder: &Path) {
 
 #[test]
 fn a_killed_rank_ends_all_and_the_run_goes_on_to_the_same_bits() {
-    let stepped = changed("closing-blocks", "[mesh]", "[load]\nsteps = [0.3, 0.5, 0.7, 0.85, 1.0]\n\n[mesh]");
+    let stepped = changed(
+        "closing-blocks",
+        "[mesh]",
+        "[load]\nsteps = [0.3, 0.5, 0.7, 0.85, 1.0]\n\n[mesh]",
+    );
     let scene = stepped.path().join("scene.toml");
     let whole = tempfile::tempdir().expect("a folder");
     let begun = Instant::now();
@@ -69,14 +78,19 @@ fn a_killed_rank_ends_all_and_the_run_goes_on_to_the_same_bits() {
     let expected = results(whole.path());
     for kill in 0..number("KLUFT_KILLS", 3) {
         let folder = tempfile::tempdir().expect("a folder");
-        let (file, out) = (scene.display().to_string(), folder.path().display().to_string());
+        let (file, out) = (
+            scene.display().to_string(),
+            folder.path().display().to_string(),
+        );
         let mut child = started(RANKS, &["run", &file, "--out", &out]);
         // Spread over the run by the golden ratio.
         let share = (0.618_034 * (kill + 1) as f64).fract();
         std::thread::sleep(took.mul_f64(0.1 + 0.85 * share));
         let ranks = ranks_of(&child);
         if let Some(&victim) = ranks.get(kill as usize % RANKS) {
-            let killed = Command::new("kill").args(["-9", &victim.to_string()]).status();
+            let killed = Command::new("kill")
+                .args(["-9", &victim.to_string()])
+                .status();
             assert!(killed.is_ok(), "kill");
         }
         let begun = Instant::now();
@@ -104,9 +118,16 @@ fn a_run_is_not_resumed_on_another_number_of_ranks() {
     let scene = geometry("closing-blocks");
     let folder = tempfile::tempdir().expect("a folder");
     solved(2, &scene, folder.path(), &[]);
-    let (file, out) = (scene.display().to_string(), folder.path().display().to_string());
+    let (file, out) = (
+        scene.display().to_string(),
+        folder.path().display().to_string(),
+    );
     let output = crate::harness::finished(3, &["run", &file, "--out", &out, "--resume"]);
     let err = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{err}");
-    assert_eq!(err.matches("on 2 ranks, and there are 3").count(), 1, "{err}");
+    assert_eq!(
+        err.matches("on 2 ranks, and there are 3").count(),
+        1,
+        "{err}"
+    );
 }

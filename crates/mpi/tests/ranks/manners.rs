@@ -19,13 +19,21 @@ fn defects_are_named_once_and_end_all_ranks() {
         let err = said(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{err}");
         assert_eq!(err.matches("yuong_modulus").count(), 1, "{err}");
-        assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+        assert!(
+            begun.elapsed() < Duration::from_secs(10),
+            "{:?}",
+            begun.elapsed()
+        );
     }
 }
 
 #[test]
 fn what_one_machine_alone_can_do_is_refused_by_name() {
-    let folder = changed("closing-blocks", "[mesh]", "[solver]\nlinear = \"direct\"\n\n[mesh]");
+    let folder = changed(
+        "closing-blocks",
+        "[mesh]",
+        "[solver]\nlinear = \"direct\"\n\n[mesh]",
+    );
     let direct = folder.path().join("scene.toml");
     let adaptive = geometry("small-cube-adaptive");
     for (scene, word) in [(&direct, "direct solver"), (&adaptive, "`adapt`")] {
@@ -47,7 +55,11 @@ fn a_file_that_one_rank_cannot_write_ends_all() {
     let err = said(&output.stderr);
     assert_ne!(output.status.code(), Some(0), "{err}");
     assert!(err.contains("remedy") || err.contains("failed"), "{err}");
-    assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+    assert!(
+        begun.elapsed() < Duration::from_secs(10),
+        "{:?}",
+        begun.elapsed()
+    );
 }
 
 #[test]
@@ -66,7 +78,10 @@ fn no_start_hangs() {
         let mut child = started(ranks, &["--version"]);
         let begun = Instant::now();
         while child.try_wait().expect("a child").is_none() {
-            assert!(begun.elapsed() < Duration::from_secs(60), "start {start} hangs");
+            assert!(
+                begun.elapsed() < Duration::from_secs(60),
+                "start {start} hangs"
+            );
             std::thread::sleep(Duration::from_millis(10));
         }
     }
@@ -82,7 +97,9 @@ fn verbose_runs_count_what_the_ranks_exchange() {
     assert!(output.status.success(), "{}", said(&output.stderr));
     let line = text.lines().find(|line| line.contains("reductions"));
     let line = line.unwrap_or_else(|| panic!("no counts in\n{text}"));
-    let numbers = line.split_whitespace().filter_map(|word| word.parse::<f64>().ok());
+    let numbers = line
+        .split_whitespace()
+        .filter_map(|word| word.parse::<f64>().ok());
     let numbers: Vec<f64> = numbers.collect();
     // Those of the method: two products of vectors and a norm.
     assert_eq!(numbers[0], 3.0, "{line}");

@@ -60,7 +60,11 @@ fn made(seed: u64, folder: &Path) -> bool {
                 scene,
                 "[fracture.\"{name}\"]\naperture = 5e-4\nclosure = \"{law}\"\n\
                  normal_stiffness = 4e10\nshear_stiffness = 1e10{}",
-                if law == "hyperbolic" { "\nmax_closure = 4e-4" } else { "" }
+                if law == "hyperbolic" {
+                    "\nmax_closure = 4e-4"
+                } else {
+                    ""
+                }
             ),
         };
     }
@@ -81,8 +85,14 @@ fn random_networks_are_equal_to_serial_runs() {
         let ranks = 2 + (seed % 3) as usize;
         let difference = compared(&scene, ranks, &mut None);
         println!("network {seed} on {ranks} ranks: {difference:.1e}");
-        assert!(difference < EQUAL, "network {seed} on {ranks} ranks: {difference:e}");
+        assert!(
+            difference < EQUAL,
+            "network {seed} on {ranks} ranks: {difference:e}"
+        );
         compared_with += 1;
     }
-    assert!(2 * compared_with >= seeds, "only {compared_with} of {seeds} can be meshed");
+    assert!(
+        2 * compared_with >= seeds,
+        "only {compared_with} of {seeds} can be meshed"
+    );
 }

@@ -34,7 +34,11 @@ pub fn field(pvtu: &Path, name: &str) -> Cells {
             let own = of_piece(&piece, name);
             let count = own.len();
             cells.extend(own);
-            assert_eq!(cells.len(), before + count, "{file}: a cell of another piece");
+            assert_eq!(
+                cells.len(),
+                before + count,
+                "{file}: a cell of another piece"
+            );
         }
     }
     cells
@@ -59,12 +63,17 @@ fn of_piece(piece: &UnstructuredGridPiece, name: &str) -> Cells {
         })
     };
     let (of_points, of_cells) = (array(&piece.data.point), array(&piece.data.cell));
-    assert!(offsets.is_empty() || of_points.is_some() || of_cells.is_some(), "no {name}");
+    assert!(
+        offsets.is_empty() || of_points.is_some() || of_cells.is_some(),
+        "no {name}"
+    );
     let mut start = 0;
     let cells = offsets.iter().enumerate().map(|(cell, &end)| {
         let points = &connectivity[start..end as usize];
         start = end as usize;
-        let key = points.iter().map(|&point| place(&places[3 * point as usize..]));
+        let key = points
+            .iter()
+            .map(|&point| place(&places[3 * point as usize..]));
         let values = match (&of_points, &of_cells) {
             (Some((width, values)), _) => taken(values, *width, points.iter().map(|&p| p as usize)),
             (_, Some((width, values))) => taken(values, *width, [cell].into_iter()),
@@ -90,7 +99,9 @@ pub fn field_of(grid: &Grid, name: &str) -> Cells {
     let cells = ends.iter().enumerate().map(|(cell, &end)| {
         let points = &connectivity[start..end as usize];
         start = end as usize;
-        let key = points.iter().map(|&point| place(&grid.points[point as usize]));
+        let key = points
+            .iter()
+            .map(|&point| place(&grid.points[point as usize]));
         let values = match (&of_points, &of_cells) {
             (Some((width, values)), _) => taken(values, *width, points.iter().map(|&p| p as usize)),
             (_, Some((width, values))) => taken(values, *width, [cell].into_iter()),
