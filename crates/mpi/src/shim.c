@@ -21,6 +21,8 @@ static int preset(const char *name, const char *value) {
   return 0;
 }
 
+int km_ranks(void);
+
 int km_start(void) {
   /* No file that lies about shall change results; PETSC_OPTIONS may. */
   static char name[] = "kluft-mpi", skip[] = "-skip_petscrc";
@@ -33,8 +35,9 @@ int km_start(void) {
   if (MPI_Comm_dup(PETSC_COMM_WORLD, &at_the_end)) return PETSC_ERR_MPI;
   /* Strong couplings only: see docs/design/mpi.md. */
   PetscCall(preset("-kluft_mg_coarse_pc_gamg_threshold", "0.02"));
-  /* The usual triple product adds what other ranks send in the order in which it comes. */
-  return preset("-matptap_via", "allatonce");
+  /* The usual triple product adds what other ranks send in the order in which it comes; one rank
+     has no other. */
+  return km_ranks() > 1 ? preset("-matptap_via", "allatonce") : 0;
 }
 int km_end(void) {
   if (MPI_Comm_free(&at_the_end)) return PETSC_ERR_MPI;
