@@ -122,7 +122,6 @@ scenes! {
     scanned_joint: "scanned-joint",
     small_cube: "small-cube",
     sphere: "sphere",
-    standing_water: "standing-water",
     t_junction: "t-junction",
     three_planes: "three-planes",
     water_by_depth: "water-by-depth",
