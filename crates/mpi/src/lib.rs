@@ -11,6 +11,7 @@
 //! | `distributed` | the linear solver |
 //! | `run`, `args`, `memory`, `traffic` | the program |
 
+mod answers;
 pub mod args;
 pub mod distributed;
 mod memory;

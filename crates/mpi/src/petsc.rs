@@ -14,8 +14,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ThreadId;
 use std::time::Duration;
 
-use kluft_solver::LinearFailure;
 use kluft_solver::multigrid::BlockList;
+
+pub use crate::answers::{PetscFailure, Solved, Traffic};
 
 unsafe extern "C" {
     fn km_start() -> c_int;
@@ -74,22 +75,6 @@ unsafe extern "C" {
     fn km_counts(counts: *mut c_double) -> c_int;
 }
 
-/// PETSc's code of an allocation that failed.
-const OUT_OF_MEMORY: c_int = 55;
-
-/// An error of PETSc or MPI, by PETSc's number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PetscFailure(pub i32);
-
-impl From<PetscFailure> for LinearFailure {
-    fn from(PetscFailure(code): PetscFailure) -> Self {
-        match code {
-            OUT_OF_MEMORY => Self::OutOfMemory(0),
-            code => Self::Analysis(format!("PETSc reports its error {code}")),
-        }
-    }
-}
-
 fn done(code: c_int) -> Result<(), PetscFailure> {
     match code {
         0 => Ok(()),
@@ -103,22 +88,6 @@ pub struct World {
     thread: ThreadId,
     rank: usize,
     ranks: usize,
-}
-
-/// What was counted on this rank since the start.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Traffic {
-    /// Iterations of linear solves, the first of each left out: smoothers look for the bounds of
-    /// their spectra in it.
-    pub iterations: f64,
-    /// Halo exchanges in them.
-    pub exchanges: f64,
-    /// Messages that this rank sent.
-    pub messages: f64,
-    /// Their bytes.
-    pub bytes: f64,
-    /// Reductions.
-    pub reductions: f64,
 }
 
 impl World {
@@ -372,19 +341,6 @@ pub struct SolverParts {
     pub is_small: bool,
     /// Factor on the bounds of spectra.
     pub margin: f64,
-}
-
-/// What became of a solve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solved {
-    /// Iterations.
-    pub iterations: usize,
-    /// Whether the residual came below the tolerance.
-    pub converged: bool,
-    /// Whether matrix or preconditioner turned out not to be positive definite.
-    pub broke: bool,
-    /// Norm of the residual as a share of that of the right-hand side.
-    pub residual: f64,
 }
 
 /// Conjugate gradients with multigrid.

@@ -70,6 +70,7 @@ mod pieces;
 mod prepare;
 mod probes;
 mod provenance;
+mod rank_plan;
 mod ranks;
 mod request;
 mod resume;

@@ -9,8 +9,8 @@ use kluft_io::{Meshed, fingerprint_of, write_atomically};
 use kluft_mesh::{Defect, Draft, Mesh};
 use kluft_scene::{Binding, MeshSource, Oracle, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
-    Discretisation, Iteration, LinearFailure, LinearMethod, Newton, NewtonSettings, Plan, Problem,
-    System, Workload,
+    Discretisation, Iteration, LinearFailure, Newton, NewtonSettings, Plan, Problem, System,
+    Workload,
 };
 
 use crate::begin::provenance;
@@ -28,7 +28,7 @@ use crate::page::{self, Iterations, Told};
 use crate::prepare::{self, MeshFile};
 use crate::probes::ProbeTable;
 use crate::provenance::InputFile;
-use crate::ranks::{Ranks, agreed};
+use crate::ranks::agreed;
 use crate::request::{MeshInput, Request};
 use crate::resume::FormerRun;
 use crate::summary::{MeshSummary, RankSummary, Seconds, StepMeasures, Summary, UnknownSummary};
@@ -419,40 +419,6 @@ impl<'a> Run<'a> {
             Some(former) => former.progress.choice.clone(),
             None => (plan.method.to_string(), decisions::of_plan(&plan, &asked)),
         };
-        Ok(plan)
-    }
-
-    /// The iterative solver with its rows divided, unless one of the ranks has no room for its
-    /// part.
-    fn plan_for_ranks(
-        &mut self,
-        ranks: Ranks<'_>,
-        system: &System<'_>,
-        limit: usize,
-    ) -> Result<Plan, Interruption> {
-        let discretisation = system.discretisation();
-        let workload = Workload::of(system.problem());
-        let points = discretisation.points().len();
-        let workload = workload.with_extra_memory(&system.problem().mesh, points);
-        let forced = Some(LinearMethod::Iterative);
-        let plan = self.stage(Stage::ChooseSolver, |_| {
-            Plan::of(discretisation.into(), workload, forced, limit)
-        });
-        let plan = solved(plan, system)?;
-        let blocks = discretisation.pattern().blocks.columns.len();
-        let own = (ranks.solver_bytes)(points, blocks).div_ceil(ranks.count);
-        let needed = workload.extra.always + workload.extra.iterative + own;
-        self.summary.predicted_memory_bytes = (memory::used_bytes() + needed) as u64;
-        let fits = match needed <= limit {
-            true => Ok(()),
-            false => Err(vec![failures::rank_too_large(ranks, needed, limit)]),
-        };
-        ranks.agree(fits)?;
-        let why = match ranks.count {
-            1 => "linear solver: iterative, on one rank".to_owned(),
-            count => format!("linear solver: iterative, its rows divided among {count} ranks"),
-        };
-        self.choice = (plan.method.to_string(), why);
         Ok(plan)
     }
 
