@@ -169,7 +169,7 @@ impl Shape {
         }
     }
 
-    /// Reference coordinates of the nodes. Lines: `[-1, 1]`; triangles and tetrahedra: unit corners;
+    /// Reference coordinates of the nodes. Lines: `[-1, 1]`; triangles, tetrahedra: unit corners;
     /// quadrangles and hexahedra: `[-1, 1]`; prisms: unit triangle times `[-1, 1]`; pyramids:
     /// `[-1, 1]^2` below the apex at `z = 1`. All other nodes lie in the middle of corners.
     pub fn reference_nodes(self) -> Vec<DVec3> {
