@@ -87,7 +87,7 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
 /// outside the outer fifth at each front, where quadratic triangles of 0.03 do not follow the root.
 #[test]
 fn an_inclined_crack_slides_as_far_as_in_closed_form() {
-    let draft = scenes::geometry_of_order("line-crack", &[("h", 0.03)], 2).extruded();
+    let draft = scenes::geometry_in_plane("line-crack", &[("h", 0.03)], 2);
     let mesh = scenes::build(draft);
     let fracture = rubbing(Closure::contact(0.0), f64::INFINITY, 30.0, 0.0);
     let mut problem = scenes::problem(mesh, fracture);

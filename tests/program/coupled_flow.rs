@@ -81,7 +81,8 @@ fn an_injection_into_three_joints_loses_nothing() {
             "times = [10, 30, 60]",
         ),
     ];
-    let out = Workshop::new("injection", &edits).solve("out", &[]);
+    let workshop = Workshop::new("injection", &edits);
+    let out = workshop.solve("out", &[]);
     let said = summary(&out);
     let steps = said["steps"].as_array().expect("steps");
     for step in steps {

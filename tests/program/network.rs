@@ -343,7 +343,7 @@ fn overlapping_fractures_are_refused_by_name() {
 
 #[test]
 fn inputs_of_other_kinds_are_refused() {
-    assert!(refused("list.txt", LIST).contains("neither in .csv nor in .toml"));
+    assert!(refused("list.txt", LIST).contains("neither in .csv or .dat nor in .toml"));
     assert!(refused("list.csv", "name,shape\n").contains("holds no fracture"));
     assert!(refused("list.csv", "").contains("no column `shape`"));
     let outside = RANDOM

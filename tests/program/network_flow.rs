@@ -321,7 +321,7 @@ fn the_star_needs_no_cells() {
             "[rock.default]\nyoung_modulus = 1e10\npoisson_ratio = 0.2\n[fluid]",
         ),
     ]);
-    assert!(said.contains("dimension = 2 meshes no rock"), "{said}");
+    assert!(said.contains("`normal_stiffness` is missing"), "{said}");
     let said = refused(&[
         alone,
         ("[fluid]", "[fluid]\nequivalent_permeability = true"),

@@ -189,7 +189,15 @@ impl Run<'_> {
         self.output.expect_steps(steps.len())?;
         self.output.go_on_after(times, former.files);
         let summaries = done.iter().zip(&former.steps);
-        let summaries = summaries.map(|(step, measures)| StepSummary::of(step, measures.clone()));
+        let has_stages = self.request.scene.has_stages();
+        let summaries = summaries.map(|(step, measures)| {
+            let summary = StepSummary::of(step, measures.clone());
+            if has_stages {
+                summary.of_stages()
+            } else {
+                summary
+            }
+        });
         self.summary.steps = summaries.collect();
         for (step, flow) in self.summary.steps.iter_mut().zip(former.flows) {
             step.flow = flow;
@@ -247,6 +255,10 @@ impl Run<'_> {
         let summary = StepSummary {
             completed: record.completed,
             ..StepSummary::of(step, measures.clone())
+        };
+        let summary = match self.request.scene.has_stages() {
+            true => summary.of_stages(),
+            false => summary,
         };
         self.summary.steps.push(summary);
         if record.outcome == StepOutcome::Stopped {

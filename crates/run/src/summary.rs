@@ -152,6 +152,11 @@ impl StepSummary {
         }
     }
 
+    /// Without the factor of a load case: where volumes come and go, each body has its own cases.
+    pub fn of_stages(self) -> Self {
+        Self { load: None, ..self }
+    }
+
     /// A load step alone.
     pub fn without_measures(step: &Step) -> Self {
         Self {

@@ -30,7 +30,7 @@ enum Relation {
 /// A side of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 enum Side {
-    Value(Expression),
+    Value(Box<Expression>),
     /// The lowest coordinate of the body along an axis.
     Lowest(usize),
     /// The highest.
@@ -149,7 +149,7 @@ fn side(text: &str, other: &str) -> Result<Side, [String; 2]> {
         let problem = "the place of faces does not change with time".to_owned();
         return Err([problem, "compare values of x, y, z".into()]);
     }
-    Ok(Side::Value(expression))
+    Ok(Side::Value(Box::new(expression)))
 }
 
 #[cfg(test)]

@@ -154,8 +154,8 @@ fn judge_all(cases: &[Case]) {
     let former = former_results();
     assert_eq!(
         former.len(),
-        7,
-        "two collections, two grids, a summary, a history, a checkpoint"
+        9,
+        "two collections, two grids, both together, a summary, a history, a page, a checkpoint"
     );
     let verdicts: Vec<String> = cases
         .iter()

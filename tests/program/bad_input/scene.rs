@@ -71,7 +71,7 @@ pub(super) const CASES: &[Case] = &[
         scene: &[("[boundary.top]", "[boundary.top]\nqqq = 1")],
         says: &[
             "scene.toml:16: unknown key `qqq`",
-            "known keys: displacement, fluid_inflow, fluid_pressure, history, pressure, symmetry, traction",
+            "known keys: displacement, far_field, fluid_inflow, fluid_pressure, history, pressure, shear_spring, spring, symmetry, traction, where",
         ],
         ..SOUND
     },
@@ -482,7 +482,7 @@ pub(super) const CASES: &[Case] = &[
         scene: &[("traction = [0, 0, -1e5]\n", "")],
         says: &[
             "scene.toml:15: [boundary.top] says nothing",
-            "add traction, pressure, displacement, symmetry or fluid_pressure",
+            "add traction, pressure, displacement, symmetry, spring, far_field or fluid_pressure",
         ],
         ..SOUND
     },

@@ -1,5 +1,7 @@
 //! Cracks in the plane that meet or lie on one line.
 
+use kluft_chart::{Axis, Chart, Series};
+
 use crate::book::scene;
 use crate::report::{Effort, Finding, Study, Table, digits, largest, percent};
 
@@ -106,10 +108,27 @@ fn opening(x: f64, c: f64, b: f64) -> f64 {
     SCALE * integral
 }
 
-fn on_one_line() -> (Table, f64, usize) {
+/// The openings of the two cracks on one line, over the place.
+fn chart(found: &[(f64, f64)]) -> Chart {
+    let places = (1..80).map(|number| 0.5 + 2.0 * f64::from(number) / 80.0);
+    let closed_form = places.map(|x| (x, 1e6 * opening(x, 0.5, 2.5)));
+    Chart {
+        series: vec![
+            Series::line("closed form", closed_form.collect()),
+            Series::scatter("Kluft", found.to_vec()),
+        ],
+        ..Chart::new(
+            "Two cracks on one line: the opening of the right one",
+            Axis::linear("x, m"),
+            Axis::linear("opening, micrometres"),
+        )
+    }
+}
+
+fn on_one_line() -> (Table, Chart, f64, usize) {
     let outcome = scene::run("collinear-cracks", "order = 2\ndimension = 2");
     let mut table = Table::new(&["at x, m", "closed form, m", "found, m", "error"]);
-    let mut errors = Vec::new();
+    let (mut errors, mut found_at) = (Vec::new(), Vec::new());
     for probe in [
         "inner-near",
         "inner-far",
@@ -121,6 +140,7 @@ fn on_one_line() -> (Table, f64, usize) {
         let exact = opening(x, 0.5, 2.5);
         let found = outcome.probed(probe, "aperture") - 1e-5;
         errors.push((found / exact - 1.0).abs());
+        found_at.push((x, 1e6 * found));
         table.push([
             digits(x),
             format!("{exact:.6e}"),
@@ -128,12 +148,12 @@ fn on_one_line() -> (Table, f64, usize) {
             percent(found / exact - 1.0),
         ]);
     }
-    (table, largest(errors), outcome.unknowns())
+    (table, chart(&found_at), largest(errors), outcome.unknowns())
 }
 
 fn run(_: Effort) -> Finding {
     let (meeting, apart, of_meeting) = meeting();
-    let (line, error, of_line) = on_one_line();
+    let (line, chart, error, of_line) = on_one_line();
     let reached = format!(
         "{} from the tables, {} of openings",
         percent(apart),
@@ -144,6 +164,7 @@ fn run(_: Effort) -> Finding {
         .closed_form(CLOSED_FORM, PAGE.subject)
         .table(meeting)
         .table_in("plane-cracks-collinear", line)
+        .chart("plane-cracks", chart)
         .shows(format!(
             "Contact, friction and opening at a junction are within {} of boundary elements at all \
              points of the tables. Openings of two cracks on one line are within {} of the closed \

@@ -18,11 +18,22 @@ pub fn geometry(name: &str, parameters: &[(&str, f64)]) -> Draft {
 /// The same of order 1 or 2.
 pub fn geometry_of_order(name: &str, parameters: &[(&str, f64)], order: u32) -> Draft {
     let geometry = root().join(format!("geometries/{name}/{name}.geo"));
-    meshed_file(&geometry, parameters, order)
+    meshed_file(&geometry, parameters, order, Dimension::Volumes)
+}
+
+/// The mesh of the plane that gmsh makes of it, one cell thick.
+pub fn geometry_in_plane(name: &str, parameters: &[(&str, f64)], order: u32) -> Draft {
+    let geometry = root().join(format!("geometries/{name}/{name}.geo"));
+    meshed_file(&geometry, parameters, order, Dimension::Surfaces).extruded()
 }
 
 /// The mesh that gmsh makes of a geometry, of order 1 or 2.
-pub fn meshed_file(geometry: &Path, parameters: &[(&str, f64)], order: u32) -> Draft {
+pub fn meshed_file(
+    geometry: &Path,
+    parameters: &[(&str, f64)],
+    order: u32,
+    dimension: Dimension,
+) -> Draft {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("mesh.msh");
     let parameters: Vec<(String, f64)> = parameters
@@ -33,7 +44,7 @@ pub fn meshed_file(geometry: &Path, parameters: &[(&str, f64)], order: u32) -> D
         geometry,
         parameters: &parameters,
         order,
-        dimension: Dimension::Volumes,
+        dimension,
         sizes: None,
         output: &file,
         gmsh: &GmshOptions::default(),

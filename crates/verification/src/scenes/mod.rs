@@ -21,7 +21,9 @@ use kluft_mesh::{Draft, Mesh, SurfaceRole};
 use kluft_solver::{Condition, FixedPoint, Fracture, Problem, Support, SurfaceLoad};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 
-pub use files::{bound, geometry, geometry_of_order, meshed_file, run_scene_file, scene_file};
+pub use files::{
+    bound, geometry, geometry_in_plane, geometry_of_order, meshed_file, run_scene_file, scene_file,
+};
 pub use shuffled::shuffled;
 pub use solving::{solve, solve_path, try_solve};
 

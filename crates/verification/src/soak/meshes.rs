@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use kluft_io::Dimension;
 use kluft_mesh::Draft;
 use tempfile::TempDir;
 
@@ -161,7 +162,7 @@ impl Meshes {
             let own = &JUNCTIONS[junction];
             let file = self.file(own);
             let (size, order) = fineness.size();
-            meshed_file(&file, &[("h", size)], order)
+            meshed_file(&file, &[("h", size)], order, Dimension::Volumes)
         });
         made.clone()
     }
