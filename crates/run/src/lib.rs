@@ -78,6 +78,7 @@ mod rigid;
 mod run;
 mod save;
 mod sequence;
+mod set_up;
 mod spread;
 mod stages;
 mod steps;

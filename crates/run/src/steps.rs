@@ -8,8 +8,8 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Estimator, FacetResult, Flow, Newton, Plan, Problem, Solution, StageEnd, State, StepOutcome,
-    System, determinacy, solution,
+    Determinacy, Estimator, FacetResult, Flow, Newton, Plan, Problem, Solution, StageEnd, State,
+    StepOutcome, System, determinacy, solution,
 };
 
 use crate::accuracy::{self, Accuracy};
@@ -17,7 +17,7 @@ use crate::checkpoint::{self, Progress};
 use crate::decisions;
 use crate::doubts;
 use crate::failures;
-use crate::flow::RunFlow;
+use crate::flow::{RunFlow, SolvedFlow};
 use crate::fluid_step;
 use crate::fractures::fractures;
 use crate::grids::{fracture_grid, in_plane, rock_grid};
@@ -45,6 +45,15 @@ pub(crate) struct Prepared<'s, 'p> {
     estimator: Option<Estimator>,
     /// What its stage of the body began with, if it is not the first.
     pub(crate) stage: Option<&'s StageEnd>,
+}
+
+/// What the grids of a load step hold.
+struct Written<'a> {
+    solution: &'a Solution,
+    nodes: &'a [FacetResult],
+    accuracy: &'a Accuracy,
+    facets: Option<&'a [Determinacy]>,
+    flow: Option<&'a SolvedFlow>,
 }
 
 impl Run<'_> {
@@ -308,16 +317,43 @@ impl Run<'_> {
             .filter_map(|warning| warning(scene, &self.finished));
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
         self.summary.warnings.extend(unresolved);
+        let written = Written {
+            solution: &solution,
+            nodes: &nodes,
+            accuracy: &accuracy,
+            facets: facets.as_deref(),
+            flow: flow.as_ref(),
+        };
+        self.write_grids(prepared, &written)?;
+        self.write_sources()?;
+        self.write_probes(prepared, &solution, &nodes)?;
+        self.write_history(prepared, &solution)
+    }
+
+    /// Writes the grids of the load step that was solved last.
+    fn write_grids(
+        &mut self,
+        prepared: &Prepared<'_, '_>,
+        written: &Written<'_>,
+    ) -> Result<(), Interruption> {
+        let system = prepared.system;
+        let problem = system.problem();
+        let &Written {
+            solution,
+            nodes,
+            accuracy,
+            facets,
+            flow,
+        } = written;
         let time = prepared.state.load.time;
         let ranks = self.request.ranks.filter(|ranks| ranks.count > 1);
         self.stage(Stage::Write, |run| {
-            let rock = || in_plane(&problem.mesh, rock_grid(system, &solution, Some(&accuracy)));
+            let rock = || in_plane(&problem.mesh, rock_grid(system, solution, Some(accuracy)));
             let fractures = || {
-                let mut grid = fracture_grid(system, &nodes, Some(&accuracy));
-                let field = facets.as_deref().map(undetermined::field);
-                grid.cell_fields.extend(field);
-                if let Some(flow) = &flow {
-                    fluid_step::add_to(&mut grid, flow, &nodes);
+                let mut grid = fracture_grid(system, nodes, Some(accuracy));
+                grid.cell_fields.extend(facets.map(undetermined::field));
+                if let Some(flow) = flow {
+                    fluid_step::add_to(&mut grid, flow, nodes);
                 }
                 in_plane(&problem.mesh, grid)
             };
@@ -338,9 +374,7 @@ impl Run<'_> {
             run.keep(rock, fractures);
             written.map_err(of_one)
         })?;
-        self.write_sources()?;
-        self.write_probes(prepared, &solution, &nodes)?;
-        self.write_history(prepared, &solution)
+        Ok(())
     }
 
     /// Adds the load step that was solved last to the values of probes.

@@ -279,25 +279,8 @@ fn joints_keep_their_state_when_the_body_changes() {
     );
 }
 
-/// Where two walls that have moved apart are bridged, they stay where they are.
-#[test]
-fn a_bridge_over_an_open_crack_holds_it_where_it_is() {
-    let volume = |x: [f64; 3]| if x[2] > 0.5 { "bridge" } else { "rock" };
-    let planes = [
-        plane("crack", 0, 0.5),
-        plane("left", 0, 0.0),
-        plane("right", 0, 1.0),
-    ];
-    let text = format!(
-        "{ROCK}[fracture.crack]\naperture = 1e-3\nnormal_stiffness = 1e9\nshear_stiffness = 1e9\n\
-         closure = \"linear\"\n\
-         [boundary.left]\ndisplacement = {{ x = 0.0, y = 0.0, z = 0.0 }}\n\
-         [boundary.right]\ndisplacement = {{ x = 1e-4, y = 0.0, z = 0.0 }}\nhistory = [[0, 0], [1, 1]]\n\
-         [[load.phase]]\nname = \"open\"\nuntil = 1\n\
-         [[load.phase]]\nname = \"bridge\"\nuntil = 2\nadd = [\"bridge\"]\n"
-    );
-    let mut made = draft([4, 2, 4], volume, &planes);
-    // The crack is in the rock alone.
+/// A draft whose crack is below a height alone.
+fn below(mut made: Draft, height: f64) -> Draft {
     let crack = made
         .groups
         .iter()
@@ -316,7 +299,7 @@ fn a_bridge_over_an_open_crack_holds_it_where_it_is() {
                 .iter()
                 .map(|&n| made.nodes[n as usize][2])
                 .fold(0.0, f64::max);
-            facets.group_set[facet] != set || top <= 0.5
+            facets.group_set[facet] != set || top <= height
         })
         .collect();
     let mut elements = kluft_mesh::Elements::new();
@@ -331,7 +314,27 @@ fn a_bridge_over_an_open_crack_holds_it_where_it_is() {
         group_set: kept.iter().map(|&f| made.facets.group_set[f]).collect(),
         elements,
     };
-    let done = outcome(&text, made);
+    made
+}
+
+/// Where two walls that have moved apart are bridged, they stay where they are.
+#[test]
+fn a_bridge_over_an_open_crack_holds_it_where_it_is() {
+    let volume = |x: [f64; 3]| if x[2] > 0.5 { "bridge" } else { "rock" };
+    let planes = [
+        plane("crack", 0, 0.5),
+        plane("left", 0, 0.0),
+        plane("right", 0, 1.0),
+    ];
+    let text = format!(
+        "{ROCK}[fracture.crack]\naperture = 1e-3\nnormal_stiffness = 1e9\nshear_stiffness = 1e9\n\
+         closure = \"linear\"\n\
+         [boundary.left]\ndisplacement = {{ x = 0.0, y = 0.0, z = 0.0 }}\n\
+         [boundary.right]\ndisplacement = {{ x = 1e-4, y = 0.0, z = 0.0 }}\nhistory = [[0, 0], [1, 1]]\n\
+         [[load.phase]]\nname = \"open\"\nuntil = 1\n\
+         [[load.phase]]\nname = \"bridge\"\nuntil = 2\nadd = [\"bridge\"]\n"
+    );
+    let done = outcome(&text, below(draft([4, 2, 4], volume, &planes), 0.5));
     // Springs of 1e9 Pa/m before 1 m of 10e9 Pa: the crack takes 10/11 of the stretch.
     let open = 1e-4 * 10.0 / 11.0;
     assert_all(&opening_of(&done.steps[0]), open, 1e-9);

@@ -124,22 +124,15 @@ pub(crate) fn bind_with(
     if scene.quarter_points {
         decisions.extend(quarter_points(mesh.move_to_quarter_points()));
     }
-    let mut rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
-    for (cell, rock) in rock_of_cell.iter_mut().enumerate() {
-        *rock = rock_of(cell).unwrap_or(*rock);
-    }
+    let rock_of_cell = bind_rocks(scene, &mesh, &mut defects).into_iter();
+    let rock_of_cell = rock_of_cell.enumerate();
+    let rock_of_cell = rock_of_cell.map(|(cell, rock)| rock_of(cell).unwrap_or(rock));
+    let rock_of_cell = rock_of_cell.collect();
     let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
     defects.extend(wrong_gravity(scene, &mesh));
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
-    if let Some(reduction) = scene
-        .strength_reduction
-        .as_ref()
-        .filter(|_| !scene.has_stages())
-    {
-        let laws = fractures.iter().map(|entry| entry.value.fracture.law);
-        defects.extend(reduction.defects(&mesh.fractures, &laws.collect::<Vec<_>>()));
-    }
+    defects.extend(wrong_strength(scene, &mesh, &fractures));
     if !defects.is_empty() {
         return Err(defects);
     }
@@ -160,15 +153,10 @@ pub(crate) fn bind_with(
         rocks: rocks(scene),
         rock_of_cell,
         schedule,
-        fractures: (bound.fractures.iter())
-            .map(|entry| entry.value.fracture)
-            .collect(),
+        fractures: (bound.fractures.iter().map(|entry| entry.value.fracture)).collect(),
         fixed_points,
         gravity: scene.body.gravity,
-        initial_stress: scene
-            .initial_stress
-            .as_ref()
-            .map(|entry| entry.stress.clone()),
+        initial_stress: (scene.initial_stress.as_ref()).map(|entry| entry.stress.clone()),
         added: Vec::new(),
         varying: Varying::default(),
         facet_quadrature: scene.solver.facets,
@@ -187,6 +175,16 @@ pub(crate) fn bind_with(
         oracles,
         probes,
     })
+}
+
+/// What is wrong with the reduction of strength, where no volumes come and go.
+fn wrong_strength(scene: &Scene, mesh: &Mesh, fractures: &[&Named<FractureEntry>]) -> Vec<Defect> {
+    let reduction = scene.strength_reduction.as_ref();
+    let Some(reduction) = reduction.filter(|_| !scene.has_stages()) else {
+        return Vec::new();
+    };
+    let laws = fractures.iter().map(|entry| entry.value.fracture.law);
+    reduction.defects(&mesh.fractures, &laws.collect::<Vec<_>>())
 }
 
 /// The rocks; rigid rock needs no section.

@@ -17,7 +17,7 @@ use crate::reader::{Section, Source};
 use crate::rock::read_rock;
 use crate::scene::{Adapt, AdaptBy, Isolated, MeshSource, Named, Scene, SolverEntry};
 use crate::setting::Setting;
-use crate::strength::read_strength_reduction;
+use crate::strength::{StrengthReduction, read_strength_reduction};
 
 impl Scene {
     /// Reads a scene file; paths in it are relative to its folder.
@@ -120,11 +120,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
     let mut mesh = read_mesh_section(root, folder);
-    if root.has("fluid") && root.has("strength_reduction") {
-        let problem = "[strength_reduction] knows nothing of a fluid that flows".into();
-        let remedy = "give fractures a fluid_pressure, or remove [strength_reduction]";
-        root.refuse("strength_reduction", problem, remedy);
-    }
+    refuse_strength_beside_fluid(root);
     if timetable.has_stages() {
         refuse_beside_stages(root);
         // Crack fronts come and go with volumes, and nodes stay where they are.
@@ -134,28 +130,26 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         true => refuse_in_rigid_scene(root),
         false => root.require("rock"),
     }
-    let rocks =
-        named("rock").filter_map(|(name, s)| entry(source, name, s, |s| read_rock(s, setting)));
-    let rocks = rocks.collect();
-    let fractures = named("fracture").filter_map(|(name, s)| {
+    let rock = |(name, s)| entry(source, name, s, |s| read_rock(s, setting));
+    let rocks = named("rock").filter_map(rock).collect();
+    let fracture = |(name, s): (String, _)| {
         let called = name.clone();
         entry(source, name, s, |s| {
             read_placed_fracture(s, &called, setting)
         })
-    });
-    let fractures = fractures.collect();
+    };
+    let fractures = named("fracture").filter_map(fracture).collect();
     let boundary = |(name, s)| entry(source, name, s, |s| read_boundary(s, setting));
     let boundaries = named("boundary").filter_map(boundary).collect();
     let body = read_body(root, clock);
     // Of `kluft study`, which reads it.
     root.section("study");
-    let probes = named("probe").filter_map(|(name, s)| entry(source, name, s, read_probe));
-    let oracles = named("oracle").filter_map(|(name, s)| entry(source, name, s, oracle::read));
-    let oracles = oracles.collect();
+    let probe = |(name, s)| entry(source, name, s, read_probe);
+    let oracle = |(name, s)| entry(source, name, s, oracle::read);
     let flowing = read_flow(root, &body);
     Some(Scene {
-        oracles,
-        probes: probes.collect(),
+        oracles: named("oracle").filter_map(oracle).collect(),
+        probes: named("probe").filter_map(probe).collect(),
         fluid: flowing.fluid,
         isolated: flowing.isolated,
         equivalent_permeability: flowing.equivalent_permeability,
@@ -165,12 +159,8 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         initial_stress: root.section("initial_stress").map(read_initial_stress),
         timetable,
         solver: read_solver(root),
-        strength_reduction: root
-            .section("strength_reduction")
-            .map(read_strength_reduction),
-        silenced: root
-            .section("warnings")
-            .map_or_else(Vec::new, read_silenced),
+        strength_reduction: read_strength(root),
+        silenced: silenced(root),
         title,
         rocks,
         fractures,
@@ -183,6 +173,25 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         // After everything has been read.
         warnings: source.take_warnings(),
     })
+}
+
+fn read_strength(root: &Section<'_, '_>) -> Option<StrengthReduction> {
+    let section = root.section("strength_reduction");
+    section.map(read_strength_reduction)
+}
+
+fn silenced(root: &Section<'_, '_>) -> Vec<&'static str> {
+    let section = root.section("warnings");
+    section.map_or_else(Vec::new, read_silenced)
+}
+
+/// What reduces strength has no pressures that move.
+fn refuse_strength_beside_fluid(root: &Section<'_, '_>) {
+    if root.has("fluid") && root.has("strength_reduction") {
+        let problem = "[strength_reduction] knows nothing of a fluid that flows".into();
+        let remedy = "give fractures a fluid_pressure, or remove [strength_reduction]";
+        root.refuse("strength_reduction", problem, remedy);
+    }
 }
 
 /// What a scene says of its mesh.

@@ -1,5 +1,5 @@
-//! Divides every cell into eight, and facets into four, with their groups; or bisects those that are
-//! too large (`bisect`).
+//! Divides every cell into eight, and facets into four, with their groups; or bisects those that
+//! are too large (`bisect`).
 //!
 //! Tetrahedra are divided by red refinement: four at the corners, and the octahedron between them
 //! along its shortest diagonal, so that the inner four keep at least three quarters of the mean

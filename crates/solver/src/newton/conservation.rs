@@ -17,8 +17,8 @@ const HELPS: f64 = 0.7;
 
 impl Newton {
     /// Corrects an iterate that meets all tests but that of the mass, whose last iteration this
-    /// is, until it meets that too; keeps it if it does not come to that, and lets the linear solves
-    /// see to it then.
+    /// is, until it meets that too; keeps it if it does not come to that, and lets the linear
+    /// solves see to it then.
     pub(super) fn conserve(
         &self,
         step: &mut Step<'_>,

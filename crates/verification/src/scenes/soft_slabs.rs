@@ -168,7 +168,7 @@ impl Path {
         self.frames.last().expect("steps")
     }
 
-    /// Largest share that the nodes miss of what moves, in all steps where rounding does not explain
+    /// Largest share that nodes miss of what moves, in all steps where rounding does not explain
     /// it.
     pub fn mass_error(&self) -> f64 {
         let balances = self.frames.iter().map(|frame| frame.flow.balance);
