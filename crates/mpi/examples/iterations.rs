@@ -2,8 +2,9 @@
 //! the fractures: `mpiexec -n 2 iterations SCENE.toml MESH.msh`.
 //!
 //! All facet points get the normal stiffness `K_n` and the shear stiffness `K_s`, given by
-//! `K_n h/E` and `K_s h/E`, where `E/h` is the stiffness of the rock as each of them feels it. `slide` has
-//! `K_s h/E = 0.05`, walls that are pressed together and may slide; `glue` has `K_s = 0.3 K_n`.
+//! `K_n h/E` and `K_s h/E`, where `E/h` is the stiffness of the rock as each of them feels it.
+//! `slide` has `K_s h/E = 0.05`, walls that are pressed together and may slide; `glue` has
+//! `K_s = 0.3 K_n`.
 
 #![allow(clippy::print_stdout, reason = "the table is what it is run for")]
 

@@ -119,15 +119,13 @@ pub(crate) fn bind_with(
     mut mesh: Mesh,
     rock_of: impl Fn(usize) -> Option<u32>,
 ) -> Result<Binding, Vec<Defect>> {
-    let mut defects = Vec::new();
-    let mut decisions = Vec::new();
+    let (mut defects, mut decisions) = (Vec::new(), Vec::new());
     if scene.quarter_points {
         decisions.extend(quarter_points(mesh.move_to_quarter_points()));
     }
-    let rock_of_cell = bind_rocks(scene, &mesh, &mut defects).into_iter();
-    let rock_of_cell = rock_of_cell.enumerate();
-    let rock_of_cell = rock_of_cell.map(|(cell, rock)| rock_of(cell).unwrap_or(rock));
-    let rock_of_cell = rock_of_cell.collect();
+    let rocks_of_cells = bind_rocks(scene, &mesh, &mut defects).into_iter();
+    let other = |(cell, rock)| rock_of(cell).unwrap_or(rock);
+    let rock_of_cell = rocks_of_cells.enumerate().map(other).collect();
     let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
     defects.extend(wrong_gravity(scene, &mesh));
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);

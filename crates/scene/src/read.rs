@@ -122,9 +122,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let mut mesh = read_mesh_section(root, folder);
     refuse_strength_beside_fluid(root);
     if timetable.has_stages() {
-        refuse_beside_stages(root);
-        // Crack fronts come and go with volumes, and nodes stay where they are.
-        mesh.quarter_points = false;
+        settle_stages(root, &mut mesh);
     }
     match setting.is_rigid() {
         true => refuse_in_rigid_scene(root),
@@ -170,9 +168,14 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         weld: mesh.weld,
         refine: mesh.refine,
         mesh: mesh.source?,
-        // After everything has been read.
         warnings: source.take_warnings(),
     })
+}
+
+/// Crack fronts come and go with volumes, and nodes stay where they are.
+fn settle_stages(root: &Section<'_, '_>, mesh: &mut MeshSection) {
+    refuse_beside_stages(root);
+    mesh.quarter_points = false;
 }
 
 fn read_strength(root: &Section<'_, '_>) -> Option<StrengthReduction> {
