@@ -89,7 +89,6 @@ fn is_equal(name: &str) {
     let mut reference = None;
     for ranks in 1..=4 {
         let difference = compared(&scene, ranks, &mut reference);
-        println!("{name} on {ranks} ranks: {difference:.1e}");
         assert!(
             difference < EQUAL,
             "{name} on {ranks} ranks: {difference:e}"
