@@ -84,7 +84,8 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
 /// A closed crack of half-length 1 under 100 MPa at 20 degrees to it slides against a friction of
 /// 30 degrees (Phan et al. 2003): `4 (1 - nu^2)/E p sin psi (cos psi - sin psi tan phi) sqrt(1 -
 /// x^2)`, 3.807850e-3 m in the middle, under a normal traction of -11.697778 MPa. Within 1 %
-/// outside the outer fifth at each front, where quadratic triangles of 0.025 do not follow the root.
+/// outside the outer fifth at each front, where quadratic triangles of 0.025 do not follow the
+/// root.
 #[test]
 fn an_inclined_crack_slides_as_far_as_in_closed_form() {
     let draft = scenes::geometry_in_plane("line-crack", &[("h", 0.025)], 2);

@@ -157,7 +157,9 @@ fn a_missing_geometry_and_a_wrong_order_are_defects() {
 fn player(scene: &Scene, text: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
     let file = scene.folder.join("gmsh.sh");
-    fs::write(&file, format!("#!/bin/sh\n{text}\n")).expect("written");
+    // Asked for its version it has none.
+    let asked = "test \"$1\" != --version || exit 1";
+    fs::write(&file, format!("#!/bin/sh\n{asked}\n{text}\n")).expect("written");
     fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("executable");
     file.display().to_string()
 }
