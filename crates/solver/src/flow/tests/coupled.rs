@@ -9,12 +9,12 @@ use kluft_mesh::structured::Patch;
 use kluft_mesh::{Mesh, Shape};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
 
-use super::{SHAPES, block, flow, is_close, on_side, pressure};
+use super::{SHAPES, block, flow, is_close, on_side, pressure, times};
 use crate::flow::FlowState;
 use crate::newton::{Newton, NewtonSettings, StepRecord, unobserved};
 use crate::problem::{
-    Condition, Flow, FlowCondition, Fracture, InitialStress, Load, Problem, Schedule, Step,
-    Support, SurfaceLoad,
+    Condition, Flow, FlowCondition, Fracture, InitialStress, Problem, Schedule, Support,
+    SurfaceLoad,
 };
 use crate::system::{Discretisation, State, System};
 
@@ -64,23 +64,6 @@ fn problem(mesh: &Mesh, closure: Closure, schedule: Schedule) -> Problem {
         ],
         schedule,
         ..Problem::of_rock(mesh.clone(), rock)
-    }
-}
-
-fn times(end: f64, count: usize) -> Schedule {
-    let step = |index: usize| Step {
-        load: Load {
-            time: end * (index + 1) as f64 / count as f64,
-            factors: vec![1.0],
-        },
-        phase: None,
-    };
-    Schedule {
-        steps: (0..count).map(step).collect(),
-        is_timed: true,
-        goes_on_from: None,
-        sudden: vec![1.0],
-        ..Schedule::proportional(vec![1.0])
     }
 }
 

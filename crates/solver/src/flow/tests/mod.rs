@@ -13,7 +13,9 @@ use kluft_mesh::{Draft, Mesh, Shape, SurfaceRole};
 use lie_core::{HydraulicAperture, Roughness};
 
 use crate::flow::{FlowState, FlowSystem};
-use crate::problem::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Load, Profile};
+use crate::problem::{
+    Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Load, Profile, Schedule, Step,
+};
 
 const VISCOSITY: f64 = 1e-3;
 const SHAPES: [Shape; 6] = [
@@ -83,6 +85,24 @@ fn pressure(value: f64) -> FlowDrive {
         value,
         ..Profile::default()
     })
+}
+
+/// Time steps of equal length up to an end (s), all loads from the beginning.
+fn times(end: f64, count: usize) -> Schedule {
+    let step = |index: usize| Step {
+        load: Load {
+            time: end * (index + 1) as f64 / count as f64,
+            factors: vec![1.0],
+        },
+        phase: None,
+    };
+    Schedule {
+        steps: (0..count).map(step).collect(),
+        is_timed: true,
+        goes_on_from: None,
+        sudden: vec![1.0],
+        ..Schedule::proportional(vec![1.0])
+    }
 }
 
 fn apertures(mesh: &Mesh, of: impl Fn(DVec3, usize) -> f64) -> Vec<f64> {

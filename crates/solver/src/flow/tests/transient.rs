@@ -6,9 +6,9 @@ use kluft_mesh::structured::Patch;
 use kluft_mesh::{Mesh, Shape};
 use lie_core::HydraulicAperture;
 
-use super::{VISCOSITY, block, flow, is_close, on_side, pressure, smooth};
+use super::{VISCOSITY, block, flow, is_close, on_side, pressure, smooth, times};
 use crate::flow::{FlowSystem, TimeStep, TransientFlow};
-use crate::problem::{Conduit, Flow, FlowCondition, FlowDrive, Load, Schedule, Step};
+use crate::problem::{Conduit, Flow, FlowCondition, FlowDrive, Schedule};
 
 const APERTURE: f64 = 1e-4;
 const COMPRESSIBILITY: f64 = 4.5e-10;
@@ -22,23 +22,6 @@ fn strip(shape: Shape) -> Mesh {
         Patch::new("side left", &|x| x[0] == 0.0),
     ];
     block(shape, ([100, 1, 2], [25.0, 1.0, 1.0]), &surfaces, |x| x)
-}
-
-fn schedule(end: f64, count: usize) -> Schedule {
-    let step = |index: usize| Step {
-        load: Load {
-            time: end * (index + 1) as f64 / count as f64,
-            factors: vec![1.0],
-        },
-        phase: None,
-    };
-    Schedule {
-        steps: (0..count).map(step).collect(),
-        is_timed: true,
-        goes_on_from: None,
-        sudden: vec![1.0],
-        ..Schedule::proportional(vec![1.0])
-    }
 }
 
 fn compressible(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
@@ -67,7 +50,7 @@ fn a_joint_takes_up_what_diffusion_says() {
         let end = 0.01;
         let exact = 2.0 * 1e6 * COMPRESSIBILITY * APERTURE * (DIFFUSIVITY * end / PI).sqrt();
         let error = |accuracy: f64, count: usize| {
-            let steps = solved(&mesh, &flow, &schedule(end, count), accuracy);
+            let steps = solved(&mesh, &flow, &times(end, count), accuracy);
             for step in &steps {
                 assert!(step.state.balance.mass_error <= 1e-12, "{shape:?}");
             }
@@ -89,7 +72,7 @@ fn a_closed_joint_fills_at_its_rate() {
     let mesh = strip(Shape::Tet4);
     let drive = FlowDrive::Rate(2e-9);
     let flow = compressible(&mesh, vec![on_side(&mesh, "side left", drive)]);
-    let steps = solved(&mesh, &flow, &schedule(100.0, 3), 1e-2);
+    let steps = solved(&mesh, &flow, &times(100.0, 3), 1e-2);
     let last = &steps[2];
     let risen = last.state.entered[0] / (COMPRESSIBILITY * APERTURE * 25.0);
     let mean = last.state.pressures.iter().sum::<f64>() / last.state.pressures.len() as f64;
@@ -102,8 +85,8 @@ fn constant_apertures_store_by_what_they_hold() {
     let mesh = strip(Shape::Tet4);
     let mut flow = compressible(&mesh, vec![on_side(&mesh, "side left", pressure(1e6))]);
     flow.conduits = vec![Conduit::Open(HydraulicAperture::Constant(APERTURE)); 1];
-    let constant = solved(&mesh, &flow, &schedule(0.01, 5), 1.0);
+    let constant = solved(&mesh, &flow, &times(0.01, 5), 1.0);
     flow.conduits = vec![smooth(); 1];
-    let of_walls = solved(&mesh, &flow, &schedule(0.01, 5), 1.0);
+    let of_walls = solved(&mesh, &flow, &times(0.01, 5), 1.0);
     assert_eq!(constant[4].state.pressures, of_walls[4].state.pressures);
 }
