@@ -17,13 +17,17 @@ mod study;
 use std::process::ExitCode;
 
 use clap::Parser;
-#[cfg(target_os = "linux")]
-use kluft_program::start_gmsh;
 use kluft_program::{defects, failure, gmsh, input, printing, report};
+#[cfg(target_os = "linux")]
+use kluft_program::{limited, start_gmsh};
 
 use args::{Cli, Command};
 
 fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
+    if let Some(code) = limited::delegate() {
+        return code;
+    }
     let done = match arguments().command {
         Command::Init(args) => init::init(&args.input.clone(), &args.into()),
         Command::Run(args) => run::run(&args.scene.clone(), &args.into()),

@@ -117,6 +117,7 @@ impl Study {
         let ThreadCount { count, word } = thread_count(options.threads);
         let runner = Runner {
             folder: out.join("points"),
+            study: out,
             build: fingerprint_of(&program)?,
             program,
             threads: count,

@@ -1,12 +1,12 @@
 //! One setting: its scene, its run as a process of its own, and what is kept of it.
 
-use std::fs;
-use std::io::Write;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Instant;
 
-use kluft_io::write_atomically;
+use kluft_io::{ClaimedFolder, write_atomically};
 use kluft_mesh::Defect;
 use serde::{Deserialize, Serialize};
 use toml::Table;
@@ -86,7 +86,9 @@ impl PointRecord {
 /// How points are run.
 #[derive(Debug, Clone)]
 pub(super) struct Runner {
-    /// The folder `points`.
+    /// The folder of the study, which is claimed.
+    pub(super) study: PathBuf,
+    /// The folder `points` in it.
     pub(super) folder: PathBuf,
     /// This program.
     pub(super) program: PathBuf,
@@ -135,7 +137,7 @@ impl Runner {
         remove_setting(&folder)?;
         fs::create_dir_all(&folder).map_err(|error| unwritable(&folder, &error))?;
         let scene_file = folder.join(SCENE);
-        write_atomically(&scene_file, |out| {
+        self.write(&scene_file, |out| {
             out.write_all(scene.to_string().as_bytes())
         })?;
         let begin = Instant::now();
@@ -151,12 +153,24 @@ impl Runner {
         // may be luckier the next time.
         let is_meshed = !output.stderr.starts_with(NOT_MESHED.as_bytes());
         if is_meshed && matches!(output.status.code(), Some(0 | 1)) {
-            write_atomically(&folder.join(RECORD), |out| {
+            self.write(&folder.join(RECORD), |out| {
                 serde_json::to_writer_pretty(&mut *out, &record)?;
                 out.write_all(b"\n")
             })?;
         }
         Ok(record)
+    }
+
+    /// Writes a file of a setting. What a killed study leaves of it stands in the claimed folder,
+    /// where the next one removes it.
+    fn write(
+        &self,
+        path: &Path,
+        fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<(), Defect> {
+        let unfinished = ClaimedFolder::unfinished_in(&self.study, "setting");
+        write_atomically(&unfinished, fill)?;
+        fs::rename(&unfinished, path).map_err(|error| unwritable(path, &error))
     }
 
     /// Runs the program on a scene; if this process dies, the run ends with it.
@@ -353,6 +367,7 @@ mod tests {
             Table::from_iter([("mesh".to_owned(), Value::from(mesh))])
         };
         let mut runner = Runner {
+            study: folder.path().into(),
             folder: folder.path().into(),
             program: "kluft".into(),
             build: 7,

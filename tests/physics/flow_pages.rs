@@ -56,7 +56,7 @@ fn flow_that_opens_its_joint_is_of_second_order() {
 
 #[test]
 fn pressure_diffuses_with_its_orders() {
-    for name in ["pressure-step", "line-source"] {
+    for name in ["pressure-step", "line-source", "periodic-source"] {
         let finding = page(name);
         let steps = format!("{name}-time");
         hold(table(&finding, &steps), "", [2e-2, 0.7]);

@@ -55,7 +55,16 @@ fn flow_does_not_see_small_angles_and_flat_facets() {
 fn flow_opens_and_closes_joints_in_few_iterations() {
     let finding = hold(&coupled_flow::STUDY);
     let most = column(&finding, "most of a part");
-    assert!(most.iter().all(|count| *count <= 14.0), "{most:?}");
+    let cases = finding.first_table().rows.iter().zip(&most);
+    for (case, count) in cases {
+        // Fluid that is shut in under a hundred times what has closed the joint leaves in a front.
+        let allowed = if case[1].starts_with("100 ") {
+            24.0
+        } else {
+            14.0
+        };
+        assert!(*count <= allowed, "{case:?}");
+    }
     assert!(column(&finding, "mass").iter().all(|error| *error < 1e-10));
 }
 

@@ -182,3 +182,22 @@ fn a_limit_of_the_address_space_refuses_what_would_not_fit() {
     );
     assert!(!run.err.contains("panicked"), "{}", run.err);
 }
+
+/// An allocation that is refused in the middle of a run would abort it.
+#[test]
+fn memory_that_a_run_does_not_get_is_a_failure() {
+    let workshop = Workshop::new("inclined-joint", &[]);
+    for limit in (200_000..420_000).step_by(20_000) {
+        let script = format!("ulimit -v {limit}; exec \"$0\" \"$@\"");
+        let run = command("bash")
+            .args(["-c", &script, KLUFT, "run", "--threads", "2"])
+            .arg(workshop.scene())
+            .output();
+        let run: Run = run.expect("it starts").into();
+        let ended = matches!(run.code, Some(0..=2));
+        assert!(ended, "{limit} kB: {:?}: {}", run.code, run.err);
+        if run.err.contains("memory allocation of") {
+            assert_fails(&run, &["memory of this process", "ulimit -v"]);
+        }
+    }
+}

@@ -5,6 +5,8 @@ pub mod defects;
 pub mod failure;
 pub mod gmsh;
 pub mod input;
+#[cfg(target_os = "linux")]
+pub mod limited;
 pub mod printing;
 pub mod report;
 #[cfg(target_os = "linux")]

@@ -136,7 +136,7 @@ impl CoupledTangent<'_, '_> {
         let packing = Packing {
             unknowns: rhs.forces.len(),
             pressures: rhs.missing.len(),
-            scales: self.scales(factor, rhs),
+            scales: self.scales(inner, factor, rhs)?,
         };
         let packed = packing.scaled(rhs.forces, rhs.missing);
         let size = norm(&packed);
@@ -194,9 +194,15 @@ impl CoupledTangent<'_, '_> {
     }
 
     /// Factors of forces (1/N) and rates (s/m^3) that make what may be left of each 1. Either may
-    /// be in balance as long as the other is not, so each counts with what the other makes of it.
-    fn scales(&self, factor: Option<&ScalarCholesky>, rhs: &CoupledRhs<'_>) -> [f64; 2] {
-        let openings = self.openings(&self.alone(rhs.forces));
+    /// be in balance as long as the other is not, so each counts with what the other makes of it:
+    /// loads far from a fracture reach it through the rock.
+    fn scales(
+        &self,
+        inner: &mut dyn TangentSolver,
+        factor: Option<&ScalarCholesky>,
+        rhs: &CoupledRhs<'_>,
+    ) -> Result<[f64; 2], LinearFailure> {
+        let openings = self.openings(&inner.precondition(self.fixed, rhs.forces)?);
         let rates = self.flow.answer(&openings, &vec![0.0; rhs.missing.len()]);
         let pressures = factor.map_or_else(Vec::new, |factor| factor.solve(rhs.missing));
         let mut push = vec![DVec3::ZERO; rhs.forces.len()];
@@ -206,7 +212,7 @@ impl CoupledTangent<'_, '_> {
             norm(rhs.forces).max(norm(&push)),
             length(rhs.missing).max(length(&rates)),
         ]);
-        goals.map(|goal| if goal > 0.0 { goal.recip() } else { 1.0 })
+        Ok(goals.map(|goal| if goal > 0.0 { goal.recip() } else { 1.0 }))
     }
 
     /// Forces (N) and rates (m^3/s) that changes of the unknowns (m) and pressures (Pa) ask for.

@@ -221,10 +221,11 @@ fn follow(
     moved: DVec3,
     traction: DVec3,
 ) {
+    let moved = state.jump_residual + moved;
     let (opened, across) = (moved.dot(normal), traction.dot(normal));
     let shear = traction - across * normal;
-    let former = state.joint.separation;
-    let reached = former.moved(state.jump_residual.dot(normal) + opened);
+    let reached = state.joint.separation.moved(opened);
+    let slipped = state.joint.slip + moved - opened * normal;
     let trial = TrialState {
         separation: if law.closure.normal_stiffness == 0.0 {
             reached
@@ -232,7 +233,7 @@ fn follow(
             law.closure.balanced(0.0, across)
         },
         slip: if law.shear_stiffness == 0.0 {
-            state.joint.slip + moved - opened * normal
+            slipped
         } else {
             shear / law.shear_stiffness
         },
@@ -240,11 +241,14 @@ fn follow(
         shear,
     };
     state.joint = law.state_at(&trial);
-    state.jump_residual = reached.beyond(trial.separation) * normal;
+    // What rounding has put between walls and law must not be continued.
+    state.jump_residual = reached.beyond(trial.separation) * normal + slipped - trial.slip;
 }
 
 #[cfg(test)]
 mod tests {
+    use lie_core::{Closure, ClosureKind, JointHistory};
+
     use super::*;
 
     fn path_of(loads: impl IntoIterator<Item = Load>) -> Path {
@@ -348,5 +352,35 @@ mod tests {
             path.weights(abscissa(false), [&same[1], &same[1]], FORMER_STATES)
                 .is_none()
         );
+    }
+
+    /// What rounding has put between walls and law stays known, whatever the traction: else it
+    /// would be continued from step to step, and grow.
+    #[test]
+    fn walls_stay_where_the_unknowns_have_put_them() {
+        let law = FractureLaw::elastic(Closure::new(1e-4, 1e11, ClosureKind::Linear), 4e10);
+        let normal = DVec3::Z;
+        let joint = law.state_at(&TrialState {
+            separation: law.closure.opened(2e-6),
+            slip: DVec3::new(5e-6, 0.0, 0.0),
+            normal_traction: 0.0,
+            shear: DVec3::ZERO,
+        });
+        let mut state = FacetPointState {
+            joint,
+            jump_residual: DVec3::new(3e-9, -2e-9, 1e-9),
+            history: JointHistory::default(),
+        };
+        let jump = |state: &FacetPointState| {
+            let joint = &state.joint;
+            joint.separation.opening * normal + joint.slip + state.jump_residual
+        };
+        let moved = DVec3::new(1e-7, 4e-7, -2e-7);
+        let reached = jump(&state) + moved;
+        let traction = DVec3::new(3e5, -1e5, 2e5);
+        follow(&law, normal, &mut state, moved, traction);
+        assert!((jump(&state) - reached).length() < 1e-20, "{state:?}");
+        let carried = state.joint.traction(normal);
+        assert!((carried - traction).length() < 1e-9, "{carried}");
     }
 }

@@ -13,6 +13,7 @@ mod oscillation;
 mod parts;
 mod patch_test;
 mod paths;
+mod periodic_source;
 mod permeability;
 mod plane_cracks;
 mod pressure_step;
@@ -54,6 +55,7 @@ pub fn report() -> Report {
             opened_channel::PAGE,
             pressure_step::PAGE,
             line_source::PAGE,
+            periodic_source::PAGE,
             filling_joint::PAGE,
             filled_penny::PAGE,
         ],

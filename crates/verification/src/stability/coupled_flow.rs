@@ -81,14 +81,14 @@ fn openings(effort: Effort) -> Vec<Case> {
 
 /// Loads on a joint whose fluid leaves slowly through one end.
 fn closings(effort: Effort) -> Vec<Case> {
-    let loads: &[f64] = match effort {
-        Effort::Quick => &[1.0, 10.0],
-        Effort::Full => &[0.1, 1.0, 10.0, 100.0],
+    let pairs = match effort {
+        Effort::Quick => vec![(1.0, 1e-6), (1.0, 1.0), (100.0, 1.0), (1.0, 1e6)],
+        Effort::Full => [0.1, 1.0, 10.0, 100.0]
+            .into_iter()
+            .flat_map(|load| [1e-6, 1.0, 1e6].map(|step| (load, step)))
+            .collect(),
     };
-    let steps = [1e-6, 1.0, 1e6];
-    let pairs = loads
-        .iter()
-        .flat_map(|&load| steps.map(|step| (load, step)));
+    let pairs = pairs.into_iter();
     let cases = pairs.map(|(load, step)| {
         let trial = Trial {
             inlet: Some(PRESSURE),

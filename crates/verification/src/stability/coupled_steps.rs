@@ -8,6 +8,8 @@ use crate::scenes::soft_slabs::Path;
 /// Most iterations of a part of a step, and most parts of a step that must be divided.
 const ITERATIONS: usize = 14;
 const PARTS: usize = 4;
+/// Most linear iterations of an iteration.
+const LINEAR: usize = 25;
 /// What nodes may miss of what moves.
 const MASS: f64 = 1e-10;
 
@@ -21,6 +23,8 @@ pub(super) struct Case {
     /// Newton iterations of each part.
     pub(super) parts: Vec<usize>,
     pub(super) linear: usize,
+    /// Most linear iterations of one iteration.
+    pub(super) most_linear: usize,
     pub(super) mass: f64,
     /// Smallest aperture at the end over the first.
     pub(super) narrowest: f64,
@@ -49,6 +53,12 @@ impl Case {
             converged: path.failed.is_none(),
             parts: parts.collect(),
             linear,
+            most_linear: records
+                .iter()
+                .flat_map(|record| &record.iterations)
+                .map(|iteration| iteration.linear_iterations)
+                .max()
+                .unwrap_or(0),
             mass: path.mass_error(),
             narrowest: ends.filter(|b| b.is_finite()).fold(f64::INFINITY, f64::min) / first,
         }
@@ -65,6 +75,9 @@ impl Case {
             () if !self.converged => format!("refused after {parts} parts"),
             () if most > ITERATIONS && parts > PARTS => {
                 format!("{most} iterations in one of {parts} parts")
+            }
+            () if self.most_linear > LINEAR => {
+                format!("{} linear iterations in one", self.most_linear)
             }
             () if self.mass.is_nan() || self.mass > MASS => format!("mass {:.1e}", self.mass),
             () if self.narrowest <= 0.0 => "an aperture that is not positive".to_owned(),
@@ -119,6 +132,7 @@ pub(super) fn table(cases: &[Case]) -> Table {
         "Newton iterations",
         "most of a part",
         "linear iterations",
+        "most of an iteration",
         "mass",
         "narrowest over first",
     ]);
@@ -131,6 +145,7 @@ pub(super) fn table(cases: &[Case]) -> Table {
             case.parts.iter().sum::<usize>().to_string(),
             case.most().to_string(),
             case.linear.to_string(),
+            case.most_linear.to_string(),
             format!("{:.1e}", case.mass),
             digits(case.narrowest),
         ]);

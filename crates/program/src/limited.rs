@@ -1,0 +1,59 @@
+//! A limit of the address space (`ulimit -v`).
+//!
+//! An allocation that the system refuses ends a process at once. Where there is such a limit, a
+//! process of its own therefore does the work, and this one says what has become of it.
+
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Command, ExitCode, ExitStatus};
+
+use kluft_mesh::Defect;
+use nix::sys::prctl;
+use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
+use nix::sys::signal::Signal;
+use nix::unistd::getppid;
+
+use crate::failure::Failure;
+
+/// Names the process that the work is done for, to the worker and to those that it starts.
+const WORKS_FOR: &str = "KLUFT_WORKS_FOR";
+
+/// Lets a process of its own do the work of this one if its address space is limited; none if this
+/// one shall do it.
+pub fn delegate() -> Option<ExitCode> {
+    let (limit, _) = getrlimit(Resource::RLIMIT_AS).ok()?;
+    if let Some(master) = std::env::var_os(WORKS_FOR) {
+        let parent = getppid().to_string();
+        // A worker does not outlive who waits for it. That no signal is to be had is no reason to
+        // do no work.
+        let _ = (master == *parent).then(|| prctl::set_pdeathsig(Signal::SIGKILL));
+        return None;
+    }
+    if limit == RLIM_INFINITY {
+        return None;
+    }
+    let mut command = Command::new(std::env::current_exe().ok()?);
+    command.args(std::env::args_os().skip(1));
+    command.env(WORKS_FOR, std::process::id().to_string());
+    Some(of_status(command.status().ok()?))
+}
+
+fn of_status(status: ExitStatus) -> ExitCode {
+    match (status.code(), status.signal()) {
+        (Some(code), _) => ExitCode::from(u8::try_from(code).unwrap_or(1)),
+        (None, Some(signal)) if signal == Signal::SIGABRT as i32 => {
+            let failure = Failure::Machine(vec![refused()]);
+            failure.print();
+            failure.exit_code()
+        }
+        // As a shell tells it.
+        (None, signal) => ExitCode::from(u8::try_from(128 + signal.unwrap_or(0)).unwrap_or(1)),
+    }
+}
+
+fn refused() -> Defect {
+    Defect::new(
+        "memory of this process",
+        "the limit of its address space refused the memory that is named above",
+        "mesh coarser (a larger h), run on fewer threads, or raise the limit (ulimit -v)",
+    )
+}
