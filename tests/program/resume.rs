@@ -61,7 +61,7 @@ fn resume_without_gmsh(workshop: &Workshop, out: &str) -> Run {
 
 /// Everything that must not depend on interruptions: the files without their unfinished neighbours,
 /// and the summary without times and memory.
-fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
+pub fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
     let mut left = files(out);
     // A gmsh that lost its master goes on, and leaves its mesh under a name of its own.
     left.retain(|name, _| !name.starts_with(".mesh."));

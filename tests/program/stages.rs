@@ -8,7 +8,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::harness::{Workshop, files, kluft, summary};
+use crate::harness::{Workshop, kluft, summary};
 
 /// Displacement of a probe after the last load step (m), along the axis.
 fn probe(out: &Path, name: &str, axis: usize) -> f64 {
@@ -70,23 +70,11 @@ fn a_lining_takes_what_the_walls_let_go_after_it() {
     assert_near(probe(&later, "crown", 2), crown, MESH);
 }
 
-/// Everything that must not depend on interruptions.
+/// Everything that must not depend on interruptions, without the decisions, which are told again
+/// for each body that is assembled again.
 fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
-    let mut left = files(out);
-    left.retain(|name, _| !name.starts_with(".mesh.") && name != "report.html");
-    assert!(left.remove("resume.bin").is_some() && left.remove("summary.json").is_some());
-    let mut said = summary(out);
-    let said_of = said.as_object_mut().expect("an object");
-    for key in [
-        "seconds",
-        "peak_memory_bytes",
-        "predicted_memory_bytes",
-        "provenance",
-    ] {
-        assert!(said_of.remove(key).is_some());
-    }
-    // Told again for each body that is assembled again.
-    said_of.remove("decisions");
+    let (left, mut said) = crate::resume::outcome(out);
+    said.as_object_mut().expect("an object").remove("decisions");
     (left, said)
 }
 
