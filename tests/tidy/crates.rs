@@ -34,6 +34,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         &[
             "kluft-defect",
             "kluft-field",
+            "kluft-io",
             "kluft-keys",
             "kluft-mesh",
             "kluft-solver",

@@ -280,7 +280,7 @@ class StressProfile(Section):
         file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
             nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
             middle of its cells. Without it: `table` or `expression`.
-        column: Column of the file with the values. Without it: required with `file`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
         method: Between samples: the nearest one, or linear along their line, in the Delaunay
             triangles of their plane, or on their grid. Without it "nearest".
         reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
@@ -724,7 +724,7 @@ class Varying(Section):
         file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
             nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
             middle of its cells. Without it: `table` or `expression`.
-        column: Column of the file with the values. Without it: required with `file`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
         method: Between samples: the nearest one, or linear along their line, in the Delaunay
             triangles of their plane, or on their grid. Without it "nearest".
         reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
