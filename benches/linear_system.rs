@@ -57,6 +57,7 @@ fn problem(cubes: usize) -> Problem {
         young_modulus: 1.0,
         poisson_ratio: 0.3,
         density: 0.0,
+        anisotropy: None,
     };
     Problem {
         conditions: vec![Condition {

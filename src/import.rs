@@ -1,5 +1,14 @@
 //! From a mesh of another program to a gmsh mesh and a scene.
 
+mod laws;
+mod loads;
+mod parameters;
+mod project;
+mod said;
+mod surfaces;
+mod times;
+mod tree;
+
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -11,6 +20,8 @@ use kluft_mesh::{Defect, Draft, Faces, Group};
 
 use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
+
+use project::{Project, read_project};
 
 const SCENE: &str = "scene.toml";
 /// First line of a scene that may be written again.
@@ -44,14 +55,20 @@ pub struct ImportOptions {
 /// Every defect of the file, and files that cannot be written.
 pub fn import(file: &Path, options: &ImportOptions) -> Result<(), Failure> {
     let report = Report::new(options.verbosity);
-    let Imported { draft, notes } = read(file)?;
+    let Read { imported, sections } = read(file)?;
+    let Imported { draft, notes } = imported;
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let mesh = format!("{stem}.msh");
     report.entry("import", &file.display().to_string());
     for note in &notes {
         report.entry("decided", note);
     }
-    let text = scene(&draft, &stem, &mesh);
+    let head = format!(
+        "{MADE}\ntitle = {}\n\n[mesh]\nfile = {}\n",
+        quoted(&stem),
+        quoted(&mesh)
+    );
+    let text = head + &sections.unwrap_or_else(|| assumed(&draft));
     let mut folder = ClaimedFolder::claim(&options.out)?;
     protect(&folder.path().join(SCENE))?;
     let names = [mesh.as_str(), SCENE];
@@ -67,7 +84,28 @@ pub fn import(file: &Path, options: &ImportOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-fn read(file: &Path) -> Result<Imported, Vec<Defect>> {
+/// A mesh, and the sections of its scene, if its file says them.
+struct Read {
+    imported: Imported,
+    sections: Option<String>,
+}
+
+fn read(file: &Path) -> Result<Read, Vec<Defect>> {
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("prj")) {
+        let Project { imported, scene } = read_project(file)?;
+        return Ok(Read {
+            imported,
+            sections: Some(scene),
+        });
+    }
+    Ok(Read {
+        imported: read_mesh(file)?,
+        sections: None,
+    })
+}
+
+fn read_mesh(file: &Path) -> Result<Imported, Vec<Defect>> {
     let place = file.display().to_string();
     let ending = file.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_lowercase).as_deref() {
@@ -85,23 +123,22 @@ fn read(file: &Path) -> Result<Imported, Vec<Defect>> {
         Some("vtu") => read_grid(file),
         _ => Err(vec![Defect::new(
             place,
-            "the name ends neither in .inp (Abaqus) nor in .vtu (VTK)",
+            "the name ends neither in .inp (Abaqus), nor in .vtu (VTK), nor in .prj (OpenGeoSys)",
             "let meshio convert other formats to .vtu or .inp: meshio convert FILE FILE.vtu; gmsh \
              meshes (.msh) need no import",
         )]),
     }
 }
 
-/// The scene of an imported mesh: everything but the mesh is assumed.
-fn scene(draft: &Draft, title: &str, mesh: &str) -> String {
+/// The sections of a scene of which only the mesh is known.
+fn assumed(draft: &Draft) -> String {
     let is_plane = draft.is_plane();
     let solid = match is_plane {
         true => draft.clone().extruded(),
         false => draft.clone(),
     };
     let inner = Faces::of(&solid).inner_surfaces(&solid);
-    let mut out = format!("{MADE}\ntitle = {}\n", quoted(title));
-    let _ = write!(out, "\n[mesh]\nfile = {}\n{ROCK}", quoted(mesh));
+    let mut out = ROCK.to_owned();
     let surfaces = || {
         solid
             .groups

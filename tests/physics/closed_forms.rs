@@ -48,6 +48,7 @@ fn single_joint(dip: f64, [normal, shear]: [f64; 2], kind: ClosureKind) -> Solut
         young_modulus: 170e6,
         poisson_ratio: 0.22,
         density: 0.0,
+        anisotropy: None,
     };
     for face in ["front", "back", "bottom"] {
         scenes::support(&mut problem, face, Support::Symmetry);

@@ -117,6 +117,7 @@ fn a_fracture_between_two_rocks() {
                 young_modulus: 2e9,
                 poisson_ratio: 0.4,
                 density: 0.0,
+                anisotropy: None,
             });
             for cell in 0..problem.mesh.cells.len() {
                 let corners = problem.mesh.corners(&problem.mesh.cells, cell);

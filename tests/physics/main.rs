@@ -4,6 +4,7 @@
 //!
 //! | module | what belongs there |
 //! |---|---|
+//! | `anisotropy` | uniform stress in rock that depends on the direction |
 //! | `augmented_lagrangian` | the method that contact is compared with, against statics |
 //! | `closed_forms` | the table of the logarithmic law and a single joint, by simulation |
 //! | `conditions` | supports, loads, gravity, initial stress, load steps |
@@ -32,6 +33,7 @@
     reason = "tables are what some of these tests are read for"
 )]
 
+mod anisotropy;
 mod augmented_lagrangian;
 mod closed_forms;
 mod conditions;

@@ -83,6 +83,50 @@ fn an_expression_says_the_same_as_samples() {
     }
 }
 
+/// The same oracle with the scan as a grid of VTK: its points on the joint, linear between.
+#[test]
+fn a_grid_says_the_same_as_a_table() {
+    let python = crate::read_back::python();
+    let script = "import csv, sys, vtk\n\
+        grid, kn = vtk.vtkUnstructuredGrid(), vtk.vtkDoubleArray()\n\
+        points = vtk.vtkPoints()\n\
+        points.SetDataTypeToDouble()\n\
+        kn.SetName('kn')\n\
+        lines = [line for line in open(sys.argv[1]) if line[0] != '#']\n\
+        for row in csv.DictReader(lines):\n\
+        \x20   place = [float(row.get(axis) or 0) for axis in 'xyz']\n\
+        \x20   number = points.InsertNextPoint(place)\n\
+        \x20   kn.InsertNextValue(float(row['kn']))\n\
+        \x20   ids = vtk.vtkIdList()\n\
+        \x20   ids.InsertNextId(number)\n\
+        \x20   grid.InsertNextCell(vtk.VTK_VERTEX, ids)\n\
+        grid.SetPoints(points)\n\
+        grid.GetPointData().AddArray(kn)\n\
+        writer = vtk.vtkXMLUnstructuredGridWriter()\n\
+        writer.SetInputData(grid)\n\
+        writer.SetFileName(sys.argv[2])\n\
+        writer.Write()\n";
+    let workshop = scanned_joint(&[("file = \"scan.csv\"", "file = \"scan.vtu\"")]);
+    let run = std::process::Command::new(python)
+        .args(["-c", script])
+        .args([workshop.path("scan.csv"), workshop.path("scan.vtu")])
+        .status();
+    assert!(run.expect("Python").success());
+    let rows = rows(&workshop.solve("out", &[]));
+    for column in ["aperture_min", "aperture_max"] {
+        let found = numbers(&rows, ["fracture", "joint"], column)[0];
+        assert_near(found, 9e-5, 1e-9);
+    }
+    let wrong = scanned_joint(&[
+        ("file = \"scan.csv\"", "file = \"scan.vtu\""),
+        ("column = \"kn\"", "column = \"ks\""),
+    ]);
+    fs::copy(workshop.path("scan.vtu"), wrong.path("scan.vtu")).expect("copied");
+    let run = wrong.run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(run.err.contains("`kn`"), "{}", run.err);
+}
+
 /// Water in the joint takes off what it puts on the faces.
 #[test]
 fn water_by_depth_leaves_an_even_closure() {

@@ -1,6 +1,7 @@
 //! The program as its users meet it: the real binary, its messages, its exit codes, its files.
 
 mod adapt;
+mod anisotropy;
 mod bad_input;
 mod book;
 mod boreholes;

@@ -16,7 +16,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ("kluft-keys", &["kluft-defect"]),
     ("kluft-mesh", &["kluft-defect"]),
     ("lie-core", &["kluft-mesh"]),
-    ("kluft-network", &["kluft-defect"]),
+    ("kluft-network", &["kluft-defect", "kluft-mesh"]),
     ("kluft-io", &["kluft-defect", "kluft-mesh"]),
     ("kluft-report", &["kluft-io", "kluft-mesh"]),
     (
@@ -34,6 +34,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         &[
             "kluft-defect",
             "kluft-field",
+            "kluft-io",
             "kluft-keys",
             "kluft-mesh",
             "kluft-solver",

@@ -5,7 +5,7 @@ use kluft_mesh::Shape;
 
 use crate::element::{RulePoint, rule};
 use crate::outer::outer;
-use crate::rock::Rock;
+use crate::rock::{Elasticity, Rock};
 
 /// Most nodes a cell can have.
 pub const MAX_NODES: usize = 27;
@@ -31,9 +31,11 @@ fn gradients(point: &RulePoint, nodes: &[DVec3]) -> Gradients {
 }
 
 /// Stiffness of a cell with the given `nodes` (m), `blocks[a n + b] = K_ab` (N/m) for `n` nodes:
-/// `K_ab = int lambda g_a (x) g_b + mu g_b (x) g_a + mu (g_a . g_b) I dV`, `g = grad N`.
+/// `K_ab = int lambda g_a (x) g_b + mu g_b (x) g_a + mu (g_a . g_b) I dV`, `g = grad N`, in
+/// isotropic rock.
 ///
-/// All three terms follow from `M_ab = int g_a (x) g_b dV`, and `K_ba = K_ab^T`.
+/// All terms follow from `M_ab = int g_a (x) g_b dV`, see [`Elasticity::block`], and
+/// `K_ba = K_ab^T`.
 pub fn stiffness(shape: Shape, nodes: &[DVec3], rock: &Rock, blocks: &mut [DMat3]) {
     let count = nodes.len();
     blocks.fill(DMat3::ZERO);
@@ -46,31 +48,28 @@ pub fn stiffness(shape: Shape, nodes: &[DVec3], rock: &Rock, blocks: &mut [DMat3
             }
         }
     }
-    let lame = rock.lame();
+    let elasticity = rock.elasticity();
     for a in 0..count {
         for b in a..count {
-            let block = of_moments(blocks[a * count + b], lame);
+            let block = elasticity.block(blocks[a * count + b]);
             blocks[a * count + b] = block;
             blocks[b * count + a] = block.transpose();
         }
     }
 }
 
-/// Stiffness between two nodes (N/m) from `M = int g_a (x) g_b dV` (m) and Lamé's constants (Pa):
-/// `K_ab = lambda M + mu M^T + mu tr(M) I`.
-#[inline]
-pub fn of_moments(m: DMat3, (lambda, mu): (f64, f64)) -> DMat3 {
-    let trace = m.x_axis.x + m.y_axis.y + m.z_axis.z;
-    lambda * m + mu * m.transpose() + DMat3::from_diagonal(DVec3::splat(mu * trace))
-}
-
-/// Row `a` of [`stiffness`] of a linear tetrahedron, `row[b] = K_ab` (N/m), from Lamé's constants
-/// (Pa); a row adds up to zero, because translations cost nothing.
-pub fn tetrahedron_row(nodes: &[DVec3; 4], lame: (f64, f64), a: usize, row: &mut [DMat3; 4]) {
+/// Row `a` of [`stiffness`] of a linear tetrahedron, `row[b] = K_ab` (N/m); a row adds up to zero,
+/// because translations cost nothing.
+pub fn tetrahedron_row(
+    nodes: &[DVec3; 4],
+    elasticity: Elasticity<'_>,
+    a: usize,
+    row: &mut [DMat3; 4],
+) {
     let gradients = tetrahedron_gradients(nodes);
     let mut sum = DMat3::ZERO;
     for b in (0..4).filter(|&b| b != a) {
-        let block = of_moments(tetrahedron_moment(gradients[a], gradients[b]), lame);
+        let block = elasticity.block(tetrahedron_moment(gradients[a], gradients[b]));
         sum += block;
         row[b] = block;
     }
@@ -221,6 +220,7 @@ mod tests {
         young_modulus: 50e9,
         poisson_ratio: 0.25,
         density: 0.0,
+        anisotropy: None,
     };
 
     fn forces(displacement: &[DVec3]) -> Vec<DVec3> {
@@ -238,7 +238,7 @@ mod tests {
         stiffness(Shape::Tet4, &NODES, &ROCK, &mut blocks);
         for (a, expected) in blocks.chunks(4).enumerate() {
             let mut row = [DMat3::ZERO; 4];
-            tetrahedron_row(&NODES, ROCK.lame(), a, &mut row);
+            tetrahedron_row(&NODES, ROCK.elasticity(), a, &mut row);
             for (block, expected) in row.iter().zip(expected) {
                 let difference = *block - *expected;
                 let largest = difference.to_cols_array().map(f64::abs);

@@ -24,6 +24,7 @@
 //! assert!((half_closed.traction / -1e7 - 0.740227).abs() < 1e-6);
 //! ```
 
+mod anisotropy;
 mod basis;
 mod bezier;
 mod closure;
@@ -44,6 +45,7 @@ mod root;
 mod shear_retention;
 mod tangent;
 
+pub use anisotropy::{Anisotropy, Orthotropy};
 pub use basis::Basis;
 pub use bezier::{bezier_function, control_value};
 pub use closure::{
@@ -57,5 +59,5 @@ pub use fracture_law::{FractureLaw, Friction};
 pub use joint_state::{JointHistory, JointState, TrialState};
 pub use recovery::{FinePoint, RecoveryRule, recovery_rule};
 pub use return_map::RockStiffness;
-pub use rock::{Rock, SymmetricStress};
+pub use rock::{Elasticity, Rock, SymmetricStress};
 pub use tangent::Tangent;

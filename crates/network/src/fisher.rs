@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use kluft_mesh::Orientation;
 
-use crate::orientation::Orientation;
 use crate::random::Stream;
 
 /// Directions around a mean (Fisher 1953); here the poles of fractures.

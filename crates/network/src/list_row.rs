@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use csv::StringRecord;
 use glam::DVec3;
 use kluft_defect::{Defect, nearest};
+use kluft_mesh::Orientation;
 
-use crate::orientation::Orientation;
 use crate::polygon::{Outline, Polygon};
 
 /// Columns that say how a plane lies, beside dip and dip direction.

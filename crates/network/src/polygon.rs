@@ -3,8 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-
-use crate::orientation::Orientation;
+use kluft_mesh::Orientation;
 
 /// Given corners may be off their common plane by this part of the polygon's extent: what three
 /// decimals of a coordinate leave, not a fold.

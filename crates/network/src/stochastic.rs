@@ -1,10 +1,10 @@
 //! Random sets of fractures.
 
 use glam::DVec3;
+use kluft_mesh::Orientation;
 
 use crate::clip::Domain;
 use crate::fisher::Fisher;
-use crate::orientation::Orientation;
 use crate::polygon::{Outline, Polygon};
 use crate::random::Stream;
 use crate::size::SizeLaw;

@@ -1,11 +1,13 @@
 //! What the program decided, in words.
 
 use kluft_scene::SolverEntry;
-use kluft_solver::{Flow, LinearMethod, Plan, Prediction, Problem, Schedule, Step, Support};
+use kluft_solver::{
+    Flow, LinearMethod, Plan, Prediction, Problem, Schedule, Spring, SpringStiffness, Step, Support,
+};
 
 /// How much model a problem needs; `path` is how exactly its path is to be followed.
 pub fn of_problem(problem: &Problem, flow: Option<&Flow>, path: f64) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> = rock_outside(problem).into_iter().collect();
     let names = |holds: &dyn Fn(&lie_core::FractureLaw) -> bool| -> String {
         let pairs = problem.mesh.fractures.iter().zip(&problem.fractures);
         let chosen = pairs.filter(|(_, fracture)| holds(&fracture.law));
@@ -65,13 +67,25 @@ pub fn of_problem(problem: &Problem, flow: Option<&Flow>, path: f64) -> Vec<Stri
     lines
 }
 
+/// What stands for rock outside that is not isotropic.
+fn rock_outside(problem: &Problem) -> Option<String> {
+    let is_outside = |spring: &Spring| matches!(spring.stiffness, SpringStiffness::Outside { .. });
+    let mut rocks = problem.rocks.iter();
+    let differs = rocks.any(|rock| rock.anisotropy.is_some());
+    (differs && problem.springs.iter().any(is_outside)).then(|| {
+        "far_field: outside, the nearest isotropic rock stands for one that depends on the direction"
+            .into()
+    })
+}
+
 /// A rock whose volume hardly changes, meshed with cells that cannot follow.
 fn locking(problem: &Problem) -> Option<&lie_core::Rock> {
     const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
     let shapes = &problem.mesh.cells.shapes;
     let linear = shapes.first().is_some_and(|shape| !shape.is_quadratic());
     let mut rocks = problem.rocks.iter();
-    rocks.find(|rock| linear && rock.poisson_ratio > NEARLY_INCOMPRESSIBLE)
+    let is_isotropic = |rock: &&lie_core::Rock| rock.anisotropy.is_none();
+    rocks.find(|rock| linear && is_isotropic(rock) && rock.poisson_ratio > NEARLY_INCOMPRESSIBLE)
 }
 
 /// Which linear solver, and what the others would have cost.

@@ -149,9 +149,15 @@ pub fn in_plane(mesh: &Mesh, grid: Grid) -> Grid {
             let found = pairs.find(|(point, flat)| **flat == wanted && is_kept(**point));
             found.map(|(point, _)| *point)
         };
+        // Facets turn to their plus side, which leaves corners before middles, but not the axes.
+        let is_facet = shape.dimension() == 1;
+        let here = own
+            .iter()
+            .copied()
+            .filter(|&point| is_facet && is_kept(point));
+        let cells = (0..shape.node_count() as u8).filter(|_| !is_facet);
+        flat.nodes.extend(here.chain(cells.filter_map(at)));
         flat.shapes.push(shape);
-        flat.nodes
-            .extend((0..shape.node_count() as u8).filter_map(at));
         flat.offsets.push(flat.nodes.len() as u32);
     }
     let mut kept = flat.nodes.clone();

@@ -60,7 +60,7 @@ pub fn energy(joules: f64) -> Measure {
 
 /// A fracture of a solution.
 struct MeasuredFracture<'a> {
-    rock: Rock,
+    rock: &'a Rock,
     closure: Closure,
     samples: Vec<Sample>,
     /// Results at the facet points, with their places and areas.
@@ -68,7 +68,7 @@ struct MeasuredFracture<'a> {
 }
 
 impl<'a> MeasuredFracture<'a> {
-    fn of(system: &System<'_>, solution: &'a Solution, index: usize) -> Self {
+    fn of(system: &'a System<'_>, solution: &'a Solution, index: usize) -> Self {
         let facets = &system.problem().mesh.facets;
         let own = |&facet: &usize| facets.fracture[facet] as usize == index;
         let own: Vec<usize> = (0..facets.elements.len()).filter(own).collect();
@@ -77,7 +77,7 @@ impl<'a> MeasuredFracture<'a> {
         let points = points.filter(|(point, _)| point.fracture as usize == index);
         let beside = own.first().map_or(0, |&facet| facets.plus[facet] as usize);
         Self {
-            rock: *system.problem().rock(beside),
+            rock: system.problem().rock(beside),
             closure: system.problem().fractures[index].law.closure,
             samples: own
                 .iter()
@@ -92,7 +92,7 @@ impl<'a> MeasuredFracture<'a> {
     /// Errors against a closed form.
     fn errors(&self, oracle: &Oracle) -> Vec<Measure> {
         let mut found = Vec::new();
-        if let Some(exact) = oracle.opening(&self.rock) {
+        if let Some(exact) = oracle.opening(self.rock) {
             found.extend(self.field("opening", oracle, |sample| sample.opening, &exact));
             found.push(self.at_centre(&exact));
             let whole = self.samples.iter().map(|sample| sample.area).sum();
@@ -100,13 +100,13 @@ impl<'a> MeasuredFracture<'a> {
             found.push(compared("volume", volume, exact.volume(whole)));
         }
         found.extend(self.intensity(oracle));
-        if let Some(exact) = oracle.slip(&self.rock) {
+        if let Some(exact) = oracle.slip(self.rock) {
             found.extend(self.field("slip", oracle, |sample| sample.slip, &exact));
         }
-        if let Some(exact) = oracle.aperture(&self.rock, &self.closure) {
+        if let Some(exact) = oracle.aperture(self.rock, &self.closure) {
             found.extend(self.constant("aperture", oracle, |result| result.aperture, exact));
         }
-        if let Some(exact) = oracle.normal_traction(&self.rock, &self.closure) {
+        if let Some(exact) = oracle.normal_traction(self.rock, &self.closure) {
             let of = |result: &FacetResult| result.normal_traction;
             found.extend(self.constant("normal_traction", oracle, of, exact));
         }

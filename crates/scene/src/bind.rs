@@ -185,9 +185,25 @@ fn wrong_strength(scene: &Scene, mesh: &Mesh, fractures: &[&Named<FractureEntry>
     reduction.defects(&mesh.fractures, &laws.collect::<Vec<_>>())
 }
 
+/// Rocks that leave the plane of a mesh of the plane.
+fn wrong_axes(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
+    let leaves_plane = |entry: &&Named<RockEntry>| {
+        let anisotropy = entry.value.rock.anisotropy.as_ref();
+        anisotropy.is_some_and(|own| !own.is_symmetric_about_xy())
+    };
+    let rocks = scene.rocks.iter().filter(|_| mesh.is_plane());
+    let defects = rocks.filter(leaves_plane).map(|entry| {
+        let problem = "strains in the plane of the mesh shear this rock across the plane";
+        let remedy = "give a dip of 90, with which bedding stands on the plane x, y (its normal \
+                      points to dip_direction, clockwise from y), or a dip of 0, or a mesh of volumes";
+        Defect::new(&entry.place, problem, remedy)
+    });
+    defects.collect()
+}
+
 /// The rocks; rigid rock needs no section.
 fn rocks(scene: &Scene) -> Vec<Rock> {
-    let rocks = scene.rocks.iter().map(|entry| entry.value.rock);
+    let rocks = scene.rocks.iter().map(|entry| entry.value.rock.clone());
     match scene.rocks.is_empty() {
         true => vec![Rock::rigid(0.0)],
         false => rocks.collect(),
@@ -260,6 +276,8 @@ fn bind_oracles(
         let problem = format!("`{}` is no fracture of the mesh", entry.name);
         Defect::new(&entry.place, problem, remedy)
     }));
+    let mut rocks = scene.rocks.iter();
+    let is_isotropic = rocks.all(|entry| entry.value.rock.anisotropy.is_none());
     let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
     for (name, fracture) in mesh.fractures.iter().zip(fractures) {
         let refused = of(name).and_then(|entry| {
@@ -270,7 +288,7 @@ fn bind_oracles(
                     "a closed form has one law and one pressure all over its fracture",
                     "give the fracture plain numbers, or remove the closed form",
                 ]),
-                false => entry.value.refusal(&fracture.value.fracture),
+                false => entry.value.refusal(&fracture.value.fracture, is_isotropic),
             };
             let [problem, remedy] = refusal?;
             Some(Defect::new(&entry.place, problem, remedy))
@@ -285,6 +303,7 @@ fn bind_oracles(
 
 /// Rock of each cell, decided once for each set of groups that cells belong to.
 fn bind_rocks(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<u32> {
+    defects.extend(wrong_axes(scene, mesh));
     let default = scene.rocks.iter().position(|entry| entry.name == DEFAULT);
     let mut used = vec![false; mesh.group_sets.len()];
     for &set in &mesh.cell_group_set {

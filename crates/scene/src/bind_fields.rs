@@ -197,7 +197,7 @@ fn bind_rocks(problem: &mut Problem, look: &mut Look<'_>) {
             continue;
         }
         for (&cell, &place) in cells.iter().zip(&places) {
-            let mut rock = problem.rocks[number];
+            let mut rock = problem.rocks[number].clone();
             for (parameter, field) in &entry.value.fields {
                 parameter.set(&mut rock, field.field.at(place, 0.0));
             }

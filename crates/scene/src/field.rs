@@ -1,10 +1,12 @@
 //! Reads values that vary: tables, expressions and files of samples.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use kluft_field::{Beyond, Coordinate, Expression, Field, Method, SampleFile, Table};
+use kluft_field::{Beyond, Coordinate, Expression, Field, Method, SampleFile, Samples, Table};
+use kluft_io::import::read_values;
 use kluft_keys::{Quantity, read_quantity};
+use kluft_mesh::Defect;
 
 use crate::load::Clock;
 use crate::reader::Section;
@@ -240,14 +242,20 @@ fn read_samples(section: &Section<'_, '_>, wanted: &Wanted) -> Option<FieldEntry
         section.refuse("file", problem, remedy);
         return None;
     };
-    let file = SampleFile {
-        path: &path,
-        column,
-        factor,
-        method,
-        beyond,
+    let read = match path.extension().is_some_and(|end| end == "vtu") {
+        true => samples_of_grid((&path, column), factor, (method, beyond)),
+        false => {
+            let file = SampleFile {
+                path: &path,
+                column,
+                factor,
+                method,
+                beyond,
+            };
+            file.read()
+        }
     };
-    match file.read() {
+    match read {
         Ok(samples) => {
             let origin = format!("{} samples of `{name}`", samples.count());
             let field = Field::Samples(Arc::new(samples));
@@ -264,6 +272,24 @@ fn read_samples(section: &Section<'_, '_>, wanted: &Wanted) -> Option<FieldEntry
             None
         }
     }
+}
+
+/// Samples of an array of a grid.
+fn samples_of_grid(
+    (path, array): (&Path, &str),
+    factor: f64,
+    way: (Method, Beyond),
+) -> Result<Samples, Vec<[String; 2]>> {
+    let values = read_values(path, array).map_err(|defects| {
+        let said = |defect: Defect| {
+            let problem = format!("`{}`: {}", defect.place, defect.problem);
+            [problem, defect.remedy]
+        };
+        defects.into_iter().map(said).collect::<Vec<_>>()
+    })?;
+    let scaled = values.into_iter().map(|(at, value)| (at, factor * value));
+    Samples::of(&scaled.collect::<Vec<_>>(), way)
+        .map_err(|[problem, remedy]| vec![[format!("`{}`: {problem}", path.display()), remedy]])
 }
 
 fn entry(

@@ -63,7 +63,8 @@ pub(crate) fn fluid_use(root: &Section<'_, '_>) -> FluidUse {
     let mut rocks = rocks.iter().flat_map(|rocks| rocks.table().iter());
     let deforms = rocks.any(|(_, rock)| {
         let keys = rock.get_ref().as_table();
-        keys.is_some_and(|keys| keys.get("young_modulus").is_some())
+        let moduli = ["young_modulus", "young_moduli"];
+        keys.is_some_and(|keys| moduli.iter().any(|key| keys.get(*key).is_some()))
     });
     match deforms {
         true => FluidUse::InElasticRock,

@@ -4,6 +4,7 @@
 //! its line and a remedy. [`Scene::problem`] is the only way from a scene and a mesh as read to a
 //! problem that a solver takes. Values are in SI units.
 
+mod anisotropy;
 mod bind;
 mod bind_fields;
 mod bind_flow;

@@ -121,15 +121,26 @@ impl Oracle {
     }
 
     /// Why the closed form does not hold for a fracture, and the remedy.
-    pub(crate) fn refusal(&self, fracture: &Fracture) -> Option<[&'static str; 2]> {
-        let joint = self.joint?;
+    pub(crate) fn refusal(
+        &self,
+        fracture: &Fracture,
+        is_isotropic: bool,
+    ) -> Option<[&'static str; 2]> {
+        let is_crack = !matches!(self.extent, Extent::Everywhere);
+        let is_sphere = matches!(self.joint, Some(PressedJoint::Sphere { .. }));
+        if !is_isotropic && (is_crack || is_sphere) {
+            return Some([
+                "this closed form holds in isotropic rock only",
+                "remove it, or the constants that depend on the direction",
+            ]);
+        }
+        self.joint?;
         if fracture.law.closure.normal_stiffness == 0.0 {
             return Some([
                 "a fracture without stiffness carries no pressure",
                 "give the fracture a normal_stiffness, or remove the closed form",
             ]);
         }
-        let is_sphere = matches!(joint, PressedJoint::Sphere { .. });
         (is_sphere && fracture.fluid_pressure != 0.0).then_some([
             "the closed form of a sphere has no fluid pressure",
             "remove the fluid_pressure of the fracture, or the closed form",

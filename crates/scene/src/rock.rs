@@ -1,8 +1,9 @@
 //! Reads rocks.
 
 use kluft_solver::RockParameter;
-use lie_core::Rock;
+use lie_core::{Orthotropy, Rock};
 
+use crate::anisotropy::{Symmetry, read_orthotropic, read_transverse};
 use crate::field::{FieldEntry, InTime, Value, read_value};
 use crate::reader::Section;
 use crate::setting::Setting;
@@ -24,6 +25,27 @@ pub(crate) fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<R
             fields: Vec::new(),
         });
     }
+    match Symmetry::of(section) {
+        Symmetry::Isotropic => read_isotropic(section),
+        Symmetry::Transverse => read_transverse(section).and_then(|own| anisotropic(section, &own)),
+        Symmetry::Orthotropic => {
+            read_orthotropic(section).and_then(|own| anisotropic(section, &own))
+        }
+    }
+}
+
+/// A rock with these constants, whose density alone may vary.
+fn anisotropic(section: &Section<'_, '_>, constants: &Orthotropy) -> Option<RockEntry> {
+    let (density, fields) = match read_value(section, "density", InTime::Never) {
+        Some(Value::Varying(entry)) => (f64::NAN, vec![(RockParameter::Density, *entry)]),
+        Some(Value::Number(density)) => (density, Vec::new()),
+        None => (0.0, Vec::new()),
+    };
+    let rock = Rock::orthotropic(constants, density);
+    Some(RockEntry { rock, fields })
+}
+
+fn read_isotropic(section: &Section<'_, '_>) -> Option<RockEntry> {
     section.require("young_modulus");
     section.require("poisson_ratio");
     let mut fields = Vec::new();
@@ -41,6 +63,7 @@ pub(crate) fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<R
         young_modulus: young_modulus?,
         poisson_ratio: poisson_ratio?,
         density: density.unwrap_or(0.0),
+        anisotropy: None,
     };
     Some(RockEntry { rock, fields })
 }

@@ -33,6 +33,27 @@ enum Between {
 }
 
 impl Samples {
+    /// Samples at places (m), each with a value. Where all have one z, values do not vary along it.
+    ///
+    /// # Errors
+    /// What is wrong with them, or keeps the method from its work, and what helps.
+    pub fn of(all: &[([f64; 3], f64)], way: (Method, Beyond)) -> Result<Self, [String; 2]> {
+        let Some(([_, _, first], _)) = all.first() else {
+            return Err(["there are no samples".into(), "write values".into()]);
+        };
+        if let Some((place, value)) = all.iter().find(|(_, value)| !value.is_finite()) {
+            let problem = format!("the value at {place:?} is {value}");
+            return Err([problem, "leave the place out, or give it a value".into()]);
+        }
+        let is_flat = all.iter().all(|([_, _, z], _)| z == first);
+        let given = DVec3::new(1.0, 1.0, f64::from(!is_flat));
+        let samples = all.iter().map(|&(place, value)| Sample {
+            position: given * DVec3::from(place),
+            value,
+        });
+        Self::new(samples.collect(), given, way)
+    }
+
     /// Samples with the coordinates that `given` has a 1 for; the others are 0.
     ///
     /// # Errors

@@ -4,12 +4,11 @@
 use std::path::Path;
 
 use kluft_mesh::{Defect, Draft, Group, Shape, TaggedElements, sample};
-use memchr::memmem;
-use vtkio::model::{Attribute, DataSet, UnstructuredGridPiece, VertexNumbers, Vtk};
+use vtkio::model::{Attribute, UnstructuredGridPiece, VertexNumbers};
 
 use super::imported::Imported;
+use super::piece::{read_piece, unread};
 use super::vtk_order::from_vtk;
-use crate::msh::bytes_of;
 use crate::vtu::shape_of_vtk_cell;
 
 /// Names under which programs keep the material of a cell, the first that is there counts.
@@ -28,49 +27,10 @@ const MATERIALS: [&str; 6] = [
 /// # Errors
 /// If the file cannot be read, holds no unstructured grid, or cells that cannot be used.
 pub fn read_grid(path: &Path) -> Result<Imported, Vec<Defect>> {
-    let place = path.display().to_string();
-    let unread = |problem: String| {
-        let remedy = "write it as an XML file of one unstructured grid, uncompressed or with zlib \
-                      (ParaView: Save Data, .vtu)";
-        vec![Defect::new(&place, problem, remedy)]
-    };
-    let bytes = bytes_of(path).map_err(|defect| vec![defect])?;
-    if !is_plain(&bytes) {
-        return Err(unread("its tags are none of a grid's".to_owned()));
-    }
-    // What is damaged may be more than the reader checks.
-    let read = std::panic::catch_unwind(|| Vtk::import(path));
-    let read = read.map_err(|_| unread("cannot be read: it is damaged".to_owned()))?;
-    let read = read.map_err(|error| unread(format!("cannot be read: {error}")))?;
-    let DataSet::UnstructuredGrid { pieces, .. } = read.data else {
-        return Err(unread("it holds no unstructured grid".to_owned()));
-    };
-    let mut pieces = pieces.into_iter();
-    let (Some(piece), None) = (pieces.next(), pieces.next()) else {
-        return Err(unread("it holds several pieces, or none".to_owned()));
-    };
-    let piece = piece.into_loaded_piece_data(Some(path));
-    let piece = piece.map_err(|error| unread(format!("cannot be read: {error}")))?;
-    let cells =
-        Cells::of(&piece).ok_or_else(|| unread("its arrays do not fit together".to_owned()))?;
-    cells.imported(place)
-}
-
-/// Whether no tag has more attributes than those of a grid have, or name spaces: the reader takes
-/// long over many.
-fn is_plain(bytes: &[u8]) -> bool {
-    const MOST: usize = 40;
-    let tags = match memmem::find(bytes, b"<AppendedData") {
-        // Behind it raw bytes may follow.
-        Some(end) => &bytes[..end],
-        None => bytes,
-    };
-    let mut tags = tags.split(|byte| *byte == b'<');
-    tags.all(|tag| {
-        let tag = tag.split(|byte| *byte == b'>').next().unwrap_or_default();
-        let attributes = memchr::memchr_iter(b'=', tag).take(MOST + 1).count();
-        attributes <= MOST && memmem::find(tag, b"xmlns").is_none()
-    })
+    let piece = read_piece(path)?;
+    let cells = Cells::of(&piece)
+        .ok_or_else(|| unread(path, "its arrays do not fit together".to_owned()))?;
+    cells.imported(path.display().to_string())
 }
 
 /// The arrays of a grid.

@@ -5,8 +5,11 @@ mod abaqus_mesh;
 mod abaqus_model;
 mod grid;
 mod imported;
+mod piece;
+mod values;
 mod vtk_order;
 
 pub use abaqus::parse_abaqus;
 pub use grid::read_grid;
 pub use imported::Imported;
+pub use values::read_values;

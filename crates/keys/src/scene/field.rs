@@ -66,14 +66,14 @@ pub static FIELD: KeySection = KeySection {
             kind: Kind::Path,
             need: Need::Without("`table` or `expression`"),
             example: "\"scan.csv\"",
-            says: "CSV file of samples: columns x, y, z (m), of which those may be missing along which nothing varies",
+            says: "CSV file of samples: columns x, y, z (m), of which those may be missing along which nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the middle of its cells",
         },
         Key {
             name: "column",
             kind: Kind::Text,
             need: Need::Without("required with `file`"),
             example: "\"kn\"",
-            says: "Column of the file with the values",
+            says: "Column, or array of the grid, with the values",
         },
         Key {
             name: "method",

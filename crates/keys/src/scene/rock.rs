@@ -4,7 +4,7 @@ use super::field::watched_varied;
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, KeySection, Need};
+use crate::table::{Key, KeySection, Kind, Need, Quantity, number, quantity};
 
 static YOUNG: Plausible = Plausible {
     low: 1e6,
@@ -27,6 +27,12 @@ static DENSITY: Plausible = Plausible {
     units: &["g/cm3"],
 };
 
+const MODULUS: Quantity = Quantity {
+    dimension: Dimension::Stress,
+    range: Range::Within(1.0, 1e15),
+    plausible: Some(&YOUNG),
+};
+
 /// A rock.
 pub static ROCK: KeySection = KeySection {
     pattern: "[rock.NAME]",
@@ -35,16 +41,74 @@ pub static ROCK: KeySection = KeySection {
         Key {
             name: "young_modulus",
             kind: watched_varied(Dimension::Stress, Range::Within(1.0, 1e15), &YOUNG),
-            need: Need::Unless("there is `[fluid]`: all rock without it is rigid"),
+            need: Need::Unless(
+                "there are `young_moduli`, or `[fluid]`: all rock without it is rigid",
+            ),
             example: "50e9",
-            says: "Young's modulus E",
+            says: "Young's modulus E; with `normal_young_modulus` that in the plane of isotropy",
         },
         Key {
             name: "poisson_ratio",
             kind: watched_varied(Dimension::One, Range::Between(-1.0, 0.5), &POISSON),
-            need: Need::Unless("the rock is rigid"),
+            need: Need::Unless("there are `poisson_ratios`, or the rock is rigid"),
             example: "0.25",
-            says: "Poisson's ratio nu",
+            says: "Poisson's ratio nu; with `normal_poisson_ratio` that in the plane of isotropy",
+        },
+        Key {
+            name: "normal_young_modulus",
+            kind: Kind::Number(MODULUS),
+            need: Need::Without("the same in all directions"),
+            example: "20e9",
+            says: "Young's modulus E' across the plane of isotropy (bedding, schistosity)",
+        },
+        Key {
+            name: "normal_poisson_ratio",
+            kind: number(Dimension::One, Range::Finite),
+            need: Need::Without("required with `normal_young_modulus`"),
+            example: "0.15",
+            says: "Poisson's ratio nu': a stress s across the plane strains it by -nu' s/E'; nu'^2 < (E'/E) (1 - nu)/2",
+        },
+        Key {
+            name: "normal_shear_modulus",
+            kind: Kind::Number(MODULUS),
+            need: Need::Without("required with `normal_young_modulus`"),
+            example: "9e9",
+            says: "Shear modulus G' across the plane of isotropy",
+        },
+        Key {
+            name: "young_moduli",
+            kind: Kind::Vector(MODULUS),
+            need: Need::Without("`young_modulus`"),
+            example: "[60e9, 45e9, 20e9]",
+            says: "Young's moduli E1, E2, E3 of orthotropic rock: 1 down the dip, 2 along the strike, 3 across the plane; without dip x, y, z",
+        },
+        Key {
+            name: "poisson_ratios",
+            kind: Kind::Vector(quantity(Dimension::One, Range::Finite)),
+            need: Need::Without("required with `young_moduli`"),
+            example: "[0.25, 0.2, 0.3]",
+            says: "Poisson's ratios nu12, nu23, nu13: a stress s along i strains j by -nu_ij s/E_i",
+        },
+        Key {
+            name: "shear_moduli",
+            kind: Kind::Vector(MODULUS),
+            need: Need::Without("required with `young_moduli`"),
+            example: "[20e9, 9e9, 9e9]",
+            says: "Shear moduli G12, G23, G13",
+        },
+        Key {
+            name: "dip",
+            kind: number(Dimension::Angle, Range::Within(0.0, 90.0)),
+            need: Need::Default("0"),
+            example: "60",
+            says: "Angle between the plane of isotropy, or of the axes 1 and 2, and the horizontal",
+        },
+        Key {
+            name: "dip_direction",
+            kind: number(Dimension::Angle, Range::Finite),
+            need: Need::Default("90"),
+            example: "135",
+            says: "Direction towards which that plane falls, clockwise from north (y)",
         },
         Key {
             name: "density",

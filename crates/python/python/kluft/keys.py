@@ -278,8 +278,9 @@ class StressProfile(Section):
             sqrt, exp, ln, log10, sin, cos, tan, abs, step (0 below 0, else 1) and PI. Without it:
             `table` or `file`.
         file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
-            nothing varies. Without it: `table` or `expression`.
-        column: Column of the file with the values. Without it: required with `file`.
+            nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
+            middle of its cells. Without it: `table` or `expression`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
         method: Between samples: the nearest one, or linear along their line, in the Delaunay
             triangles of their plane, or on their grid. Without it "nearest".
         reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
@@ -721,8 +722,9 @@ class Varying(Section):
             sqrt, exp, ln, log10, sin, cos, tan, abs, step (0 below 0, else 1) and PI. Without it:
             `table` or `file`.
         file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
-            nothing varies. Without it: `table` or `expression`.
-        column: Column of the file with the values. Without it: required with `file`.
+            nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
+            middle of its cells. Without it: `table` or `expression`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
         method: Between samples: the nearest one, or linear along their line, in the Delaunay
             triangles of their plane, or on their grid. Without it "nearest".
         reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
@@ -764,9 +766,29 @@ class Rock(Section):
     """The physical volume NAME; `[rock.default]` serves all volumes not named.
 
     Args:
-        young_modulus: Young's modulus E (Pa); 1 to 1e15. Required, unless there is `[fluid]`: all
-            rock without it is rigid.
-        poisson_ratio: Poisson's ratio nu; > -1, < 0.5. Required, unless the rock is rigid.
+        young_modulus: Young's modulus E; with `normal_young_modulus` that in the plane of isotropy
+            (Pa); 1 to 1e15. Required, unless there are `young_moduli`, or `[fluid]`: all rock
+            without it is rigid.
+        poisson_ratio: Poisson's ratio nu; with `normal_poisson_ratio` that in the plane of
+            isotropy; > -1, < 0.5. Required, unless there are `poisson_ratios`, or the rock is
+            rigid.
+        normal_young_modulus: Young's modulus E' across the plane of isotropy (bedding, schistosity)
+            (Pa); 1 to 1e15. Without it: the same in all directions.
+        normal_poisson_ratio: Poisson's ratio nu': a stress s across the plane strains it by -nu'
+            s/E'; nu'^2 < (E'/E) (1 - nu)/2. Without it: required with `normal_young_modulus`.
+        normal_shear_modulus: Shear modulus G' across the plane of isotropy (Pa); 1 to 1e15. Without
+            it: required with `normal_young_modulus`.
+        young_moduli: Young's moduli E1, E2, E3 of orthotropic rock: 1 down the dip, 2 along the
+            strike, 3 across the plane; without dip x, y, z (Pa); 1 to 1e15. Without it:
+            `young_modulus`.
+        poisson_ratios: Poisson's ratios nu12, nu23, nu13: a stress s along i strains j by -nu_ij
+            s/E_i. Without it: required with `young_moduli`.
+        shear_moduli: Shear moduli G12, G23, G13 (Pa); 1 to 1e15. Without it: required with
+            `young_moduli`.
+        dip: Angle between the plane of isotropy, or of the axes 1 and 2, and the horizontal
+            (degrees); 0 to 90. Without it 0.
+        dip_direction: Direction towards which that plane falls, clockwise from north (y) (degrees).
+            Without it 90.
         density: Mass per volume; required where gravity acts (kg/m3); >= 0. Without it 0.
     """
 
@@ -775,11 +797,27 @@ class Rock(Section):
         *,
         young_modulus: Quantity | Varying | Mapping[str, Any] | None = None,
         poisson_ratio: Quantity | Varying | Mapping[str, Any] | None = None,
+        normal_young_modulus: Quantity | None = None,
+        normal_poisson_ratio: Quantity | None = None,
+        normal_shear_modulus: Quantity | None = None,
+        young_moduli: Sequence[Quantity] | None = None,
+        poisson_ratios: Sequence[Quantity] | None = None,
+        shear_moduli: Sequence[Quantity] | None = None,
+        dip: Quantity | None = None,
+        dip_direction: Quantity | None = None,
         density: Quantity | Varying | Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(
             young_modulus=young_modulus,
             poisson_ratio=poisson_ratio,
+            normal_young_modulus=normal_young_modulus,
+            normal_poisson_ratio=normal_poisson_ratio,
+            normal_shear_modulus=normal_shear_modulus,
+            young_moduli=young_moduli,
+            poisson_ratios=poisson_ratios,
+            shear_moduli=shear_moduli,
+            dip=dip,
+            dip_direction=dip_direction,
             density=density,
         )
 

@@ -15,6 +15,7 @@ use kluft_algebra::{BlockMatrix, RowOwnership, trace};
 use kluft_mesh::Shape;
 use lie_core::enrichment::coefficient;
 use lie_core::kernel::{self, MAX_NODES};
+use lie_core::{Elasticity, Rock};
 use rayon::prelude::*;
 
 use crate::assembly::tetrahedra::{self, Tetrahedra};
@@ -85,8 +86,7 @@ fn plain(space: Space<'_>) -> Vec<bool> {
 /// passed over.
 struct CellMatrices<'a> {
     space: Space<'a>,
-    /// Lamé's constants of each rock (Pa).
-    lame: Vec<(f64, f64)>,
+    elasticity: Vec<Elasticity<'a>>,
     in_tetrahedra: &'a [bool],
     is_plain: &'a [bool],
     /// Blocks of the largest matrix of a cell that is not a linear tetrahedron.
@@ -103,7 +103,7 @@ impl<'a> CellMatrices<'a> {
         let stored = shapes.filter(|&&shape| shape != Shape::Tet4);
         Self {
             space,
-            lame: space.problem.rocks.iter().map(|rock| rock.lame()).collect(),
+            elasticity: space.problem.rocks.iter().map(Rock::elasticity).collect(),
             in_tetrahedra,
             is_plain,
             stride: stored.map(|s| s.node_count().pow(2)).max().unwrap_or(0),
@@ -158,8 +158,8 @@ impl<'a> CellMatrices<'a> {
         }
         let mesh = &self.space.problem.mesh;
         let positions = visit.nodes.map(|node| mesh.nodes[node as usize]);
-        let lame = self.lame[visit.rock as usize];
-        kernel::tetrahedron_row(&positions, lame, visit.local as usize, tetrahedron);
+        let elasticity = self.elasticity[visit.rock as usize];
+        kernel::tetrahedron_row(&positions, elasticity, visit.local as usize, tetrahedron);
         tetrahedron
     }
 
@@ -178,7 +178,7 @@ impl<'a> CellMatrices<'a> {
             local: slot - range.start as u32,
             count: range.len() as u32,
             nodes,
-            rock: match self.lame.len() {
+            rock: match self.elasticity.len() {
                 1 => 0,
                 _ => problem.rock_of_cell[cell],
             },
@@ -331,7 +331,7 @@ impl TargetRows<'_> {
 mod tests {
     use kluft_mesh::structured::{Cut, Patch, mixed};
     use kluft_mesh::{Mesh, SurfaceRole};
-    use lie_core::{Closure, ClosureKind, FractureLaw, Rock as Material};
+    use lie_core::{Closure, ClosureKind, FractureLaw, Orthotropy, Rock as Material};
 
     use super::*;
     use crate::problem::{Condition, FixedPoint, Fracture, Problem, Support};
@@ -424,7 +424,11 @@ mod tests {
             0 => Cut::Prisms,
             _ => Cut::Tetrahedra,
         };
-        for problem in [problem(|_| Cut::Tetrahedra), problem(with_prisms)] {
+        let bedding =
+            Orthotropy::transverse([2.0, 0.5], [0.3, 0.2], 0.2, DMat3::from_rotation_x(0.5));
+        let mut bedded = problem(|_| Cut::Tetrahedra);
+        bedded.rocks[1] = Material::orthotropic(&bedding, 0.0);
+        for problem in [problem(|_| Cut::Tetrahedra), problem(with_prisms), bedded] {
             let (scale, apart) = compare(&problem);
             // Some 24 cells meet at a node; each adds roundings of a few units in the last place.
             assert!(apart < 1e-14 * scale, "{apart:e} of {scale}");

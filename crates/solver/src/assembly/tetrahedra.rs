@@ -1,10 +1,9 @@
 //! Rows of the rock's stiffness at nodes in linear tetrahedra only.
 //!
-//! With `w = sqrt(V) grad N`, a tetrahedron adds `M_ab = w_a (x) w_b` between its nodes, and `K_ab
-//! = lambda M_ab + mu M_ab^T + mu tr(M_ab) I`. Each task computes the `w` of the cells around its
-//! nodes once, where they stay in the cache, and then sums up row after row, cells ascending. Sums
-//! run between points; what sectors and holds make of them is linear, so it waits until the sums
-//! stand.
+//! With `w = sqrt(V) grad N`, a tetrahedron adds `M_ab = w_a (x) w_b` between its nodes, from which
+//! the elasticity of its rock makes `K_ab`. Each task computes the `w` of the cells around its nodes
+//! once, where they stay in the cache, and then sums up row after row, cells ascending. Sums run
+//! between points; what sectors and holds make of them is linear, so it waits until the sums stand.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -13,7 +12,7 @@ use glam::{DMat3, DVec3};
 use kluft_algebra::trace;
 use kluft_mesh::Shape;
 use lie_core::enrichment::coefficient;
-use lie_core::kernel;
+use lie_core::{Elasticity, Rock, kernel};
 use rayon::prelude::*;
 
 use crate::space::Space;
@@ -44,8 +43,7 @@ pub(crate) struct Tetrahedra<'a> {
     in_tetrahedra: &'a [bool],
     /// Whether a node has one sector and no constraint: its point is its unknown.
     is_plain: &'a [bool],
-    /// Lamé's constants of each rock (Pa).
-    lame: Vec<(f64, f64)>,
+    elasticity: Vec<Elasticity<'a>>,
 }
 
 /// A cell, with all that rows need of it.
@@ -83,7 +81,7 @@ impl<'a> Tetrahedra<'a> {
             space,
             in_tetrahedra,
             is_plain,
-            lame: space.problem.rocks.iter().map(|rock| rock.lame()).collect(),
+            elasticity: space.problem.rocks.iter().map(Rock::elasticity).collect(),
         }
     }
 
@@ -153,14 +151,14 @@ impl<'a> Tetrahedra<'a> {
         let is_other = |visit: &Corner| cells[visit.cell as usize].rock != rock;
         if visits.iter().any(is_other) {
             rows.add(cells, visits, |cell, moment| {
-                kernel::of_moments(moment, self.lame[cell.rock as usize])
+                self.elasticity[cell.rock as usize].block(moment)
             });
             return rows.close();
         }
         rows.add(cells, visits, |_, moment| moment);
         rows.close();
         for block in &mut *rows.blocks {
-            *block = kernel::of_moments(*block, self.lame[rock as usize]);
+            *block = self.elasticity[rock as usize].block(*block);
         }
     }
 
@@ -213,7 +211,7 @@ impl<'a> Tetrahedra<'a> {
         let mesh = &problem.mesh;
         let (cell, slots) = pattern.cell_of_slot.locate(slot, &mesh.cells);
         let positions = |k| mesh.nodes[mesh.cells.nodes[slots.start + k] as usize];
-        let rock = match self.lame.len() {
+        let rock = match self.elasticity.len() {
             1 => 0,
             _ => problem.rock_of_cell[cell],
         };

@@ -385,6 +385,7 @@ mod tests {
         young_modulus: 1e9,
         poisson_ratio: 0.25,
         density: 0.0,
+        anisotropy: None,
     };
 
     #[test]

@@ -51,6 +51,7 @@ pub(crate) fn problem(height: fn(f64) -> f64) -> Problem {
         young_modulus: YOUNG,
         poisson_ratio: 0.25,
         density: 0.0,
+        anisotropy: None,
     };
     Problem {
         fractures: vec![

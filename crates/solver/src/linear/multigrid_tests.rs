@@ -68,6 +68,7 @@ impl Box {
             young_modulus,
             poisson_ratio: self.poisson_ratio,
             density: 0.0,
+            anisotropy: None,
         };
         Problem {
             rocks: vec![rock(1.0), rock(self.contrast)],

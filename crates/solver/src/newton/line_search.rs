@@ -106,6 +106,7 @@ mod tests {
             young_modulus: 25e9,
             poisson_ratio: 0.25,
             density: 0.0,
+            anisotropy: None,
         };
         Problem {
             conditions: vec![

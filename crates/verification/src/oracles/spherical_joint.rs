@@ -65,7 +65,7 @@ impl Exact {
         let (mut low, mut high) = (0.0, 10.0 * PRESSURE);
         for _ in 0..200 {
             let q = 0.5 * (low + high);
-            if Self::under(rock, q).opening() < law(q) {
+            if Self::under(rock.clone(), q).opening() < law(q) {
                 low = q;
             } else {
                 high = q;

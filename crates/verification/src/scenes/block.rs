@@ -70,6 +70,7 @@ pub fn problem(cubes: usize, planes: &[Plane]) -> Problem {
         young_modulus: 25e9,
         poisson_ratio: 0.25,
         density: 0.0,
+        anisotropy: None,
     };
     Problem {
         fractures: vec![

@@ -32,6 +32,7 @@ pub const ROCK: Rock = Rock {
     young_modulus: 25e9,
     poisson_ratio: 0.25,
     density: 0.0,
+    anisotropy: None,
 };
 
 /// Joint of the benchmarks: K_n0 = 50 GPa/m, K_s = 20 GPa/m, b0 = 0.1 mm.

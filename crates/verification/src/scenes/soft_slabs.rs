@@ -60,6 +60,7 @@ pub fn problem(mesh: &Mesh, closure: Closure, pressed: f64, schedule: Schedule) 
         young_modulus: YOUNG_MODULUS,
         poisson_ratio: 0.0,
         density: 0.0,
+        anisotropy: None,
     };
     let side = |name: &str| mesh.boundaries.iter().position(|side| side.name == name);
     let mut initial_stress = InitialStress::default();

@@ -32,7 +32,7 @@ fn case(order: u32, h: f64, ratio: f64) -> Case {
         poisson_ratio: ratio,
         ..ROCK
     };
-    let problem = sphere(EXACT, rock, h, order);
+    let problem = sphere(EXACT, rock.clone(), h, order);
     let (direct, solution, _) = scenes::try_solve(&problem, NewtonSettings::default());
     let settings = NewtonSettings {
         linear: Some(LinearMethod::Iterative),

@@ -6,6 +6,7 @@ const ROCK: Rock = Rock {
     young_modulus: 25e9,
     poisson_ratio: 0.25,
     density: 0.0,
+    anisotropy: None,
 };
 
 const EXACT: ClosureKind = ClosureKind::Logarithmic { cutoff: None };

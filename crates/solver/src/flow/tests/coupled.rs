@@ -45,6 +45,7 @@ fn problem(mesh: &Mesh, closure: Closure, schedule: Schedule) -> Problem {
         young_modulus: 1e7,
         poisson_ratio: 0.0,
         density: 0.0,
+        anisotropy: None,
     };
     let side = |name: &str| mesh.boundaries.iter().position(|side| side.name == name);
     let held = |name: &str, support: Support| Condition {
@@ -228,6 +229,7 @@ fn opened(mesh: &Mesh, law: FractureLaw, schedule: Schedule) -> StepRecord {
         young_modulus: 25e9,
         poisson_ratio: 0.25,
         density: 0.0,
+        anisotropy: None,
     };
     let takes_time = schedule.is_timed;
     let problem = Problem {

@@ -15,6 +15,7 @@ fn loads(mesh: &Mesh, closure: Closure, given: f64, flow: Option<&Flow>) -> Vec<
         young_modulus: 1e9,
         poisson_ratio: 0.25,
         density: 0.0,
+        anisotropy: None,
     };
     let law = FractureLaw::elastic(closure, 1e9);
     let problem = Problem {

@@ -1,0 +1,186 @@
+//! Boundary conditions of a project of OpenGeoSys as sections of boundaries and fixed points.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use kluft_keys::{quoted, section_head};
+
+use super::parameters::{Parameters, vector};
+use super::said::Said;
+use super::surfaces::{Extent, Part, extent_of_mesh, read_geometry};
+use super::tree::Element;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// What one curve does to one part of the surface.
+#[derive(Default)]
+struct Condition {
+    displacement: BTreeMap<usize, f64>,
+    traction: BTreeMap<usize, f64>,
+}
+
+/// The parts of the surface that a project names.
+struct Named<'a> {
+    folder: &'a Path,
+    geometry: BTreeMap<String, Extent>,
+    body: &'a Extent,
+}
+
+/// Gravity.
+pub fn body(process: &Element, said: &mut Said) {
+    let force = process.word("specific_body_force").and_then(vector);
+    if let Some(force) = force.filter(|force| force.iter().any(|x| *x != 0.0)) {
+        said.scene += &format!("\n[body]\ngravity = {force:?}\n");
+    }
+}
+
+/// The conditions of all displacements.
+pub fn conditions(
+    (root, folder): (&Element, &Path),
+    body: &Extent,
+    parameters: &Parameters,
+    said: &mut Said,
+) {
+    let geometry = root
+        .word("geometry")
+        .map(|name| read_geometry(&folder.join(name)));
+    let geometry = geometry
+        .unwrap_or(Ok(BTreeMap::new()))
+        .unwrap_or_else(|why| {
+            said.notes.push(format!("the geometry is missing: {why}"));
+            BTreeMap::new()
+        });
+    let named = Named {
+        folder,
+        geometry,
+        body,
+    };
+    let mut all = BTreeMap::new();
+    let variables = root.get("process_variables").into_iter();
+    for variable in variables.flat_map(|list| list.all("process_variable")) {
+        variable.pass_over(&["components", "order", "initial_condition"]);
+        let is_jump = variable
+            .word("name")
+            .is_some_and(|name| name != "displacement");
+        let list = variable.get("boundary_conditions").into_iter();
+        for condition in list.flat_map(|list| list.all("boundary_condition")) {
+            let taken = match is_jump {
+                true => Err("a condition on a jump; supports of Kluft hold both walls".to_owned()),
+                false => take(condition, parameters, &mut all),
+            };
+            if let Err(why) = taken {
+                let place = place_of(condition).unwrap_or_default();
+                said.notes
+                    .push(format!("no counterpart: at `{place}`: {why}"));
+                condition.pass_over(&["type", "parameter", "component", "geometrical_set"]);
+            }
+        }
+    }
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for ((place, curve), condition) in &all {
+        let count = counts.entry(place.clone()).or_default();
+        *count += 1;
+        let name = match *count {
+            1 => place.clone(),
+            count => format!("{place}-{count}"),
+        };
+        match named.part(place) {
+            Some(part) => {
+                condition.say(&name, &part, &mut said.scene);
+                said.scene += &history(curve.as_deref(), parameters);
+            }
+            None => said.notes.push(format!(
+                "no counterpart: `{place}` is not there, or lies along no plane x, y or z"
+            )),
+        }
+    }
+}
+
+/// Where a condition is.
+fn place_of(condition: &Element) -> Option<String> {
+    let name = condition
+        .word("geometry")
+        .or_else(|| condition.word("mesh"));
+    name.map(str::to_owned)
+}
+
+/// Adds a condition to those of its place and curve.
+///
+/// # Errors
+/// Why a scene cannot say it.
+fn take(
+    condition: &Element,
+    parameters: &Parameters,
+    all: &mut BTreeMap<(String, Option<String>), Condition>,
+) -> Result<(), String> {
+    condition.pass_over(&["geometrical_set"]);
+    let place = place_of(condition).ok_or("it has no place")?;
+    let kind = condition.word("type").unwrap_or_default();
+    if !["Dirichlet", "Neumann"].contains(&kind) {
+        return Err(format!("a condition of type {kind}"));
+    }
+    let text = condition.word("parameter").ok_or("it has no parameter")?;
+    let parameter = parameters.named(text)?;
+    let component = condition
+        .word("component")
+        .and_then(|text| text.parse::<usize>().ok());
+    let components: Vec<(usize, f64)> = match (component, &parameter.values[..]) {
+        (Some(axis), &[value]) if axis < 3 => vec![(axis, value)],
+        (None, values) if values.len() <= 3 => values.iter().copied().enumerate().collect(),
+        _ => return Err(format!("`{text}` has other components than its place")),
+    };
+    // What does not move does not care for the time.
+    let still = kind == "Dirichlet" && components.iter().all(|(_, value)| *value == 0.0);
+    let curve = parameter.curve.filter(|_| !still);
+    let own = all.entry((place, curve)).or_default();
+    match kind {
+        "Dirichlet" => own.displacement.extend(components),
+        _ => own.traction.extend(components),
+    }
+    Ok(())
+}
+
+/// The curve that scales a section.
+fn history(curve: Option<&str>, parameters: &Parameters) -> String {
+    let rows = curve.and_then(|name| parameters.curve(name));
+    rows.map_or(String::new(), |rows| format!("history = {rows:?}\n"))
+}
+
+impl Named<'_> {
+    fn part(&self, name: &str) -> Option<Part> {
+        let extent = match self.geometry.get(name) {
+            Some(extent) => *extent,
+            None => extent_of_mesh(&self.folder.join(format!("{name}.vtu")))?,
+        };
+        extent.part(self.body)
+    }
+}
+
+impl Condition {
+    fn say(&self, name: &str, part: &Part, scene: &mut String) {
+        let components: Vec<String> = self
+            .displacement
+            .iter()
+            .map(|(&axis, value)| format!("{} = {value:?}", AXES[axis]))
+            .collect();
+        let displacement = format!("displacement = {{ {} }}\n", components.join(", "));
+        match part {
+            Part::Point(at) => {
+                *scene += &format!(
+                    "\n[[fixed_point]]               # {name}\nat = {at:?}\n{displacement}"
+                );
+            }
+            Part::Faces(place) => {
+                let head = section_head("boundary", name);
+                *scene += &format!("\n{head}\nwhere = {}\n", quoted(place));
+                if !self.displacement.is_empty() {
+                    *scene += &displacement;
+                }
+                if !self.traction.is_empty() {
+                    let at = |axis: usize| self.traction.get(&axis).copied().unwrap_or(0.0);
+                    *scene += &format!("traction = {:?}\n", [0, 1, 2].map(at));
+                }
+            }
+        }
+    }
+}
