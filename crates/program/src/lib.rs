@@ -5,6 +5,7 @@ pub mod defects;
 pub mod failure;
 pub mod gmsh;
 pub mod input;
+pub mod invocation;
 pub mod printing;
 pub mod report;
 #[cfg(target_os = "linux")]
