@@ -12,7 +12,7 @@ pub const SHOWN: usize = 20;
 const KINDS: usize = 10;
 /// Most characters of a line that are shown before what is meant, and from there on.
 const BEFORE: usize = 40;
-const AFTER: usize = 32;
+const AFTER: usize = 28;
 
 /// The first defects with their remedies, and how many more there are of each kind.
 pub fn listed(defects: &[Defect]) -> String {
@@ -124,8 +124,8 @@ mod tests {
         };
         assert_eq!(
             shown(text, 9..14),
-            "1 defect in the input\na.toml:2: is unknown\n    2 | young = 1 # soft\n      | ^^^^^\n    \
-             remedy: rename\n"
+            "1 defect in the input\na.toml:2: is unknown\n    2 | young = 1 # soft\n      | ^^^^^\n\
+             \x20   remedy: rename\n"
         );
         // A part of several lines, and the end of a text.
         assert!(shown(text, 0..40).contains("    1 | [rock.a]\n      | ^^^^^^^^\n"));

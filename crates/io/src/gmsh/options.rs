@@ -68,8 +68,8 @@ pub struct GmshOptions {
 
 /// A program that prepares its own process and becomes gmsh.
 ///
-/// It is called as `PROGRAM ARGUMENTS... --parent PID [--confine [--folder DIR] [--read PATH]...] --
-/// GMSH ARGUMENTS...`. It ends when the process `PID` has ended. With `--confine` nothing is
+/// It is called as `PROGRAM ARGUMENTS... --parent PID [--confine [--folder DIR] [--read PATH]...]
+/// -- GMSH ARGUMENTS...`. It ends when the process `PID` has ended. With `--confine` nothing is
 /// executed but gmsh, nothing written but in DIR, and nothing of the user's read but DIR and what
 /// lies beneath each PATH. If it cannot become gmsh, it says why in the last line of its error
 /// stream and ends with the exit code [`NOT_STARTED`].
