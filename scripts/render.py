@@ -3,7 +3,8 @@
     python scripts/render.py OUT_DIR PICTURE.png [--warp FACTOR] [--step NUMBER]
 
 Rock and fractures are moved by the displacement times FACTOR; without one, the largest displacement
-becomes 6 % of the body's diagonal. Draws the last step unless another is named (the first is 1).
+becomes a tenth of the extent of what moves, a crack or a tunnel, and at most 6 % of the body's
+diagonal. Draws the last step unless another is named (the first is 1).
 `sh scripts/setup --pictures` installs what this needs in target/venv. No X server is needed: VTK
 then draws with EGL.
 """
@@ -17,8 +18,11 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkLogger
 
 LARGEST_SHIFT = 0.06  # of the diagonal
+SHIFT_OF_MOVING = 0.1  # of the extent of what moves
+MOVING = 0.5  # of the largest displacement, from which on something moves
 WIDE = 1e-3  # largest aperture from which on millimetres read better than micrometres
 MANY = 10.0  # ratio of the largest to the smallest aperture from which the colours are logarithmic
+MANY_DECADES = 4  # of a scale, from which on only powers of ten are written
 VIEW = np.array([0.75, -1.0, 0.55])  # from the body's centre to the camera
 CUT_DEPTH = 0.51  # of the body's depth, measured from the front
 CUT = (0.0, -1.0, 0.0)  # normal of the cutting plane, into the half that is taken away
@@ -39,8 +43,13 @@ def read_step(path, step):
 
 
 def automatic_factor(rock):
-    largest = np.linalg.norm(rock["displacement"], axis=1).max(initial=0.0)
-    return rounded(LARGEST_SHIFT * rock.length / largest, 2) if largest > 0.0 else 1.0
+    size = np.linalg.norm(rock["displacement"], axis=1)
+    largest = size.max(initial=0.0)
+    if largest == 0.0:
+        return 1.0
+    extent = np.linalg.norm(np.ptp(rock.points[size >= MOVING * largest], axis=0))
+    shift = min(LARGEST_SHIFT * rock.length, SHIFT_OF_MOVING * extent or np.inf)
+    return rounded(shift / largest, 2)
 
 
 def rounded(value, digits):
@@ -81,16 +90,24 @@ def colouring(fractures):
     scale = np.log10 if spread else np.asarray
     fractures[title] = scale(aperture * per_metre)
     limits = (float(scale(low)), float(scale(high)))
-    values, digits = (ticks(low, high), 2) if spread else (np.linspace(low, high, 5), 4)
-    return title, limits, {float(scale(value)): f"{rounded(value, digits):g}" for value in values}
+    values = decade_ticks(low, high) if spread else ticks(low, high)
+    return title, limits, {float(scale(value)): f"{value:.6g}" for value in values}
+
+
+def decade_ticks(low, high):
+    """The numbers 1, 2, 5 of each decade between two limits; of many decades the first alone."""
+    decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+    parts = [1.0, 2.0, 5.0] if len(decades) <= MANY_DECADES else [1.0]
+    steps = np.sort(np.outer(decades, parts).ravel())
+    return steps[(steps >= low) & (steps <= high)]
 
 
 def ticks(low, high):
-    """The limits and, well apart from them, the numbers 1, 2, 5 of each decade between."""
-    decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
-    steps = (10.0**decades[:, None] * np.array([1.0, 2.0, 5.0])).ravel()
-    between = steps[(steps > 1.25 * low) & (steps < high / 1.25)]
-    return [low, *between, high]
+    """Round numbers between two limits, four to ten of them."""
+    rough = (high - low) / 4.0
+    decade = 10.0 ** np.floor(np.log10(rough))
+    step = max(part * decade for part in (1.0, 2.0, 5.0) if part * decade <= rough)
+    return step * np.arange(np.ceil(low / step), np.floor(high / step) + 1)
 
 
 def colour_range(values):

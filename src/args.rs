@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use kluft_keys::Document;
 use kluft_network::{Domain, Grouping};
+use kluft_program::invocation::Invocation;
 
 use crate::gmsh::GmshArgs;
 #[cfg(target_os = "linux")]
 use crate::gmsh::START;
 use crate::import::ImportOptions;
 use crate::init::InitOptions;
-use crate::inspect::InspectOptions;
+use crate::inspect::{Form, InspectOptions};
 use crate::network::NetworkOptions;
 use crate::printing::WIDTH;
 use crate::report::Verbosity;
@@ -174,7 +175,7 @@ pub struct RunArgs {
     /// Print nothing but errors
     #[arg(long, short, conflicts_with = "verbose")]
     quiet: bool,
-    /// Print the report even when the output is not a terminal, and gmsh's warnings
+    /// Print the report even when the output is not a terminal, with iterations and gmsh's warnings
     #[arg(long, short)]
     verbose: bool,
 }
@@ -291,6 +292,9 @@ pub struct InspectArgs {
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
+    /// Describe each of many fractures, which have a line each without it
+    #[arg(long, short, conflicts_with = "json")]
+    verbose: bool,
     /// Folder for inspect.vtu and inspect.json [default: `out` beside the input]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -298,59 +302,66 @@ pub struct InspectArgs {
     gmsh: GmshArgs,
 }
 
-impl From<InitArgs> for InitOptions {
-    fn from(args: InitArgs) -> Self {
-        Self {
-            out: args.out,
-            gmsh: args.gmsh.into(),
+impl InitArgs {
+    /// What they ask for.
+    pub fn options(self, called: &Invocation) -> InitOptions {
+        InitOptions {
+            out: self.out,
+            gmsh: self.gmsh.options(called.own.as_ref()),
         }
     }
 }
 
-impl From<RunArgs> for RunOptions {
-    fn from(args: RunArgs) -> Self {
-        Self {
-            out: args.out,
-            threads: args.threads.map(usize::from),
-            ranks: args.ranks,
-            verbosity: verbosity(args.quiet, args.verbose),
-            resume: args.resume,
-            report: !args.no_report,
-            is_tied: args.tied,
-            gmsh_arguments: args.gmsh.arguments(),
-            gmsh: args.gmsh.into(),
+impl RunArgs {
+    /// What they ask for.
+    pub fn options(self, called: &Invocation) -> RunOptions {
+        RunOptions {
+            out: self.out,
+            threads: self.threads.map(usize::from),
+            ranks: self.ranks,
+            verbosity: verbosity(self.quiet, self.verbose),
+            resume: self.resume,
+            report: !self.no_report,
+            is_tied: self.tied,
+            command: called.command_line(),
+            gmsh_arguments: self.gmsh.arguments(),
+            gmsh: self.gmsh.options(called.own.as_ref()),
         }
     }
 }
 
-impl From<NetworkArgs> for NetworkOptions {
-    fn from(args: NetworkArgs) -> Self {
-        Self {
-            out: args.out,
-            name: args.name,
-            grouping: match args.group {
+impl NetworkArgs {
+    /// What they ask for.
+    pub fn options(self, called: &Invocation) -> NetworkOptions {
+        NetworkOptions {
+            out: self.out,
+            name: self.name,
+            grouping: match self.group {
                 GroupBy::Fracture => Grouping::Fracture,
                 GroupBy::Set => Grouping::Set,
             },
-            domain: args.domain,
-            h: args.h,
-            keep_small: args.keep_small,
-            hydraulic_aperture: args.hydraulic_aperture,
-            run: args.run,
-            gmsh: args.gmsh.into(),
-            verbosity: verbosity(args.quiet, args.verbose),
+            domain: self.domain,
+            h: self.h,
+            keep_small: self.keep_small,
+            hydraulic_aperture: self.hydraulic_aperture,
+            run: self.run,
+            command: called.command_line(),
+            gmsh: self.gmsh.options(called.own.as_ref()),
+            verbosity: verbosity(self.quiet, self.verbose),
         }
     }
 }
 
-impl From<StudyArgs> for StudyOptions {
-    fn from(args: StudyArgs) -> Self {
-        Self {
-            out: args.out,
-            tolerance: args.tolerance,
-            threads: args.threads.map(usize::from),
-            verbosity: verbosity(args.quiet, args.verbose),
-            gmsh: args.gmsh,
+impl StudyArgs {
+    /// What they ask for.
+    pub fn options(self, called: &Invocation) -> StudyOptions {
+        StudyOptions {
+            out: self.out,
+            tolerance: self.tolerance,
+            threads: self.threads.map(usize::from),
+            verbosity: verbosity(self.quiet, self.verbose),
+            gmsh: self.gmsh,
+            own: called.own.clone(),
         }
     }
 }
@@ -364,12 +375,17 @@ impl From<ImportArgs> for ImportOptions {
     }
 }
 
-impl From<InspectArgs> for InspectOptions {
-    fn from(args: InspectArgs) -> Self {
-        Self {
-            out: args.out,
-            json: args.json,
-            gmsh: args.gmsh.into(),
+impl InspectArgs {
+    /// What they ask for.
+    pub fn options(self, called: &Invocation) -> InspectOptions {
+        InspectOptions {
+            out: self.out,
+            form: match (self.json, self.verbose) {
+                (true, _) => Form::Json,
+                (_, true) => Form::Long,
+                _ => Form::Short,
+            },
+            gmsh: self.gmsh.options(called.own.as_ref()),
         }
     }
 }

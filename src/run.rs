@@ -32,6 +32,8 @@ pub struct RunOptions {
     pub report: bool,
     /// Whether to end when the standard input is closed.
     pub is_tied: bool,
+    /// How the program was called, for those who read the results.
+    pub command: String,
     /// How gmsh is started, and what a geometry may do.
     pub gmsh: GmshOptions,
     /// The same as arguments of a program.
@@ -74,7 +76,7 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
         keep_results: false,
         report: options.report,
         caller: Caller {
-            command: Some(&command()),
+            command: Some(&options.command),
             commit: option_env!("KLUFT_COMMIT"),
         },
         gmsh: options.gmsh.clone(),
@@ -88,21 +90,6 @@ pub fn run(scene_file: &Path, options: &RunOptions) -> Result<(), Failure> {
         Ending::Solved | Ending::NothingLeft => Ok(()),
         Ending::NotConverged(why) => Err(Failure::NotConverged(why)),
         Ending::Stopped => Err(Failure::NotConverged("the run was stopped".into())),
-    }
-}
-
-/// How the program was called, such that a shell takes it.
-fn command() -> String {
-    let words = std::env::args_os().map(|word| quoted(&word.to_string_lossy()));
-    words.collect::<Vec<_>>().join(" ")
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:+@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
     }
 }
 

@@ -2,7 +2,8 @@
 
     python make.py REPOSITORY FOLDER [KLUFT]
 
-With the program each scene of the gallery that is small is run, and its page shows the fractures.
+With the program each scene of the gallery is run, and its page shows the fractures; one that is large
+is meshed and inspected.
 """
 
 import re
@@ -14,7 +15,7 @@ from pathlib import Path
 
 LARGEST = 400_000
 """Bytes of a geometry whose scene is run."""
-PATIENCE = 60
+PATIENCE = 600
 """Seconds that a scene may take."""
 FORGE = "https://github.com/kluft/kluft/blob/main/"
 
@@ -92,23 +93,31 @@ def comment_of(scene: str) -> str:
 
 
 def picture_of(folder: Path, kluft: str | None) -> str:
-    """The pictures of the page that a run of a scene leaves, as HTML; nothing if it is not run."""
-    sizes = [file.stat().st_size for file in folder.glob("*.geo")]
-    if kluft is None or (sizes and max(sizes) > LARGEST):
+    """The pictures of the page that a run of a scene leaves, as HTML; nothing if it is not run.
+
+    Raises:
+        SystemExit: if the scene is not solved, or, if it is large, not meshed and sound.
+    """
+    if kluft is None:
         return ""
+    sizes = [file.stat().st_size for file in folder.glob("*.geo")]
+    is_small = not sizes or max(sizes) <= LARGEST
+    command = "run" if is_small else "inspect"
     with tempfile.TemporaryDirectory() as out:
-        command = [kluft, "run", str(folder / "scene.toml"), "--out", out, "--quiet"]
-        try:
-            subprocess.run(command, timeout=PATIENCE, check=True, capture_output=True)
-        except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
-            print(f"{folder.name}: no picture: {error}", file=sys.stderr)
+        words = [kluft, command, str(folder / "scene.toml"), "--out", out]
+        done = subprocess.run(words, timeout=PATIENCE, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise SystemExit(f"{folder.name}: {done.stderr}")
+        if not is_small:
             return ""
         page = (Path(out) / "report.html").read_text("utf-8")
     found = re.findall(r'<figure class="picture">.*?</figure>', page, re.S)
     style = re.search(r"<style>(.*?)</style>", page, re.S)
-    rules = [rule for rule in (style.group(1) if style else "").splitlines() if rule.startswith((".grid", ".bar", ".picture", ".axes"))]
+    wanted = (".grid", ".bar", ".picture", ".axes")
+    lines = (style.group(1) if style else "").splitlines()
+    rules = " ".join(rule for rule in lines if rule.startswith(wanted))
     root = ":root { --ink: #444; --soft: #777; }"
-    return f"<style>{root} {' '.join(rules)}</style><div class=\"grid\">{''.join(found[:2])}</div>"
+    return f"<style>{root} {rules}</style><div class=\"grid\">{''.join(found[:2])}</div>"
 
 
 def gallery(repository: Path, out: Path, kluft: str | None) -> None:

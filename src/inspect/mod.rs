@@ -3,10 +3,12 @@
 mod cost;
 mod doubled;
 mod findings;
+mod fractures;
 mod gather;
 mod grid;
 mod groups;
 mod hydraulics;
+mod lines;
 mod text;
 mod walls;
 
@@ -41,10 +43,21 @@ const REPORT: &str = "inspect.json";
 pub struct InspectOptions {
     /// Folder for `inspect.vtu`; `out` beside the input if not given.
     pub out: Option<PathBuf>,
-    /// Whether the report is JSON instead of text.
-    pub json: bool,
+    /// What is printed.
+    pub form: Form,
     /// How gmsh is started, and what a geometry may do.
     pub gmsh: GmshOptions,
+}
+
+/// What is printed of an inspection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Text, of many fractures a line each.
+    Short,
+    /// Text that describes each fracture.
+    Long,
+    /// All of it, as JSON.
+    Json,
 }
 
 /// Inspects a scene (`.toml`) or a mesh alone (`.msh`) without solving: prints the report to the
@@ -78,7 +91,7 @@ fn inspect_here(input: &Path, options: &InspectOptions) -> Result<(), Failure> {
         .iter()
         .filter(|defect| defect.code != Some(NOT_WRITTEN));
     inspection.defects = of_input.map(Into::into).collect();
-    let printed = keep_and_print(&inspection, options.json, &output, &mut defects);
+    let printed = keep_and_print(&inspection, options.form, &output, &mut defects);
     if defects.is_empty() {
         printed
     } else {
@@ -299,16 +312,16 @@ fn connect(
 /// Prints the report and keeps it as `inspect.json`.
 fn keep_and_print(
     inspection: &Inspection,
-    json: bool,
+    form: Form,
     output: &Output,
     defects: &mut Vec<Defect>,
 ) -> Result<(), Failure> {
     let encoded = serde_json::to_string_pretty(inspection).unwrap_or_default() + "\n";
     let encoded = printing::json(&encoded);
-    let text = if json {
-        encoded.clone()
-    } else {
-        text::of(inspection)
+    let text = match form {
+        Form::Json => encoded.clone(),
+        Form::Short => text::of(inspection, false),
+        Form::Long => text::of(inspection, true),
     };
     let kept = output.write(REPORT, |path| {
         write_atomically(path, |out| out.write_all(encoded.as_bytes()))

@@ -5,29 +5,24 @@ use std::fmt::Write;
 use crate::defects::SHOWN as SHOWN_DEFECTS;
 use crate::printing::{one_line, shortened, wrapped};
 
-use super::findings::{
-    BlockFinding, CellFinding, FractureFinding, GroupFinding, Inspection, Place, SectorCounts,
-    SolverFinding,
-};
+use super::findings::{BlockFinding, GroupFinding, Inspection, SolverFinding};
+use super::fractures::{self, cell_text, sectors};
 use super::hydraulics;
+use super::lines::{at, head_line, line, list, short};
 
-/// Lists longer than this are cut; `--json` has all of them.
-const SHOWN: usize = 12;
-/// Groups that are listed.
-const GROUPS: usize = 60;
-/// Fractures that are described.
-const FRACTURES: usize = 30;
+/// Groups that are listed, and in the long form.
+const GROUPS: [usize; 2] = [20, 60];
 /// Characters of a name in the table of groups.
 const NAME: usize = 24;
 
-/// The whole report.
-pub fn of(inspection: &Inspection) -> String {
+/// The report, in the short or in the long form.
+pub fn of(inspection: &Inspection, is_long: bool) -> String {
     let mut text = String::new();
     let out = &mut text;
     head(out, inspection);
-    groups(out, inspection);
+    groups(out, inspection, GROUPS[usize::from(is_long)]);
     doubled(out, inspection);
-    fractures(out, inspection);
+    fractures::of(out, inspection, is_long);
     contacts(out, inspection);
     patches(out, inspection);
     blocks(out, inspection);
@@ -61,44 +56,6 @@ pub fn of(inspection: &Inspection) -> String {
     text
 }
 
-/// Adds one line, broken where it is too long, below its own beginning or a head of eleven columns.
-fn line(out: &mut String, text: &str) {
-    let text = one_line(text.trim_end());
-    let indent = if text.starts_with("  ") { 4 } else { 11 };
-    // Writing to a string does not fail.
-    let _ = writeln!(out, "{}", wrapped(&text, indent));
-}
-
-/// The same after an empty line.
-fn head_line(out: &mut String, text: &str) {
-    out.push('\n');
-    line(out, text);
-}
-
-/// A name that leaves room beside it on a line.
-fn short(name: &str) -> String {
-    shortened(name, 50)
-}
-
-fn at(place: Place) -> String {
-    // Without rounding first, -1e-9 would be printed as -0.0000.
-    let [x, y, z] = place.map(|value| (1e4 * value).round() / 1e4 + 0.0);
-    format!("({x:.4}, {y:.4}, {z:.4})")
-}
-
-/// Prints the first few entries of a list and counts the others.
-fn list<T>(out: &mut String, entries: &[T], print: impl Fn(&T) -> String) {
-    for entry in entries.iter().take(SHOWN) {
-        line(out, &print(entry));
-    }
-    if entries.len() > SHOWN {
-        line(
-            out,
-            &format!("  and {} more (--json lists them)", entries.len() - SHOWN),
-        );
-    }
-}
-
 fn head(out: &mut String, inspection: &Inspection) {
     let title = inspection
         .title
@@ -119,7 +76,7 @@ fn head(out: &mut String, inspection: &Inspection) {
     );
 }
 
-fn groups(out: &mut String, inspection: &Inspection) {
+fn groups(out: &mut String, inspection: &Inspection, most: usize) {
     if inspection.groups.is_empty() {
         return head_line(out, "no physical groups");
     }
@@ -133,7 +90,7 @@ fn groups(out: &mut String, inspection: &Inspection) {
         out,
         &format!("{:<width$}  dimension  elements  role", "group"),
     );
-    for group in inspection.groups.iter().take(GROUPS) {
+    for group in inspection.groups.iter().take(most) {
         let elements = group
             .elements
             .map_or("-".to_owned(), |count| count.to_string());
@@ -147,7 +104,7 @@ fn groups(out: &mut String, inspection: &Inspection) {
         let row = wrapped(&one_line(&(start + &group.detail)), indent);
         let _ = writeln!(out, "{row}");
     }
-    let more = inspection.groups.len().saturating_sub(GROUPS);
+    let more = inspection.groups.len().saturating_sub(most);
     if more > 0 {
         line(out, &format!("... and {more} more (--json lists them)"));
     }
@@ -172,92 +129,6 @@ fn doubled(out: &mut String, inspection: &Inspection) {
             at(surface.at)
         )
     });
-}
-
-fn fractures(out: &mut String, inspection: &Inspection) {
-    for fracture in inspection.fractures.iter().take(FRACTURES) {
-        head_line(out, &format!("fracture   {}", short(&fracture.name)));
-        fracture_lines(out, fracture);
-    }
-    let more = inspection.fractures.len().saturating_sub(FRACTURES);
-    if more > 0 {
-        head_line(
-            out,
-            &format!("... and {more} more fractures (--json lists them)"),
-        );
-    }
-}
-
-fn fracture_lines(out: &mut String, fracture: &FractureFinding) {
-    let surface = if fracture.closed { "closed" } else { "open" };
-    let components = match fracture.components {
-        1 => String::new(),
-        count => format!(" in {count} components"),
-    };
-    line(
-        out,
-        &format!(
-            "  {:.6} m2, {} facets, {surface} surface{components}",
-            fracture.area, fracture.facets
-        ),
-    );
-    if let (Some(dip), Some(direction), Some(deviation)) =
-        (fracture.dip, fracture.dip_direction, fracture.deviation)
-    {
-        let shape = match deviation < 1e-3 {
-            true => "plane".to_owned(),
-            false => format!("facets up to {deviation:.1} degrees off that plane"),
-        };
-        line(
-            out,
-            &format!("  dip {dip:.1}, dip direction {direction:.1} degrees; {shape}"),
-        );
-    }
-    line(
-        out,
-        &format!(
-            "  tips {:.4} m ({} edges), on the outer surface {:.4} m ({} edges)",
-            fracture.tip_length, fracture.tip_edges, fracture.trace_length, fracture.trace_edges
-        ),
-    );
-    if fracture.branching_length > 0.0 {
-        line(
-            out,
-            &format!("  crosses itself along {:.4} m", fracture.branching_length),
-        );
-    }
-    if fracture.junction_nodes != SectorCounts::default() {
-        line(
-            out,
-            &format!("  junctions: {}", sectors(&fracture.junction_nodes)),
-        );
-    }
-    if fracture.unresolved_facets > 0 {
-        line(
-            out,
-            &format!(
-                "  {} facets without a jump of their own",
-                fracture.unresolved_facets
-            ),
-        );
-    }
-    if let Some(cell) = &fracture.worst_cell {
-        line(out, &format!("  worst cell {}", cell_text(cell)));
-    }
-}
-
-fn sectors(counts: &SectorCounts) -> String {
-    let named = [
-        ("3", counts.three),
-        ("4", counts.four),
-        ("5", counts.five),
-        ("6", counts.six),
-        ("7", counts.seven),
-        ("8 or more", counts.many),
-    ];
-    let present = named.into_iter().filter(|(_, count)| *count > 0);
-    let parts = present.map(|(sectors, count)| format!("{count} nodes with {sectors} sectors"));
-    parts.collect::<Vec<_>>().join(", ")
 }
 
 fn contacts(out: &mut String, inspection: &Inspection) {
@@ -375,24 +246,6 @@ fn cells(out: &mut String, inspection: &Inspection) {
     for cell in cells.worst_at_fractures.iter().take(3) {
         line(out, &format!("  worst at fractures {}", cell_text(cell)));
     }
-}
-
-fn cell_text(cell: &CellFinding) -> String {
-    let fractures = match cell.fractures.is_empty() {
-        true => String::new(),
-        false => {
-            let names: Vec<String> = cell.fractures.iter().map(|name| short(name)).collect();
-            format!(", at {}", names.join(", "))
-        }
-    };
-    format!(
-        "{}: quality {:.3}, dihedral angles {:.1} to {:.1} degrees, at {}{fractures}",
-        cell.tag,
-        cell.quality,
-        cell.smallest_angle,
-        cell.largest_angle,
-        at(cell.at)
-    )
 }
 
 fn unknowns(out: &mut String, inspection: &Inspection) {

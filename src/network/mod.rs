@@ -47,6 +47,8 @@ pub struct NetworkOptions {
     pub hydraulic_aperture: Option<f64>,
     /// Whether the scene is run as well.
     pub run: bool,
+    /// How the program was called.
+    pub command: String,
     /// How a run starts gmsh, and what a geometry may do.
     pub gmsh: GmshOptions,
     /// How much to tell.
@@ -94,6 +96,7 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
         resume: false,
         report: true,
         is_tied: false,
+        command: options.command.clone(),
         gmsh_arguments: Vec::new(),
         gmsh: options.gmsh.clone(),
     };

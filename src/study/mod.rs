@@ -36,6 +36,7 @@ use assess::{Assessment, assess};
 use files::{PAGE, TABLE};
 use kluft_io::fingerprint_of;
 use kluft_io::gmsh::version;
+use kluft_program::invocation::OwnProgram;
 use kluft_scene::Scene;
 use point::{PointOutcome, PointRecord, Runner};
 use settings::StudyPlan;
@@ -55,6 +56,8 @@ pub struct StudyOptions {
     pub verbosity: Verbosity,
     /// How each run starts gmsh.
     pub gmsh: GmshArgs,
+    /// What runs the settings; none if the system does not tell.
+    pub own: Option<OwnProgram>,
 }
 
 /// Runs the settings of a scene, cheapest first, and writes what each yields and takes. Settings
@@ -110,7 +113,7 @@ impl Study {
         let beside = || scene_file.parent().unwrap_or(Path::new(".")).join("study");
         let out = options.out.clone().unwrap_or_else(beside);
         let out = std::path::absolute(&out).unwrap_or(out);
-        let program = own_program()?;
+        let program = options.own.clone().ok_or_else(not_found)?;
         let scene = Scene::parse_file(scene_file, &text)?;
         let inputs = kluft_run::inputs(scene_file, Some(&scene));
         let claimed = files::claim(&out, &charts::file_names(&plan), &inputs)?;
@@ -118,7 +121,7 @@ impl Study {
         let runner = Runner {
             folder: out.join("points"),
             study: out,
-            build: fingerprint_of(&program)?,
+            build: fingerprint_of(&program.code)?,
             program,
             threads: count,
             gmsh: options.gmsh,
@@ -138,7 +141,8 @@ impl Study {
             folders,
             records,
             machine: Machine::this(),
-            gmsh: version(&options.gmsh.into()).unwrap_or_else(|| "unknown".to_owned()),
+            gmsh: version(&options.gmsh.options(options.own.as_ref()))
+                .unwrap_or_else(|| "unknown".to_owned()),
             thread_word: word,
             claimed,
         })
@@ -297,11 +301,9 @@ fn untaken(wanted: &str, taken: &[String]) -> String {
     name
 }
 
-fn own_program() -> Result<PathBuf, Defect> {
-    std::env::current_exe().map_err(|error| {
-        let problem = format!("the program does not find itself: {error}");
-        Defect::new("kluft", problem, "start it by its whole path")
-    })
+fn not_found() -> Defect {
+    let problem = "the program does not find itself";
+    Defect::new("kluft", problem, "start it by its whole path")
 }
 
 /// What a study found, in a few lines.

@@ -23,6 +23,10 @@ const COLUMNS: [&str; 10] = [
     "error#",
 ];
 
+/// Errors that users want most often.
+const WANTED: [f64; 3] = [0.05, 0.02, 0.01];
+const NOTHING: [&str; 3] = ["–"; 3];
+
 /// What such pages are known by.
 const MAKER: &str = "Kluft study";
 
@@ -30,9 +34,11 @@ const MAKER: &str = "Kluft study";
 pub(super) fn page(study: &Study, found: &Assessment, charts: &[(&NamedChart, String)]) -> String {
     let mut page = Page::new(&format!("Accuracy against cost: {}", study.title), MAKER);
     lead(&mut page, study, found);
+    cheapest(&mut page, study, found);
     for (named, svg) in charts {
         let left_out = named.left_out.as_deref().unwrap_or_default();
-        page.chart(&named.chart.title, svg, left_out);
+        let narrow = named.chart.narrow_svg();
+        page.chart(&named.chart.title, [svg, &narrow], left_out);
     }
     numbers(&mut page, study, found);
     failures(&mut page, study);
@@ -73,6 +79,37 @@ fn lead(page: &mut Page, study: &Study, found: &Assessment) {
              error.",
         );
     }
+}
+
+/// What a user of the page asks first: how to be so accurate at the least cost.
+fn cheapest(page: &mut Page, study: &Study, found: &Assessment) {
+    if found.verdicts.iter().all(|verdict| verdict.error.is_none()) {
+        return;
+    }
+    let mut table = Table::new(&[
+        "wanted",
+        "cheapest setting",
+        "wall time#",
+        "memory#",
+        "error#",
+    ]);
+    for tolerance in WANTED {
+        let wanted = format!("{} or less", percent(tolerance));
+        let best = answer::cheapest(study, found, tolerance);
+        let numbers = best.and_then(|i| Some((i, study.records[i].as_ref()?.numbers()?)));
+        match numbers {
+            Some((i, numbers)) => {
+                let [.., seconds, _, memory, _, error] = cells(numbers, found, i);
+                table.row(&[&wanted, &study.name(i)], &[seconds, memory, error]);
+            }
+            None => table.row(
+                &[&wanted, "none of these settings"],
+                &NOTHING.map(String::from),
+            ),
+        }
+    }
+    page.heading("Cheapest setting for an error");
+    page.table(&table);
 }
 
 fn numbers(page: &mut Page, study: &Study, found: &Assessment) {

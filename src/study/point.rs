@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use std::time::Instant;
 
 use kluft_io::{ClaimedFolder, write_atomically};
@@ -15,10 +15,11 @@ use super::files::{RECORD, RESULTS, SCENE, remove_setting, unwritable};
 use crate::gmsh::GmshArgs;
 use kluft_io::gmsh::NOT_MESHED;
 use kluft_io::{Fingerprint, fingerprint, fingerprint_of};
+use kluft_program::invocation::OwnProgram;
 use kluft_run::Measure;
 
 /// Lines of a failed run's messages that are kept.
-const LINES: usize = 6;
+const LINES: usize = 10;
 
 /// A setting that has been run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,7 +92,7 @@ pub(super) struct Runner {
     /// The folder `points` in it.
     pub(super) folder: PathBuf,
     /// This program.
-    pub(super) program: PathBuf,
+    pub(super) program: OwnProgram,
     /// Sum of its bytes: another build of a version takes another time.
     pub(super) build: Fingerprint,
     /// Number of threads of each run.
@@ -176,7 +177,9 @@ impl Runner {
     /// Runs the program on a scene; if this process dies, the run ends with it.
     fn start(&self, scene: &Path, out: &Path) -> Result<Output, Defect> {
         let run = || {
-            let mut child = Command::new(&self.program)
+            let mut child = self
+                .program
+                .command()
                 .args([
                     "run",
                     "--quiet",
@@ -198,7 +201,7 @@ impl Runner {
             child.wait_with_output()
         };
         run().map_err(|error| {
-            let place = self.program.display().to_string();
+            let place = self.program.file.display().to_string();
             let problem = format!("the program cannot be started: {error}");
             Defect::new(place, problem, "install it again")
         })
@@ -369,7 +372,12 @@ mod tests {
         let mut runner = Runner {
             study: folder.path().into(),
             folder: folder.path().into(),
-            program: "kluft".into(),
+            program: OwnProgram {
+                file: "kluft".into(),
+                before: Vec::new(),
+                code: "kluft".into(),
+                tools: None,
+            },
             build: 7,
             threads: 1,
             gmsh: GmshArgs::default(),

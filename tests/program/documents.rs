@@ -1,8 +1,10 @@
-//! Examples in the documents: every block of TOML is one that the program takes.
+//! Examples in the documents: every block of TOML is one that the program takes, every geometry one
+//! that gmsh meshes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use kluft_io::{Dimension, GmshOptions, Meshing, mesh_geometry};
 use kluft_scene::Scene;
 
 use crate::harness::{kluft, root, scratch};
@@ -24,15 +26,15 @@ fn pages(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Blocks of TOML with the line they begin at.
-fn blocks(text: &str) -> Vec<(usize, String)> {
+/// Blocks of a language with the line they begin at.
+fn blocks(text: &str, language: &str) -> Vec<(usize, String)> {
     let mut found: Vec<(usize, String)> = Vec::new();
     let mut inside = false;
     for (number, line) in (1..).zip(text.lines()) {
         let fence = line.trim_start();
         if inside && fence.starts_with("```") {
             inside = false;
-        } else if fence.starts_with("```toml") {
+        } else if fence.strip_prefix("```") == Some(language) {
             inside = true;
             found.push((number, String::new()));
         } else if let Some((_, block)) = found.last_mut().filter(|_| inside) {
@@ -85,7 +87,7 @@ fn every_block_of_toml_is_taken() {
     let mut wrong = Vec::new();
     for page in pages {
         let text = fs::read_to_string(&page).expect("a page");
-        for (line, block) in blocks(&text) {
+        for (line, block) in blocks(&text, "toml") {
             count += 1;
             let of_network = ["[domain]", "[fracture_set", "[[fracture]]"];
             let found = match of_network.iter().any(|head| block.contains(head)) {
@@ -101,6 +103,46 @@ fn every_block_of_toml_is_taken() {
     }
     assert!(count > 20, "{count} blocks");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Whole geometries of a page: one begins with its factory, and what follows is added to it.
+fn geometries(text: &str) -> Vec<(usize, String)> {
+    let mut whole: Vec<(usize, String)> = Vec::new();
+    for (line, block) in blocks(text, "geo") {
+        match whole.last() {
+            Some((_, before)) if !block.contains("SetFactory") => {
+                let both = format!("{before}{block}");
+                whole.push((line, both));
+            }
+            _ => whole.push((line, block)),
+        }
+    }
+    whole
+}
+
+#[test]
+fn every_geometry_is_meshed() {
+    let folder = scratch();
+    let geometry = folder.path().join("block.geo");
+    let mut count = 0;
+    for page in pages(&root().join("docs")) {
+        let text = fs::read_to_string(&page).expect("a page");
+        for (line, block) in geometries(&text) {
+            count += 1;
+            fs::write(&geometry, block).expect("written");
+            let meshed = mesh_geometry(&Meshing {
+                geometry: &geometry,
+                parameters: &[],
+                order: 1,
+                dimension: Dimension::Volumes,
+                sizes: None,
+                output: &folder.path().join("block.msh"),
+                gmsh: &GmshOptions::default(),
+            });
+            assert!(meshed.is_ok(), "{}:{line}: {meshed:?}", page.display());
+        }
+    }
+    assert!(count > 3, "{count} geometries");
 }
 
 #[test]

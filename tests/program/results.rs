@@ -186,7 +186,7 @@ fn check_rock(found: &Value, said: &Value, expected: &Expected) {
     check_finite(
         found,
         &["displacement", "node"],
-        &["rock", "stress", "stress_error"],
+        &["principal_stress", "rock", "stress", "stress_error"],
     );
     if let Some(stress) = expected.stress {
         check_stress(&found["cell_data"]["stress"], stress);

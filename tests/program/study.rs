@@ -138,12 +138,14 @@ fn charts_and_page_stand_alone(folder: &Path) {
     }
     let page = fs::read_to_string(folder.join("study.html")).expect("the page");
     assert_is_xml(&page);
-    assert_eq!(page.matches("<svg ").count(), 2);
+    // Each for wide and for narrow pages.
+    assert_eq!(page.matches("<svg ").count(), 4);
     for reference in ["src=", "href=", "url(", "@import"] {
         assert!(!page.contains(reference), "{reference}");
     }
     for part in [
         "no_such_size",
+        "Cheapest setting for an error",
         "prefers-color-scheme",
         "Sneddon (1946)",
         "gmsh 4.",

@@ -14,7 +14,7 @@ use super::axis::Spanned;
 use super::chart::{Chart, Rate, Series};
 use super::names::apart;
 use super::notes::{Bounds, along, beside};
-use super::style::{COLOURS, INK, UNIT, marker};
+use super::style::{COLOURS, INK, UNIT, marker, style_sheet};
 
 /// How large a chart is, and where its names stand.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +80,9 @@ fn svg(chart: &Chart, layout: Layout) -> String {
     let drawn = draw(chart, layout, &backend.into_drawing_area());
     debug_assert!(drawn.is_ok(), "{drawn:?}");
     let units = format!("width=\"{}\" height=\"{}\"", width * UNIT, height * UNIT);
-    text.replacen(&units, &format!("width=\"{width}\" height=\"{height}\""), 1)
+    let text = text.replacen(&units, &format!("width=\"{width}\" height=\"{height}\""), 1);
+    let (opening, rest) = text.split_once('\n').unwrap_or_default();
+    format!("{opening}\n{}{rest}", style_sheet(rest))
 }
 
 impl Layout {

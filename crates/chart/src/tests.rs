@@ -197,3 +197,21 @@ fn a_narrow_chart_has_the_same_texts_and_fits_a_telephone() {
     let width: f64 = width.expect("a width").1.parse().expect("a number");
     assert!(width <= 390.0, "{width}");
 }
+
+#[test]
+fn every_colour_of_a_drawing_has_its_shades() {
+    let svg = sample().svg();
+    let (head, drawing) = svg.split_once("</style>").expect("a style sheet");
+    let (_, attributes) = parsed(&svg);
+    let paints = attributes
+        .iter()
+        .filter(|(name, _)| name == "fill" || name == "stroke");
+    let paints = paints.filter(|(_, value)| value.starts_with('#'));
+    let mut count = 0;
+    for (name, colour) in paints {
+        let rule = format!("[{name}='{colour}']{{{name}:#");
+        assert_eq!(head.matches(&rule).count(), 2, "{rule}: light and dark");
+        count += 1;
+    }
+    assert!(count > 10 && !drawing.contains("<style"));
+}

@@ -1,6 +1,7 @@
 //! What is wrong with an input, where, and how to mend it.
 
 use std::fmt;
+use std::ops::Range;
 
 /// One defect of an input: every reader and check in the workspace reports through this type.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -14,6 +15,37 @@ pub struct Defect {
     /// Names the kind of defect, where a front end can say the remedy better in its own language
     /// than a library can.
     pub code: Option<&'static str>,
+    /// The line of the file that it is in, if that helps.
+    pub excerpt: Option<Box<Excerpt>>,
+}
+
+/// A line of a text with a part of it that is meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excerpt {
+    /// Its number, from 1.
+    pub number: usize,
+    /// What stands before the part.
+    pub before: String,
+    /// The part, as far as it is on the line.
+    pub marked: String,
+    /// What stands behind it.
+    pub after: String,
+}
+
+impl Excerpt {
+    /// The first line of a range of bytes of a text; none if the range does not lie in it.
+    pub fn of(text: &str, at: &Range<usize>) -> Option<Self> {
+        let (head, rest) = (text.get(..at.start)?, text.get(at.start..)?);
+        let begin = head.rfind('\n').map_or(0, |end| end + 1);
+        let rest = rest.lines().next().unwrap_or_default();
+        let length = at.len().min(rest.len());
+        Some(Self {
+            number: head.matches('\n').count() + 1,
+            before: head[begin..].to_owned(),
+            marked: rest.get(..length)?.to_owned(),
+            after: rest[length..].to_owned(),
+        })
+    }
 }
 
 impl Defect {
@@ -28,6 +60,16 @@ impl Defect {
             problem: problem.into(),
             remedy: remedy.into(),
             code: None,
+            excerpt: None,
+        }
+    }
+
+    /// The same defect with a line of its file.
+    #[must_use]
+    pub fn with_excerpt(self, excerpt: Option<Excerpt>) -> Self {
+        Self {
+            excerpt: excerpt.map(Box::new),
+            ..self
         }
     }
 

@@ -63,7 +63,7 @@ pub use facets::{Boundary, Facets};
 pub use fracture_edges::{FacetEdge, FractureEdges, FracturesAtNodes};
 pub use geometry::{cell_volume, facet_area_vector, facet_centre};
 pub use join::{CommonSurface, Joined, Joining};
-pub use kluft_defect::{Defect, nearest, sample};
+pub use kluft_defect::{Defect, Excerpt, nearest, sample};
 pub use layers::Flat;
 pub use mesh::{Mesh, MeshData};
 pub use orientation::Orientation;

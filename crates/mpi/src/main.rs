@@ -24,7 +24,7 @@ fn main() -> ExitCode {
         command: Command::StartGmsh(args),
     }) = &parsed
     {
-        return kluft_program::start_gmsh::start(args);
+        return ExitCode::from(kluft_program::start_gmsh::start(args));
     }
     let world = match World::start() {
         Ok(world) => world,

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use kluft_mesh::Defect;
 use kluft_program::failure::Failure;
 use kluft_program::input::{expect_scene, scene_at};
+use kluft_program::invocation::OwnProgram;
 use kluft_program::report::{Report, Verbosity};
 use kluft_run::{Caller, Ending, MeshInput, Observer, Origin, Outcome, Ranks, Request, folder_for};
 use kluft_scene::{MeshSource, Scene};
@@ -58,7 +59,7 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         keep_results: false,
         report: !args.no_report,
         caller: Caller::default(),
-        gmsh: args.gmsh.into(),
+        gmsh: args.gmsh.options(OwnProgram::of_process().as_ref()),
         ranks: Some(ranks),
     };
     let mut report = Report::new(verbosity(args));

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use kluft_mesh::Defect;
+use kluft_mesh::{Defect, Excerpt};
 
 use crate::printing::one_line;
 
@@ -10,26 +10,55 @@ use crate::printing::one_line;
 pub const SHOWN: usize = 20;
 /// Kinds beyond these are left out.
 const KINDS: usize = 10;
+/// Most characters of a line that are shown before what is meant, and from there on.
+const BEFORE: usize = 40;
+const AFTER: usize = 28;
 
 /// The first defects with their remedies, and how many more there are of each kind.
 pub fn listed(defects: &[Defect]) -> String {
     let count = defects.len();
     let noun = if count == 1 { "defect" } else { "defects" };
     let mut out = format!("{count} {noun} in the input\n");
-    for Defect {
-        place,
-        problem,
-        remedy,
-        ..
-    } in defects.iter().take(SHOWN)
-    {
-        let [place, problem, remedy] = [place, problem, remedy].map(|text| one_line(text));
-        let _ = writeln!(out, "{place}: {problem}\n    remedy: {remedy}");
+    for defect in defects.iter().take(SHOWN) {
+        let parts = [&defect.place, &defect.problem, &defect.remedy];
+        let [place, problem, remedy] = parts.map(|text| one_line(text));
+        let _ = writeln!(out, "{place}: {problem}");
+        out.extend(defect.excerpt.as_deref().map(marked));
+        let _ = writeln!(out, "    remedy: {remedy}");
     }
     if count > SHOWN {
         out += &counted(&defects[SHOWN..]);
     }
     out
+}
+
+/// A line of a file, and below it what is meant.
+fn marked(excerpt: &Excerpt) -> String {
+    let number = excerpt.number.to_string();
+    let parts = [&excerpt.before, &excerpt.marked, &excerpt.after];
+    let [before, marked, after] = parts.map(|text| one_line(text));
+    let (before, left) = match before.chars().count() {
+        count if count > BEFORE => (last(&before, BEFORE), "…"),
+        _ => (before.to_string(), ""),
+    };
+    let room = BEFORE + AFTER - before.chars().count();
+    let line: String = [&before, &*marked, &*after].concat();
+    let right = if line.chars().count() > BEFORE + AFTER {
+        "…"
+    } else {
+        ""
+    };
+    let line: String = line.chars().take(BEFORE + AFTER).collect();
+    let carets = "^".repeat(marked.chars().count().clamp(1, room));
+    let indent = " ".repeat(left.chars().count() + before.chars().count());
+    let gutter = " ".repeat(number.len());
+    format!("    {number} | {left}{line}{right}\n    {gutter} | {indent}{carets}\n")
+}
+
+/// The last characters of a text.
+fn last(text: &str, count: usize) -> String {
+    let all = text.chars().count();
+    text.chars().skip(all - count).collect()
 }
 
 fn counted(defects: &[Defect]) -> String {
@@ -82,6 +111,31 @@ mod tests {
             "    7 such as a.msh: node 0 belongs",
         ] {
             assert!(text.contains(part), "{part}:\n{text}");
+        }
+    }
+
+    #[test]
+    fn the_part_that_is_meant_is_marked() {
+        let text = "[rock.a]\nyoung = 1 # soft\n";
+        let shown = |text: &str, at| {
+            let excerpt = Excerpt::of(text, &at);
+            let defect = Defect::new("a.toml:2", "is unknown", "rename").with_excerpt(excerpt);
+            listed(&[defect])
+        };
+        assert_eq!(
+            shown(text, 9..14),
+            "1 defect in the input\na.toml:2: is unknown\n    2 | young = 1 # soft\n      | ^^^^^\n\
+             \x20   remedy: rename\n"
+        );
+        // A part of several lines, and the end of a text.
+        assert!(shown(text, 0..40).contains("    1 | [rock.a]\n      | ^^^^^^^^\n"));
+        assert!(shown(text, 26..26).contains("    3 | \n      | ^\n"));
+        let long = format!("{}KEY{}", "ä".repeat(300), " = 1".repeat(300));
+        let at = 600..603;
+        for line in shown(&long, at).lines().filter(|line| line.contains('|')) {
+            assert!(line.chars().count() <= 80, "{line}");
+            let caret = line.chars().position(|c| c == '^');
+            assert!(caret.is_none_or(|at| at == 8 + 1 + BEFORE), "{line}");
         }
     }
 

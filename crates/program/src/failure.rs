@@ -1,7 +1,6 @@
 //! Why a command did not end well, and the exit code that says so.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use kluft_io::NOT_WRITTEN;
 use kluft_io::gmsh::NOT_MESHED;
@@ -71,11 +70,6 @@ impl Failure {
     }
 
     /// The exit code of the program.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.code())
-    }
-
-    /// The exit code as a number.
     pub fn code(&self) -> u8 {
         match self {
             Self::NotConverged(_) | Self::NotReached(_) | Self::NotMeshed(_) | Self::Machine(_) => {

@@ -1,4 +1,4 @@
-//! How this program starts gmsh: by way of itself.
+//! How this program starts gmsh: by way of itself, or as it is where it does not find itself.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -6,6 +6,8 @@ use std::time::Duration;
 use clap::Args;
 use kluft_io::gmsh::Launcher;
 use kluft_io::{GmshOptions, MeshCache};
+
+use crate::invocation::OwnProgram;
 
 /// The hidden command that becomes gmsh.
 #[cfg(target_os = "linux")]
@@ -34,18 +36,18 @@ fn seconds(text: &str) -> Result<Duration, String> {
     time.ok_or_else(|| "a time greater than 0 is wanted, in seconds".to_owned())
 }
 
-impl From<GmshArgs> for GmshOptions {
-    fn from(args: GmshArgs) -> Self {
-        Self {
-            launcher: launcher(),
-            trust: args.trust,
-            time_limit: args.mesh_timeout,
-            cache: cache(args.remesh),
+impl GmshArgs {
+    /// What they ask for, of a program that calls itself so.
+    pub fn options(self, own: Option<&OwnProgram>) -> GmshOptions {
+        GmshOptions {
+            launcher: own.and_then(launcher),
+            tools: own.and_then(|own| own.tools.clone()),
+            trust: self.trust,
+            time_limit: self.mesh_timeout,
+            cache: cache(self.remesh),
         }
     }
-}
 
-impl GmshArgs {
     /// The same, to be handed on to another run of the program.
     pub fn arguments(self) -> Vec<String> {
         let trust = self.trust.then(|| "--trust".to_owned());
@@ -77,17 +79,17 @@ fn users_folder() -> Option<PathBuf> {
     absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")))
 }
 
-/// Where this program does not find itself, gmsh is started as it is.
 #[cfg(target_os = "linux")]
-fn launcher() -> Option<Launcher> {
+fn launcher(own: &OwnProgram) -> Option<Launcher> {
+    let arguments = own.before.iter().cloned();
     Some(Launcher {
-        program: std::env::current_exe().ok()?,
-        argument: START.into(),
+        program: own.file.clone(),
+        arguments: arguments.chain([START.into()]).collect(),
         confines: crate::start_gmsh::can_confine(),
     })
 }
 
 #[cfg(not(target_os = "linux"))]
-fn launcher() -> Option<Launcher> {
+fn launcher(_: &OwnProgram) -> Option<Launcher> {
     None
 }

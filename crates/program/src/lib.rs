@@ -5,6 +5,7 @@ pub mod defects;
 pub mod failure;
 pub mod gmsh;
 pub mod input;
+pub mod invocation;
 #[cfg(target_os = "linux")]
 pub mod limited;
 pub mod printing;

@@ -4,7 +4,7 @@
 //! process of its own therefore does the work, and this one says what has become of it.
 
 use std::os::unix::process::ExitStatusExt;
-use std::process::{Command, ExitCode, ExitStatus};
+use std::process::ExitStatus;
 
 use kluft_mesh::Defect;
 use nix::sys::prctl;
@@ -13,13 +13,14 @@ use nix::sys::signal::Signal;
 use nix::unistd::getppid;
 
 use crate::failure::Failure;
+use crate::invocation::Invocation;
 
 /// Names the process that the work is done for, to the worker and to those that it starts.
 const WORKS_FOR: &str = "KLUFT_WORKS_FOR";
 
-/// Lets a process of its own do the work of this one if its address space is limited; none if this
-/// one shall do it.
-pub fn delegate() -> Option<ExitCode> {
+/// Lets a process of its own do the work of this one if its address space is limited, and returns
+/// its exit code; none if this one shall do it.
+pub fn delegate(called: &Invocation) -> Option<u8> {
     let (limit, _) = getrlimit(Resource::RLIMIT_AS).ok()?;
     if let Some(master) = std::env::var_os(WORKS_FOR) {
         let parent = getppid().to_string();
@@ -31,22 +32,22 @@ pub fn delegate() -> Option<ExitCode> {
     if limit == RLIM_INFINITY {
         return None;
     }
-    let mut command = Command::new(std::env::current_exe().ok()?);
-    command.args(std::env::args_os().skip(1));
+    let mut command = called.own.as_ref()?.command();
+    command.args(called.words.iter().skip(1));
     command.env(WORKS_FOR, std::process::id().to_string());
     Some(of_status(command.status().ok()?))
 }
 
-fn of_status(status: ExitStatus) -> ExitCode {
+fn of_status(status: ExitStatus) -> u8 {
     match (status.code(), status.signal()) {
-        (Some(code), _) => ExitCode::from(u8::try_from(code).unwrap_or(1)),
+        (Some(code), _) => u8::try_from(code).unwrap_or(1),
         (None, Some(signal)) if signal == Signal::SIGABRT as i32 => {
             let failure = Failure::Machine(vec![refused()]);
             failure.print();
-            failure.exit_code()
+            failure.code()
         }
         // As a shell tells it.
-        (None, signal) => ExitCode::from(u8::try_from(128 + signal.unwrap_or(0)).unwrap_or(1)),
+        (None, signal) => u8::try_from(128 + signal.unwrap_or(0)).unwrap_or(1),
     }
 }
 

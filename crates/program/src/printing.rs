@@ -40,6 +40,14 @@ pub fn wrapped(line: &str, indent: usize) -> String {
     out
 }
 
+/// A number in at most nine characters.
+pub fn in_nine(value: f64) -> String {
+    match value.abs() {
+        size if size == 0.0 || (1e-3..1e4).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.3e}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use kluft_run::{FractureSummary, Measure, Observer, Stage, StepStart};
 use kluft_solver::Iteration;
 
-use crate::printing::{one_line, shortened, wrapped};
+use crate::printing::{in_nine, one_line, shortened, wrapped};
 
 /// How much a run tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +62,19 @@ pub struct Report {
     colours: bool,
     /// When the first load step began, and its number.
     began: Option<(Instant, usize)>,
+    /// The load step at hand.
+    step: Progress,
+}
+
+/// How far a load step is.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Progress {
+    /// Iterations so far.
+    iterations: usize,
+    /// Increments that were tried: a step is divided where one increment does not do.
+    increments: usize,
+    /// The share of the step that the last one leads to.
+    share: f64,
 }
 
 impl Report {
@@ -80,12 +93,20 @@ impl Report {
             spinner: None,
             colours: terminal && wants_colours(),
             began: None,
+            step: Progress::default(),
         }
     }
 
     /// Prints one line, of which nothing commands the terminal.
     pub fn line(&self, text: &str) {
         self.print(&one_line(text));
+    }
+
+    /// Prints a line that only who looks closely wants to see.
+    fn detail_line(&self, text: &str) {
+        if self.verbose {
+            self.line(text);
+        }
     }
 
     fn print(&self, text: &str) {
@@ -171,6 +192,21 @@ impl Report {
     }
 }
 
+impl Progress {
+    fn in_words(self) -> String {
+        let noun = if self.iterations == 1 {
+            "iteration"
+        } else {
+            "iterations"
+        };
+        let increments = match self.increments {
+            0 | 1 => String::new(),
+            count => format!(" of {count} increments"),
+        };
+        format!("  {} {noun}{increments}", self.iterations)
+    }
+}
+
 /// How long the steps that are left take, if they are like those that are done; nothing before one
 /// is done, and for less than some seconds.
 fn left(passed: Duration, done: usize, steps: usize) -> String {
@@ -205,8 +241,8 @@ fn table(fractures: &[(String, FractureSummary)]) -> Vec<String> {
             aperture.min,
             aperture.mean,
             aperture.max,
-            area(summary.open_area),
-            area(summary.area)
+            in_nine(summary.open_area),
+            in_nine(summary.area)
         ));
     }
     let more = fractures.len() - shown.len();
@@ -216,21 +252,16 @@ fn table(fractures: &[(String, FractureSummary)]) -> Vec<String> {
     lines
 }
 
-/// An area in at most nine characters.
-fn area(value: f64) -> String {
-    match value.abs() {
-        size if size == 0.0 || (1e-3..1e4).contains(&size) => format!("{value:.4}"),
-        _ => format!("{value:.3e}"),
-    }
-}
-
 impl Observer for Report {
     fn stage_begins(&mut self, stage: Stage) {
         self.work_begins(stage.name());
     }
 
-    fn stage_ends(&mut self, _stage: Stage, _took: Duration) {
+    fn stage_ends(&mut self, stage: Stage, _took: Duration) {
         self.work_ends();
+        if stage == Stage::Solve && !self.verbose {
+            self.line(&self.step.in_words());
+        }
     }
 
     fn note(&mut self, kind: &str, text: &str) {
@@ -253,18 +284,33 @@ impl Observer for Report {
         let (began, first) = *self.began.get_or_insert((Instant::now(), number));
         let left = left(began.elapsed(), number - first, count + 1 - number);
         self.line(&format!("step {number} of {count}, {what}{left}"));
-        self.line(
+        self.step = Progress::default();
+        self.detail_line(
             "  iteration  force balance      increment  closure error  smallest aperture [m]",
         );
     }
 
     fn iteration(&mut self, number: usize, iteration: &Iteration) -> ControlFlow<()> {
+        let is_next = self.step.share != iteration.share;
+        self.step = Progress {
+            iterations: number,
+            increments: self.step.increments + usize::from(is_next),
+            share: iteration.share,
+        };
+        if self.step.increments > 1 && is_next {
+            let share = 100.0 * iteration.share;
+            self.detail_line(&format!("  up to {share:.4} % of the step:"));
+        }
+        if let Some(spinner) = &self.spinner {
+            let residual = iteration.force_residual;
+            spinner.set_message(format!("iteration {number}, force balance {residual:.1e}"));
+        }
         let aperture = if iteration.smallest_aperture.is_finite() {
             format!("{:>21.4e}", iteration.smallest_aperture)
         } else {
             format!("{:>21}", "-")
         };
-        self.line(&format!(
+        self.detail_line(&format!(
             "  {number:>9}  {:>13.3e}  {:>13.3e}  {:>13.3e}  {aperture}",
             iteration.force_residual, iteration.increment, iteration.closure_error
         ));
@@ -303,6 +349,21 @@ mod tests {
             aperture_uncertainty: None,
             slip_uncertainty: None,
         }
+    }
+
+    #[test]
+    fn a_divided_step_says_so() {
+        let said = |iterations, increments| {
+            let share = 1.0;
+            Progress {
+                iterations,
+                increments,
+                share,
+            }
+            .in_words()
+        };
+        assert_eq!(said(1, 1), "  1 iteration");
+        assert_eq!(said(9, 3), "  9 iterations of 3 increments");
     }
 
     #[test]

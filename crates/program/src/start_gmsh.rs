@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::io;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::Command;
 
 use clap::Args;
 use kluft_io::gmsh::NOT_STARTED;
@@ -55,13 +55,13 @@ pub fn can_confine() -> bool {
     rules().is_ok()
 }
 
-/// Becomes gmsh; returns only if that fails.
-pub fn start(args: &StartArgs) -> ExitCode {
+/// Becomes gmsh; returns only if that fails, with an exit code.
+pub fn start(args: &StartArgs) -> u8 {
     let why = become_gmsh(args);
     let text = format!("{why}\n");
     // Whoever started it reads its error stream.
     let _ = io::Write::write_all(&mut io::stderr().lock(), text.as_bytes());
-    ExitCode::from(NOT_STARTED)
+    NOT_STARTED
 }
 
 fn become_gmsh(args: &StartArgs) -> String {

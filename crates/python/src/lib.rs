@@ -1,4 +1,4 @@
-//! The extension module `kluft._kluft`: scenes, meshes and runs for Python.
+//! The extension module `kluft._kluft`: scenes, meshes and runs for Python, and the program.
 //!
 //! The package around it (`python/kluft`) makes of this what users see; nothing here is meant for
 //! them. Defects become `kluft.InputError`, with every defect. Arrays are moved into numpy, never
@@ -11,6 +11,7 @@ mod errors;
 mod follow;
 mod mesh;
 mod prepared;
+mod program;
 mod results;
 mod scene;
 mod solve;
@@ -23,6 +24,8 @@ mod module {
     use super::mesh::Mesh;
     #[pymodule_export]
     use super::prepared::Prepared;
+    #[pymodule_export]
+    use super::program::main;
     #[pymodule_export]
     use super::results::Results;
     #[pymodule_export]

@@ -4,7 +4,7 @@ use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use kluft_io::Grid;
+use kluft_io::{GmshOptions, Grid};
 use kluft_run::{
     Advance, Interruption, MeshInput, PreparedRock, Request, StepResult, Summary,
     with_prepared_rock,
@@ -19,6 +19,7 @@ use crate::asked::threads;
 use crate::errors::input_error;
 use crate::follow::{Bell, Follower, Told, sides};
 use crate::mesh::Mesh;
+use crate::program::{Own, gmsh_options};
 use crate::results::Results;
 use crate::scene::Scene;
 
@@ -74,10 +75,10 @@ impl Prepared {
         py: Python<'_>,
         scene: Py<Scene>,
         mesh: Option<Py<Mesh>>,
-        count: Option<usize>,
+        asked: (Option<usize>, Own),
         callback: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let mut session = Session::begin(scene, mesh, count, callback.is_some());
+        let mut session = Session::begin(scene, mesh, asked, callback.is_some());
         session.follower.follow(py, callback.as_ref())?;
         match session.reply(py)? {
             Reply::Ready(ready) => {
@@ -197,7 +198,7 @@ impl Session {
     fn begin(
         scene: Py<Scene>,
         mesh: Option<Py<Mesh>>,
-        count: Option<usize>,
+        (count, own): (Option<usize>, Own),
         is_heard: bool,
     ) -> Self {
         let mesh = mesh.map_or(MeshInput::OfScene, |mesh| {
@@ -207,7 +208,8 @@ impl Session {
         let (told, follower) = sides(is_heard);
         let (commands, asked) = channel();
         let (answers, replies) = channel();
-        let thread = std::thread::spawn(move || work((scene, mesh, count), told, asked, answers));
+        let given = (scene, mesh, count, gmsh_options(own));
+        let thread = std::thread::spawn(move || work(given, told, asked, answers));
         Self {
             commands,
             replies,
@@ -226,7 +228,7 @@ impl Session {
 
 /// What the thread does: prepares the rock, then solves steps until nobody asks any more.
 fn work(
-    (scene, mesh, count): (kluft_scene::Scene, MeshInput, Option<usize>),
+    (scene, mesh, count, gmsh): (kluft_scene::Scene, MeshInput, Option<usize>, GmshOptions),
     mut told: Told,
     asked: Receiver<Advance>,
     answers: Sender<Reply>,
@@ -236,6 +238,7 @@ fn work(
     let prepared = prepared.and_then(|pool| {
         let request = Request {
             keep_results: false,
+            gmsh,
             ..Request::in_memory(&scene, mesh, &pool)
         };
         let serve = |rock: &mut PreparedRock<'_, '_, '_>| serve(rock, asked, (&answers, &bell));

@@ -10,6 +10,7 @@ use crate::asked::threads;
 use crate::errors::sound;
 use crate::follow::{Told, sides};
 use crate::mesh::Mesh;
+use crate::program::{Own, gmsh_options};
 use crate::results::Results;
 use crate::scene::Scene;
 
@@ -24,10 +25,10 @@ pub fn solve(
     py: Python<'_>,
     scene: Py<Scene>,
     mesh: Option<Py<Mesh>>,
-    asked: (Option<usize>, Option<PathBuf>, bool),
+    asked: (Option<usize>, Option<PathBuf>, bool, Own),
     callback: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Ended> {
-    let (count, folder, keeps) = asked;
+    let (count, folder, keeps, own) = asked;
     let mesh = mesh.map_or(MeshInput::OfScene, |mesh| {
         MeshInput::Draft(Box::new(mesh.get().draft.clone()))
     });
@@ -41,6 +42,7 @@ pub fn solve(
                 command: None,
                 commit: option_env!("KLUFT_COMMIT"),
             },
+            gmsh: gmsh_options(own),
             ..Request::in_memory(&scene.get().scene, mesh, &pool)
         };
         run(request, told)

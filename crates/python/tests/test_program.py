@@ -1,12 +1,16 @@
-"""Studies and networks: what the program makes, as tables."""
+"""The program that the package holds: its command, and what studies and networks make of it."""
 
+import os
 import pathlib
 import shutil
+import signal
+import subprocess
+import sys
 
 import pytest
 
 import kluft
-from kluft import program
+from kluft.__main__ import own
 
 pandas = pytest.importorskip("pandas")
 
@@ -14,13 +18,68 @@ GEOMETRIES = pathlib.Path(__file__).parents[3] / "geometries"
 
 
 @pytest.fixture(autouse=True)
-def needs_the_program_and_gmsh():
-    try:
-        program.find()
-    except FileNotFoundError as error:
-        pytest.skip(str(error))
+def needs_gmsh():
     if not shutil.which("gmsh"):
         pytest.skip("no gmsh")
+
+
+def command(*words, **options):
+    """The program as it calls itself."""
+    interpreter, script, *_ = own()
+    given = [interpreter, script, *map(str, words)]
+    return subprocess.run(given, capture_output=True, text=True, check=False, **options)
+
+
+def test_the_package_and_its_own_path_are_the_command():
+    said = command("--version")
+    assert said.returncode == 0 and said.stdout.startswith("kluft ")
+    module = [sys.executable, "-m", "kluft", "--version"]
+    assert subprocess.run(module, capture_output=True, text=True, check=True).stdout == said.stdout
+    wrong = command("run", "no-such-scene.toml")
+    assert wrong.returncode == 2 and "remedy: " in wrong.stderr
+    usage = command("run", "--no-such-option")
+    assert usage.returncode == 2 and "--no-such-option" in usage.stderr
+
+
+def test_the_command_runs_a_scene_and_says_how_it_was_called(tmp_path):
+    scene = GEOMETRIES / "inclined-joint" / "scene.toml"
+    done = command("run", scene, "--out", tmp_path, "--quiet")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    run = kluft.read(tmp_path)
+    assert run.summary["provenance"]["command"] == f"kluft run {scene} --out {tmp_path} --quiet"
+    # The closed form that the scene states: 7 kPa on a plane that dips 50 degrees.
+    assert run.fractures["joint"].aperture == pytest.approx(1.98791504e-6, rel=1e-5)
+
+
+PERSONALITY = """#!/bin/sh
+test "$1" != --version || exit 1
+read flags < /proc/self/personality
+echo "Error   : addresses $flags"
+exit 1
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="gmsh is started by way of the program on Linux")
+def test_runs_in_memory_start_gmsh_as_the_program_does(tmp_path, monkeypatch):
+    gmsh = tmp_path / "gmsh.sh"
+    gmsh.write_text(PERSONALITY)
+    gmsh.chmod(0o755)
+    monkeypatch.setenv("KLUFT_GMSH", str(gmsh))
+    monkeypatch.setenv("KLUFT_CACHE", "")
+    with pytest.raises(kluft.InputError) as caught:
+        kluft.Scene.read(GEOMETRIES / "inclined-joint" / "scene.toml").solve()
+    # personality(2): ADDR_NO_RANDOMIZE.
+    assert any("addresses 00040000" in defect.problem for defect in caught.value.defects)
+
+
+def test_ctrl_c_ends_the_command(tmp_path):
+    interpreter, script, *_ = own()
+    scene = GEOMETRIES / "network-20" / "scene.toml"
+    words = [interpreter, script, "run", str(scene), "--out", str(tmp_path), "-v"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as running:
+        assert running.stdout.readline().startswith("kluft")
+        os.kill(running.pid, signal.SIGINT)
+        assert running.wait(timeout=20) == -signal.SIGINT
 
 
 @pytest.fixture(scope="module")

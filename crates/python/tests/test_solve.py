@@ -28,6 +28,9 @@ def test_a_joint_closes_as_its_law_says(scene, mesh):
     assert joint.numbers["area"] == pytest.approx(1.0)
     # Uniaxial strain: sigma_zz is the pressure, sigma_xx = nu / (1 - nu) sigma_zz.
     stress = run.rock.cell_fields["stress"]
+    tensors = stress[:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
+    principal = run.rock.cell_fields["principal_stress"]
+    assert principal == pytest.approx(np.linalg.eigvalsh(tensors), abs=1e-6 * PRESSURE)
     np.testing.assert_allclose(stress[:, 2], -PRESSURE, rtol=1e-6)
     assert run.ending == "solved" and len(run.steps) == 1
 

@@ -101,11 +101,14 @@ impl Page {
         }
     }
 
-    /// A chart with what there is to say of it.
-    pub fn chart(&mut self, title: &str, svg: &str, remark: &str) {
-        let (svg, remark) = (inline(svg, title), escaped(remark));
+    /// A chart, for wide and for narrow pages, with what there is to say of it.
+    pub fn chart(&mut self, title: &str, [wide, narrow]: [&str; 2], remark: &str) {
+        let [wide, narrow] = [wide, narrow].map(|svg| inline(svg, title));
+        let remark = escaped(remark);
+        let charts =
+            format!("<div class=\"broad\">{wide}</div>\n<div class=\"slim\">{narrow}</div>");
         let caption = format!("<figcaption class=\"soft\">{remark}</figcaption>");
-        self.element("<figure>\n", &format!("{svg}\n{caption}\n"), "</figure>");
+        self.element("<figure>\n", &format!("{charts}\n{caption}\n"), "</figure>");
     }
 
     /// Pictures side by side as far as there is room.
@@ -214,14 +217,14 @@ mod tests {
         table.failed_row(&[BAD], BAD, 1);
         page.table(&table);
         page.charts([(BAD, "<svg width=\"1\"></svg>".to_owned())]);
-        page.chart(BAD, "<svg width=\"1\"></svg>", BAD);
+        page.chart(BAD, ["<svg width=\"1\"></svg>"; 2], BAD);
         page.folded(BAD, BAD);
         let html = page.into_html();
         assert!(
             !html.contains("<script") && !html.contains('\u{1b}'),
             "{html}"
         );
-        assert_eq!(html.matches("&lt;script&gt;").count(), 22);
+        assert_eq!(html.matches("&lt;script&gt;").count(), 23);
         for tag in [
             "title", "dl", "ul", "table", "div", "figure", "details", "pre", "body",
         ] {

@@ -21,6 +21,8 @@ const FINE: usize = 2;
 const EDGE: f64 = 0.04;
 /// Of fractures that are smaller than this share of the body, the body is not shown.
 const SMALL: f64 = 0.4;
+/// Half the width of a line (pixels).
+const HALF_WIDTH: f64 = 2.5;
 /// Length of an axis in the corner (pixels).
 const AXIS: f64 = 46.0;
 /// Corners of a box that an edge joins: those that differ in one bit.
@@ -43,6 +45,8 @@ const EDGES: [[usize; 2]; 12] = [
 pub struct Frame<'a> {
     surface: &'a Surface,
     raster: Raster,
+    /// Points of the triangles on it.
+    triangles: Vec<[u32; 3]>,
     view: View,
     /// Corners of the box on the picture (pixels), and how near they are.
     corners: [DVec3; 8],
@@ -57,11 +61,6 @@ impl<'a> Frame<'a> {
         let own = bounds(&points);
         let is_small = own[0].distance(own[1]) < SMALL * body[0].distance(body[1]);
         let shown = if is_small { own } else { body };
-        let what = if is_small { "fractures" } else { "body" };
-        let size = (shown[1] - shown[0])
-            .to_array()
-            .map(|length| format!("{length:.4}"));
-        let size = size.map(|text| text.trim_end_matches('0').trim_end_matches('.').to_owned());
         let view = View::of(&surface.points, &surface.triangles);
         let corner = |i: usize| {
             let of_axis = |axis: usize| shown[(i >> axis) & 1][axis];
@@ -74,15 +73,22 @@ impl<'a> Frame<'a> {
         let places: Vec<DVec3> = places
             .map(|point| fit.place(view.place(point.as_dvec3())) * FINE as f64)
             .collect();
-        for (number, triangle) in (0..).zip(&surface.triangles) {
-            raster.add(number, triangle.map(|corner| places[corner as usize]));
+        let of_points = |triangle: &[u32; 3]| triangle.map(|corner| places[corner as usize]);
+        let facets = surface.triangles.iter();
+        let facets = facets.map(|triangle| (*triangle, of_points(triangle)));
+        let lines = surface.lines.iter().flat_map(|line| ribbon(*line, &places));
+        let mut triangles = Vec::with_capacity(surface.triangles.len() + 2 * surface.lines.len());
+        for (number, (corners, places)) in (0..).zip(facets.chain(lines)) {
+            raster.add(number, places);
+            triangles.push(corners);
         }
         Self {
             surface,
             raster,
+            triangles,
             view,
             corners: corners.map(|corner| fit.place(corner)),
-            caption: format!("Box of the {what}: {} m", size.join(" × ")),
+            caption: caption(is_small, shown[1] - shown[0], surface.triangles.is_empty()),
         }
     }
 
@@ -105,7 +111,7 @@ impl<'a> Frame<'a> {
 
     /// Red, green, blue and opacity of all pixels.
     fn pixels(&self, share: impl Fn(usize) -> f32) -> Vec<u8> {
-        let shades = self.surface.triangles.iter();
+        let shades = self.triangles.iter();
         let shades: Vec<f32> = shades.map(|triangle| self.shade(*triangle)).collect();
         let mut pixels = Vec::with_capacity(4 * SIZE[0] * SIZE[1]);
         for pixel in 0..SIZE[0] * SIZE[1] {
@@ -116,7 +122,7 @@ impl<'a> Frame<'a> {
                 let Some((triangle, shares)) = seen else {
                     continue;
                 };
-                let corners = self.surface.triangles[triangle].map(|corner| corner as usize);
+                let corners = self.triangles[triangle].map(|corner| corner as usize);
                 let value: f32 = (0..3).map(|i| shares[i] * share(corners[i])).sum();
                 let colour = colours::colour(value).map(|part| part * shades[triangle]);
                 sum = std::array::from_fn(|i| sum[i] + colour[i]);
@@ -133,6 +139,9 @@ impl<'a> Frame<'a> {
     fn shade(&self, triangle: [u32; 3]) -> f32 {
         let [a, b, c] = triangle.map(|corner| self.surface.points[corner as usize].as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero();
+        if normal == DVec3::ZERO {
+            return 1.0;
+        }
         let View { towards, right, up } = self.view;
         let light = (towards + 0.5 * up - 0.4 * right).normalize();
         // Few steps keep the picture small.
@@ -175,6 +184,9 @@ impl<'a> Frame<'a> {
         for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
             let along = self.view.place(axis);
             let along = DVec3::new(along.x, -along.y, 0.0);
+            if along == DVec3::ZERO {
+                continue;
+            }
             let (end, text) = (foot + AXIS * along, foot + (AXIS + 15.0) * along);
             let _ = write!(
                 lines,
@@ -189,6 +201,31 @@ impl<'a> Frame<'a> {
         }
         lines
     }
+}
+
+/// What the box is, and how it is looked at.
+fn caption(is_small: bool, size: DVec3, is_plane: bool) -> String {
+    let what = if is_small { "fractures" } else { "body" };
+    let lengths = size.to_array();
+    let lengths = if is_plane { &lengths[..2] } else { &lengths };
+    let lengths = lengths.iter().map(|length| {
+        let text = format!("{length:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    });
+    let lengths: Vec<String> = lengths.collect();
+    let up = if is_plane { "y is up" } else { "z is up" };
+    format!("Box of the {what}: {} m; {up}", lengths.join(" × "))
+}
+
+/// A line between two points as two triangles: their points, and their places on the picture.
+fn ribbon([from, to]: [u32; 2], places: &[DVec3]) -> [([u32; 3], [DVec3; 3]); 2] {
+    let [a, b] = [from, to].map(|end| places[end as usize]);
+    let along = (b - a).normalize_or_zero();
+    let aside = HALF_WIDTH * FINE as f64 * DVec3::new(-along.y, along.x, 0.0);
+    [
+        ([from, to, to], [a - aside, b - aside, b + aside]),
+        ([from, to, from], [a - aside, b + aside, a + aside]),
+    ]
 }
 
 /// From right, up and near to pixels.

@@ -1,10 +1,10 @@
-//! What of a grid is drawn: triangles, and values on their corners.
+//! What of a grid is drawn: triangles, lines in the plane, and values on their corners.
 
 use glam::{DVec3, Vec3};
 use kluft_io::{Field, Grid, Values};
 use kluft_mesh::Shape;
 
-/// Facets as triangles, with fields on their points.
+/// Facets as triangles, those of the plane as lines, with fields on their points.
 #[derive(Debug, Clone, Default)]
 pub struct Surface {
     /// Middle of the points (m); in single precision they are far enough from each other only
@@ -14,6 +14,8 @@ pub struct Surface {
     pub(crate) points: Vec<Vec3>,
     /// Points of the triangles.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// Points of the lines.
+    pub(crate) lines: Vec<[u32; 2]>,
     fields: Vec<(&'static str, Vec<f32>)>,
 }
 
@@ -25,10 +27,13 @@ impl Surface {
         let points = grid.points.iter();
         let points = points.map(|&point| (DVec3::from(point) - origin).as_vec3());
         let mut triangles = Vec::with_capacity(grid.shapes.len());
+        let mut lines = Vec::new();
         for (facet, &shape) in grid.shapes.iter().enumerate() {
             let nodes = &grid.nodes[grid.offsets[facet] as usize..];
             let corners = corners(shape).iter();
             triangles.extend(corners.map(|corners| corners.map(|corner| nodes[corner])));
+            let ends = ends(shape).iter();
+            lines.extend(ends.map(|ends| ends.map(|end| nodes[end])));
         }
         let fields = grid.point_fields.iter();
         let fields = fields.filter(|field| names.contains(&field.name));
@@ -36,13 +41,14 @@ impl Surface {
             origin,
             points: points.collect(),
             triangles,
+            lines,
             fields: fields.map(|field| (field.name, numbers(field))).collect(),
         }
     }
 
     /// Whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
+        self.triangles.is_empty() && self.lines.is_empty()
     }
 
     /// The values of a field on the points; none if there is no such field.
@@ -102,6 +108,15 @@ fn corners(shape: Shape) -> &'static [[usize; 3]] {
             [3, 7, 8],
             [7, 0, 8],
         ],
+        _ => &[],
+    }
+}
+
+/// The lines that a facet of the plane is drawn as: those between its ends and its middle.
+fn ends(shape: Shape) -> &'static [[usize; 2]] {
+    match shape {
+        Shape::Line2 => &[[0, 1]],
+        Shape::Line3 => &[[0, 2], [2, 1]],
         _ => &[],
     }
 }

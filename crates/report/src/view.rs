@@ -31,8 +31,18 @@ impl View {
         }
     }
 
-    /// A view that shows as much as it can of triangles.
+    /// From above, as a map is looked at.
+    const ABOVE: Self = Self {
+        towards: DVec3::Z,
+        right: DVec3::X,
+        up: DVec3::Y,
+    };
+
+    /// A view that shows as much as it can of triangles; without any, the plane from above.
     pub fn of(points: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        if triangles.is_empty() {
+            return Self::ABOVE;
+        }
         let mut tensor = DMat3::ZERO;
         for triangle in triangles {
             let [a, b, c] = triangle.map(|corner| points[corner as usize].as_dvec3());

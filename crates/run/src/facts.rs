@@ -3,9 +3,10 @@
 use crate::summary::Summary;
 
 /// Units of the fields of grids; the others have none.
-const UNITS: [(&str, &str); 17] = [
+const UNITS: [(&str, &str); 18] = [
     ("displacement", "m"),
     ("stress", "Pa"),
+    ("principal_stress", "Pa"),
     ("stress_error", "Pa"),
     ("aperture", "m"),
     ("opening", "m"),

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use kluft_io::{Field, Grid, Values};
 use kluft_mesh::{Flat, Mesh};
-use kluft_solver::{FacetResult, Solution, System};
+use kluft_solver::{FacetResult, Solution, System, principal};
+use rayon::prelude::*;
 
 use crate::accuracy::Accuracy;
 
@@ -21,6 +22,7 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Acc
         let errors = accuracy.stress_errors.iter();
         real_field("stress_error", errors.map(|&error| [error]))
     });
+    let principals: Vec<[f64; 3]> = solution.stresses.par_iter().map(principal).collect();
     let mut grid = Grid {
         points: points
             .node
@@ -36,6 +38,7 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Acc
             .collect(),
         cell_fields: vec![
             real_field("stress", solution.stresses.iter().copied()),
+            real_field("principal_stress", principals.into_iter()),
             integer_field("rock", rocks),
         ],
     };

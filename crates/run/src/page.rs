@@ -142,7 +142,7 @@ impl Told<'_> {
         page.heading("Fractures after the last load step");
         page.pictures(&pictures);
         page.remark(&format!(
-            "{}; z is up. Tension is positive. results.vtm opens in ParaView.",
+            "{}. Tension is positive. results.vtm opens in ParaView.",
             frame.caption()
         ));
     }

@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use kluft_keys::Document;
-use kluft_mesh::Defect;
+use kluft_mesh::{Defect, Excerpt};
 use toml::Spanned;
 use toml::de::DeTable;
 
@@ -66,9 +66,9 @@ impl<'a> Source<'a> {
 
     /// Keeps a defect of a part of the text.
     pub fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
-        self.defects
-            .borrow_mut()
-            .push((at.start, Defect::new(self.place(at), problem, remedy)));
+        let excerpt = Excerpt::of(self.text, at);
+        let defect = Defect::new(self.place(at), problem, remedy).with_excerpt(excerpt);
+        self.defects.borrow_mut().push((at.start, defect));
     }
 
     /// Keeps a doubt about a part of the text.

@@ -28,8 +28,12 @@ pub(super) fn judge(gmsh: &Gmsh, input: &Path, ended: &Ended) -> Result<Vec<Stri
     }
     let log = Log::parse(&ended.output, &ended.errors);
     let mut defects = log.defects(&name);
-    if defects.is_empty() && !ended.status.success() {
-        defects.push(silent(name, ended));
+    if !ended.status.success() {
+        match missing_library(ended) {
+            Some(library) => defects = vec![without_library(gmsh, library)],
+            None if defects.is_empty() => defects.push(silent(name, ended)),
+            None => {}
+        }
     }
     if defects.is_empty() {
         Ok(log.warnings)
@@ -58,6 +62,28 @@ fn out_of_time(gmsh: &Gmsh, name: String) -> Defect {
     let problem = format!("gmsh was ended after {limit} s, which is all the time it was given");
     let remedy = "ask for larger cells, or give it more time with --mesh-timeout SECONDS";
     Defect::new(name, problem, remedy).with_code(NOT_MESHED)
+}
+
+/// The library that the loader of programs, or Python in its words, did not find.
+fn missing_library(ended: &Ended) -> Option<&str> {
+    let streams = [&ended.output, &ended.errors];
+    let mut lines = streams.iter().flat_map(|text| text.lines());
+    lines.find_map(|line| {
+        let (before, _) = line.split_once(": cannot open shared object file")?;
+        before
+            .rsplit([' ', ':'])
+            .next()
+            .filter(|name| name.contains(".so"))
+    })
+}
+
+fn without_library(gmsh: &Gmsh, library: &str) -> Defect {
+    let problem = format!("gmsh needs the library {library}, which is not installed");
+    let remedy = "the gmsh of pip needs libraries of the system: on Debian and Ubuntu `sudo \
+                  apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1`, on Fedora `sudo \
+                  dnf install mesa-libGLU libXcursor libXft libXinerama`; or install gmsh by the \
+                  package manager of the system, which brings them";
+    Defect::new(gmsh.program.display().to_string(), problem, remedy)
 }
 
 fn silent(name: String, ended: &Ended) -> Defect {

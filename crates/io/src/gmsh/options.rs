@@ -56,6 +56,8 @@ pub struct Meshed {
 pub struct GmshOptions {
     /// The program that becomes gmsh.
     pub launcher: Option<Launcher>,
+    /// Where gmsh, and what starts it, is sought before the search path.
+    pub tools: Option<PathBuf>,
     /// Whether a geometry may run programs, and read and write any file.
     pub trust: bool,
     /// After this time gmsh is ended.
@@ -66,8 +68,8 @@ pub struct GmshOptions {
 
 /// A program that prepares its own process and becomes gmsh.
 ///
-/// It is called as `PROGRAM ARGUMENT --parent PID [--confine [--folder DIR] [--read PATH]...] --
-/// GMSH ARGUMENTS...`. It ends when the process `PID` has ended. With `--confine` nothing is
+/// It is called as `PROGRAM ARGUMENTS... --parent PID [--confine [--folder DIR] [--read PATH]...]
+/// -- GMSH ARGUMENTS...`. It ends when the process `PID` has ended. With `--confine` nothing is
 /// executed but gmsh, nothing written but in DIR, and nothing of the user's read but DIR and what
 /// lies beneath each PATH. If it cannot become gmsh, it says why in the last line of its error
 /// stream and ends with the exit code [`NOT_STARTED`].
@@ -75,8 +77,8 @@ pub struct GmshOptions {
 pub struct Launcher {
     /// The program.
     pub program: PathBuf,
-    /// Its first argument.
-    pub argument: OsString,
+    /// Its first arguments.
+    pub arguments: Vec<OsString>,
     /// Whether it can confine gmsh on this machine.
     pub confines: bool,
 }

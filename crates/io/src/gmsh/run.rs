@@ -59,6 +59,12 @@ impl<'a> Gmsh<'a> {
         let home = scope.folder.as_deref().unwrap_or(Path::new("/dev/null"));
         let home = std::path::absolute(home)?;
         command.env("GMSH_HOME", &home);
+        // A script finds its interpreter among the tools. No path can hold some names of folders.
+        if self.options.tools.is_some()
+            && let Ok(path) = std::env::join_paths(self.folders())
+        {
+            command.env("PATH", path);
+        }
         // What it does on several threads depends on their number.
         command.env("OMP_NUM_THREADS", "1");
         if scope.folder.is_some() {
@@ -79,7 +85,7 @@ impl<'a> Gmsh<'a> {
             return Ok(Command::new(program));
         };
         let mut command = Command::new(&launcher.program);
-        command.arg(&launcher.argument);
+        command.args(&launcher.arguments);
         command.arg("--parent").arg(std::process::id().to_string());
         if self.options.confines() {
             command.arg("--confine");
@@ -94,6 +100,13 @@ impl<'a> Gmsh<'a> {
         Ok(command)
     }
 
+    /// Where programs are sought: in the folder of tools, then in those of the search path.
+    fn folders(&self) -> Vec<PathBuf> {
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let tools = self.options.tools.iter().cloned();
+        tools.chain(std::env::split_paths(&path)).collect()
+    }
+
     /// The file of the program.
     pub(super) fn find(&self) -> io::Result<PathBuf> {
         let named = Path::new(&self.program);
@@ -101,8 +114,7 @@ impl<'a> Gmsh<'a> {
         let found = if named.components().count() > 1 {
             there(named)
         } else {
-            let folders = std::env::var_os("PATH").unwrap_or_default();
-            std::env::split_paths(&folders).find_map(|folder| {
+            self.folders().into_iter().find_map(|folder| {
                 let file = folder.join(named);
                 there(&file).filter(|file| file.is_file())
             })

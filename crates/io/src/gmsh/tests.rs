@@ -166,6 +166,49 @@ fn player(scene: &Scene, text: &str) -> String {
 
 #[cfg(unix)]
 #[test]
+fn a_library_that_is_missing_is_named_with_its_package() {
+    // As Python's ctypes says it, and as the loader of glibc does.
+    let words = [
+        "OSError: libGLU.so.1: cannot open shared object file: No such file or directory",
+        "gmsh: error while loading shared libraries: libGLU.so.1: cannot open shared object file: \
+         No such file or directory",
+    ];
+    for said in words {
+        let scene = Scene::new("library", BOX);
+        let program = player(&scene, &format!("echo '{said}' >&2; exit 1"));
+        let defects = scene.mesh(&program, &[]).expect_err("it fails");
+        let text = defects[0].to_string();
+        for part in ["the library libGLU.so.1,", "apt-get install libglu1-mesa"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn tools_are_found_before_the_search_path_and_by_gmsh_itself() {
+    let scene = Scene::new("tools", BOX);
+    let said = scene.folder.join("said");
+    player(
+        &scene,
+        &format!("echo \"$PATH\" > '{}'; exit 1", said.display()),
+    );
+    let options = GmshOptions {
+        tools: Some(scene.folder.clone()),
+        ..GmshOptions::default()
+    };
+    scene
+        .mesh_as("gmsh.sh", &[], &options)
+        .expect_err("it fails");
+    let path = fs::read_to_string(said).expect("it was started");
+    assert!(
+        path.starts_with(&format!("{}:", scene.folder.display())),
+        "{path}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
 fn last_words_and_the_signal_are_told() {
     let scene = Scene::new("words", BOX);
     let program = player(&scene, "echo one; echo out of luck >&2; kill -SEGV $$");

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 _Callback = Callable[[dict[str, Any]], Any] | None
 _Block = tuple[str, int, NDArray[int64], NDArray[uint64], list[int]]
+_Own = tuple[str, str, str, str]
 _Cells = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
 
 class Scene:
@@ -51,7 +52,11 @@ class Results:
 
 class Prepared:
     def __init__(
-        self, scene: Scene, mesh: Mesh | None, count: int | None, callback: _Callback
+        self,
+        scene: Scene,
+        mesh: Mesh | None,
+        asked: tuple[int | None, _Own],
+        callback: _Callback,
     ) -> None: ...
     @property
     def acting(self) -> list[str]: ...
@@ -73,8 +78,9 @@ class Prepared:
 def solve(
     scene: Scene,
     mesh: Mesh | None,
-    asked: tuple[int | None, str | None, bool],
+    asked: tuple[int | None, str | None, bool, _Own],
     callback: _Callback,
 ) -> tuple[str, str, Results, Any]: ...
+def main(words: list[str], own: _Own) -> int: ...
 def tables_of(text: str) -> dict[str, Any] | None: ...
 def toml_of(json: str) -> str: ...

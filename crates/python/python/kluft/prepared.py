@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from . import _kluft
 from .grid import Array, Grid
+from .keys import Fracture
 from .run import FractureResult, Run, Step
 from .solving import MemorySource, Progress, end, follower, judge
 
-if TYPE_CHECKING:
-    from .keys import Fracture
-    from .scene import Scene
+
+class Source(Protocol):
+    """A scene, as far as its laws may change."""
+
+    def replace(self, **sections: Any) -> Source:
+        """The same with other values."""
+
+    def _parsed(self, needs_mesh: bool) -> _kluft.Scene:
+        """As it is solved."""
 
 
 class PreparedRun(Run):
@@ -24,7 +31,7 @@ class PreparedRun(Run):
     As a context manager it gives the memory of the rock back at the end; results stay.
     """
 
-    def __init__(self, scene: Scene, prepared: _kluft.Prepared) -> None:
+    def __init__(self, scene: Source, prepared: _kluft.Prepared) -> None:
         super().__init__(MemorySource(prepared.results))
         self._scene = scene
         self._prepared = prepared

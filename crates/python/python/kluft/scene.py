@@ -14,6 +14,7 @@ import numpy as np
 from . import _kluft
 from .keys import SceneSections, Section
 from .mesh import Mesh
+from .__main__ import own
 from .prepared import PreparedRun
 from .run import FolderSource, Run
 from .solving import MemorySource, Progress, end, follower, judge
@@ -106,7 +107,7 @@ class Scene(SceneSections):
             raise ValueError("keep=False needs a folder for the results: out=...")
         scene = self._parsed(needs_mesh=mesh is None)
         told = follower(progress)
-        asked = (threads, None if out is None else os.fspath(out), keep)
+        asked = (threads, None if out is None else os.fspath(out), keep, own())
         given = None if mesh is None else mesh._mesh
         ending, why, results, raised = _kluft.solve(scene, given, asked, told)
         end(told)
@@ -133,7 +134,7 @@ class Scene(SceneSections):
         scene = self._parsed(needs_mesh=mesh is None)
         told = follower(progress)
         given = None if mesh is None else mesh._mesh
-        prepared = _kluft.Prepared(scene, given, threads, told)
+        prepared = _kluft.Prepared(scene, given, (threads, own()), told)
         end(told)
         return PreparedRun(self, prepared)
 

@@ -53,7 +53,7 @@ fn a_wall_is_seen_where_it_is_in_the_colours_of_its_field() {
     let [r0, g0, b0] = colours::colour(0.5);
     assert!((r / g - r0 / g0).abs() < 0.05 && (b / g - b0 / g0).abs() < 0.05);
     assert_eq!(pixel(&frame, [2, 2])[3], 0, "nothing in the corner");
-    assert_eq!(frame.caption(), "Box of the body: 1 × 1 × 1 m");
+    assert_eq!(frame.caption(), "Box of the body: 1 × 1 × 1 m; z is up");
 }
 
 #[test]
@@ -75,7 +75,10 @@ fn a_picture_does_not_depend_on_the_number_of_facets() {
 fn a_small_fracture_fills_its_picture() {
     let surface = wall(2);
     let frame = Frame::of(&surface, [[-50.0; 3], [50.0; 3]]);
-    assert_eq!(frame.caption(), "Box of the fractures: 0 × 1 × 1 m");
+    assert_eq!(
+        frame.caption(),
+        "Box of the fractures: 0 × 1 × 1 m; z is up"
+    );
     assert_eq!(pixel(&frame, [SIZE[0] / 2, SIZE[1] / 2])[3], 255);
 }
 
@@ -104,4 +107,33 @@ fn nothing_has_a_picture_too() {
     assert!(nothing.is_empty());
     let frame = Frame::of(&nothing, [[0.0; 3], [1.0; 3]]);
     assert!(frame.picture("aperture", "Aperture", "m").is_none());
+}
+
+#[test]
+fn a_line_of_the_plane_is_seen_from_above_in_the_colours_of_its_field() {
+    let grid = Grid {
+        points: vec![[0.0, 0.25, 0.0], [1.0, 0.25, 0.0], [0.5, 0.25, 0.0]],
+        shapes: vec![Shape::Line3],
+        offsets: vec![0, 3],
+        nodes: vec![0, 1, 2],
+        point_fields: vec![Field {
+            name: "aperture",
+            components: 1,
+            values: Values::Real(vec![0.0, 1e-3, 0.5e-3]),
+        }],
+        cell_fields: Vec::new(),
+    };
+    let surface = Surface::of(&grid, &["aperture"]);
+    assert!(!surface.is_empty());
+    let frame = Frame::of(&surface, [[0.0; 3], [1.0, 0.5, 0.0]]);
+    assert_eq!(frame.caption(), "Box of the body: 1 × 0.5 m; y is up");
+    let [column, row] = SIZE.map(|size| size / 2);
+    let seen = pixel(&frame, [column, row]);
+    let middle = colours::colour(0.5).map(|part| part.round() as u8);
+    assert!((0..3).all(|i| seen[i].abs_diff(middle[i]) <= 3), "{seen:?}");
+    assert_eq!(seen[3], 255);
+    // To the right the field is larger, which is lighter; beside the line there is nothing.
+    let right = pixel(&frame, [column + 200, row]);
+    assert!(right[1] > seen[1]);
+    assert_eq!(pixel(&frame, [column, row + 6])[3], 0);
 }

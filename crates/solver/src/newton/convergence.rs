@@ -128,6 +128,7 @@ pub(super) fn measure(
             .as_ref()
             .map_or(0.0, |flow| flow.at.balance.mass_error),
         linear_iterations: 0,
+        share: step.share,
     })
 }
 

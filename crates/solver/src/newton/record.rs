@@ -24,6 +24,8 @@ pub struct Iteration {
     pub smallest_aperture: f64,
     /// Iterations of the linear solver; 0 if it is direct.
     pub linear_iterations: usize,
+    /// The share of the load step that its increment leads to: less than 1 in parts of a step.
+    pub share: f64,
 }
 
 /// How a load step ended.

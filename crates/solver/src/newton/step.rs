@@ -14,6 +14,8 @@ type Observe<'a> = dyn FnMut(usize, &Iteration) -> ControlFlow<()> + 'a;
 pub(super) struct Step<'a> {
     pub(super) system: &'a System<'a>,
     pub(super) record: StepRecord,
+    /// The share of the load step that the increment at hand leads to.
+    pub(super) share: f64,
     observe: &'a mut Observe<'a>,
     is_stopped: bool,
 }
@@ -23,6 +25,7 @@ impl<'a> Step<'a> {
         Self {
             system,
             record: StepRecord::new(load.clone()),
+            share: 1.0,
             observe,
             is_stopped: false,
         }

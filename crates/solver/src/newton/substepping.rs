@@ -27,10 +27,17 @@ const GROWTH_SHARE: f64 = 0.25;
 
 /// A part of a load step.
 struct Substep {
-    middle: Load,
-    end: Load,
+    middle: End,
+    end: End,
     /// Whether it is not divided any more.
     is_smallest: bool,
+}
+
+/// Where an increment leads.
+struct End {
+    load: Load,
+    /// The share of the load step up to it.
+    share: f64,
 }
 
 /// What a substep came to.
@@ -87,8 +94,8 @@ impl Newton {
         while here.share < 1.0 {
             let end = f64::min(here.share + increment, 1.0);
             let substep = Substep {
-                middle: between(&start, load, 0.5 * (here.share + end)),
-                end: between(&start, load, end),
+                middle: End::between(&start, load, 0.5 * (here.share + end)),
+                end: End::between(&start, load, end),
                 is_smallest: increment <= SMALLEST_SUBSTEP,
             };
             let reached = |state: State| Reached { state, share: end };
@@ -175,10 +182,11 @@ impl Newton {
         &mut self,
         step: &mut Step<'_>,
         from: &State,
-        load: &Load,
+        to: &End,
     ) -> Result<State, StepOutcome> {
         let before = step.record.iterations.len();
-        let end = self.solve_increment(step, from, load)?;
+        step.share = to.share;
+        let end = self.solve_increment(step, from, &to.load)?;
         let iterations = step.record.iterations.len() - before;
         step.record.substeps.push(iterations);
         Ok(end)
@@ -193,12 +201,14 @@ fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool 
         || (*outcome == StepOutcome::RigidBodyMotion && !system.is_path_dependent())
 }
 
-/// The load at a share of a step.
-fn between(start: &Load, end: &Load, share: f64) -> Load {
-    if share == 1.0 {
-        end.clone()
-    } else {
-        Load::between(start, end, share)
+impl End {
+    /// A share of the way of a load step.
+    fn between(start: &Load, end: &Load, share: f64) -> Self {
+        let load = match share == 1.0 {
+            true => end.clone(),
+            false => Load::between(start, end, share),
+        };
+        Self { load, share }
     }
 }
 

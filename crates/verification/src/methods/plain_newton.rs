@@ -296,6 +296,7 @@ impl<'a> PlainNewton<'a> {
             closure_error: ratio(error, largest(&tractions)),
             smallest_aperture: apertures.fold(f64::INFINITY, f64::min),
             linear_iterations: 0,
+            share: 1.0,
         })
     }
 
