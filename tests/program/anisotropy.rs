@@ -20,7 +20,6 @@ fn compare(out: &Path, wanted: &[(&str, &str, f64, f64)]) {
         let row = own.next().expect(probe);
         let found: f64 = row[*column].parse().expect(column);
         let off = found / value - 1.0;
-        println!("{probe} {column}: {found:e}, {off:e}");
         assert!(off.abs() < *tolerance, "{probe} {column}: {found:e}, {off}");
     }
 }

@@ -425,7 +425,6 @@ fn a_joint_of_opengeosys_slides_and_opens_as_it_does_there() {
         (-last("normal_traction_mean"), across),
         (last("shear_traction_mean"), c + phi * across),
     ] {
-        println!("{found} {wanted}");
         assert!((found / wanted - 1.0).abs() < 2e-4, "{found} {wanted}");
     }
 }

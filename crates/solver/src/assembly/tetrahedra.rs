@@ -1,9 +1,10 @@
 //! Rows of the rock's stiffness at nodes in linear tetrahedra only.
 //!
-//! With `w = sqrt(V) grad N`, a tetrahedron adds `M_ab = w_a (x) w_b` between its nodes, from which
-//! the elasticity of its rock makes `K_ab`. Each task computes the `w` of the cells around its nodes
-//! once, where they stay in the cache, and then sums up row after row, cells ascending. Sums run
-//! between points; what sectors and holds make of them is linear, so it waits until the sums stand.
+//! With `w = sqrt(V) grad N`, a tetrahedron adds `M_ab = w_a (x) w_b` between its nodes, of which
+//! the elasticity of its rock makes `K_ab`. Each task computes the `w` of the cells around its
+//! nodes once, where they stay in the cache, and then sums up row after row, cells ascending. Sums
+//! run between points; what sectors and holds make of them is linear, so it waits until the sums
+//! stand.
 
 use std::cmp::Ordering;
 use std::ops::Range;

@@ -107,7 +107,8 @@ fn lines() -> Vec<Case> {
         ("order 2, plain", "order = 2\nquarter_points = false", 3.0),
         ("order 2, quarter points", "order = 2", 2.0),
     ] {
-        let mesh = format!("parameters = {{ h = 0.08, half = 60, h_far = 12 }}\n{more}");
+        let mesh =
+            format!("dimension = 2\nparameters = {{ h = 0.08, half = 60, h_far = 12 }}\n{more}");
         let outcome = scene::run("plates", &mesh);
         cases.push(pressurised(format!("line, {kind}"), &outcome, mean, safety));
     }
@@ -161,7 +162,7 @@ fn cases() -> Vec<Case> {
     cases.push(sliding(
         "inclined-crack",
         "line with friction",
-        "parameters = { h = 0.08 }\norder = 2",
+        "dimension = 2\nparameters = { h = 0.08 }\norder = 2",
         PI / 4.0 * 3.807_850e-3,
     ));
     cases.push(sliding(
