@@ -142,21 +142,3 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
         report.entry("page", &page.display().to_string());
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_where_a_shell_would_read_more_into_them() {
-        assert_eq!(quoted("--out=a/b-1.5"), "--out=a/b-1.5");
-        for (word, wanted) in [
-            ("", "''"),
-            ("a b", "'a b'"),
-            ("it's", r"'it'\''s'"),
-            ("$x", "'$x'"),
-        ] {
-            assert_eq!(quoted(word), wanted);
-        }
-    }
-}

@@ -300,6 +300,7 @@ fn connect(
     // A flow that takes time begins with the pressures that fractures have.
     let undriven = match needs_no_drive {
         true => Vec::new(),
+        false if flow.is_undrained => made.system().unbalanced(),
         false => made.system().undriven(),
     };
     if undriven.is_empty() {

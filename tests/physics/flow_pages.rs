@@ -83,3 +83,13 @@ fn a_filled_crack_has_the_pressure_of_its_volume() {
     let own = table(&finding, "filled-penny");
     hold(own, "pressure, quarter points", [0.05, 0.5]);
 }
+
+#[test]
+fn joints_lose_fluid_and_breathe_with_their_orders() {
+    for name in ["leak-off", "periodic-pressure"] {
+        let finding = page(name);
+        let steps = format!("{name}-time");
+        hold(table(&finding, &steps), "", [0.1, 0.8]);
+        hold(table(&finding, name), "", [2e-2, 1.7]);
+    }
+}

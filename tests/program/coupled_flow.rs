@@ -278,3 +278,134 @@ fn a_joint_that_closes_conducts_by_the_cube_of_its_aperture() {
     let run = kluft(&["inspect".as_ref(), scene.as_os_str()]);
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
 }
+
+/// `D = b^3 K_n / (12 mu)` is 8.3e-3 m2/s, facets are some 0.6 m long and the joint is 25 m.
+#[test]
+fn times_that_make_no_sense_are_warned_of_with_the_unit_they_look_like() {
+    let times = "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]";
+    let told = |edits: &[(&str, &str)]| {
+        let workshop = Workshop::new("filling-joint", edits);
+        let run = kluft(&["inspect".as_ref(), workshop.scene().as_os_str()]);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let text = fs::read_to_string(workshop.path("out").join("inspect.json"));
+        let out: Value = serde_json::from_str(&text.expect("a report")).expect("JSON");
+        let warnings = out["warnings"].as_array().expect("warnings").iter();
+        let texts = warnings.filter_map(Value::as_str);
+        let own = texts.filter(|text| text.contains("[\"fluid_times\"]"));
+        own.collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(told(&[]), "");
+    let said = told(&[(times, "times = [1e-3, 2e-3]")]);
+    assert!(
+        said.contains("nothing flows; times are in seconds, and look like hours"),
+        "{said}"
+    );
+    let said = told(&[
+        (times, "times = [10]"),
+        ("viscosity = 1e-3", "viscosity = 5"),
+    ]);
+    assert!(
+        said.contains("looks like mPa s: 5 mPa s = 0.005 Pa s"),
+        "{said}"
+    );
+    let said = told(&[(times, "times = [1e13, 2e13]")]);
+    assert!(
+        said.contains("steady at the end of each; steps in place of times"),
+        "{said}"
+    );
+    let silence = "[warnings]\nsilence = [\"fluid_times\"]\n\n[load]";
+    assert_eq!(
+        told(&[(times, "times = [1e-3, 2e-3]"), ("[load]", silence)]),
+        ""
+    );
+}
+
+/// A joint that water cannot leave keeps it: water that does not give way carries all of a load,
+/// and one that does `(1 + c p) (b_0 - (sigma - p)/K_n) = b_0`.
+#[test]
+fn an_undrained_joint_carries_its_load_by_its_water() {
+    let times = "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]";
+    let closed = [
+        (
+            "[boundary.inlet]\nfluid_pressure = 0.9e6\nhistory = [[0, 1], [100, 1]]",
+            "[boundary.top]\npressure = 4e5",
+        ),
+        (times, "steps = [0.5, 1]"),
+    ];
+    for (fluid, compressibility) in [
+        ("viscosity = 1e-3\nisolated = \"undrained\"", 0.0),
+        (
+            "viscosity = 1e-3\nisolated = \"undrained\"\ncompressibility = 4e-7",
+            4e-7,
+        ),
+    ] {
+        let edits = [closed[0], closed[1], ("viscosity = 1e-3", fluid)];
+        let said = summary(&Workshop::new("filling-joint", &edits).solve("out", &[]));
+        let half = 0.5 * (compressibility * (1e6 - 4e5) + 1.0);
+        let pressure: f64 = 4e5 / (half + f64::sqrt(half * half + compressibility * 4e5));
+        let found = &said["flow"]["fractures"][0]["pressure"];
+        is_close(number(&found["min"]), pressure, 1e-6);
+        is_close(number(&found["max"]), pressure, 1e-6);
+        let decided = said["decisions"].to_string();
+        assert!(
+            decided.contains("1 of 1 networks are undrained"),
+            "{decided}"
+        );
+    }
+    let refused = Workshop::new("filling-joint", &closed).run("out", &[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.err.contains("\"undrained\" lets those"),
+        "{}",
+        refused.err
+    );
+    let rigid = (
+        "viscosity = 1e-3",
+        "viscosity = 1e-3\nisolated = \"undrained\"",
+    );
+    let refused = Workshop::new("flow-star", &[rigid]).run("out", &[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.err.contains("the rock is rigid"), "{}", refused.err);
+}
+
+/// What leaks off from a joint is told, and is Carter's `4 A C sqrt(t)`; a steady flow has none.
+#[test]
+fn what_leaks_off_is_in_the_balance() {
+    let leaking = (
+        "normal_stiffness = 1e11",
+        "normal_stiffness = 1e11\nleakoff = 2e-8",
+    );
+    let coarse = ("first = 0.1", "first = 1.0");
+    let out = Workshop::new("filling-joint", &[leaking, coarse]).solve("out", &[]);
+    let text = fs::read_to_string(out.join("sources.csv")).expect("sources.csv");
+    let last = text
+        .lines()
+        .rfind(|line| line.contains("leak-off from joint"));
+    let lost = last.and_then(|line| line.split(',').next_back());
+    let lost: f64 = lost.and_then(|cell| cell.parse().ok()).expect("a number");
+    // The joint is 25 m long and 1 m wide.
+    is_close(lost, -4.0 * 25.0 * 2e-8 * 10.0, 1e-9);
+    let said = summary(&out);
+    for step in said["steps"].as_array().expect("steps") {
+        let flow = &step["flow"];
+        assert!(number(&flow["mass_error"]) <= 1e-10, "{step}");
+        let kept = number(&flow["inflow"]) - number(&flow["outflow"]);
+        let moved = number(&flow["inflow"]).max(number(&flow["outflow"]));
+        assert!(
+            (number(&flow["stored"]) - kept).abs() <= 1e-9 * moved,
+            "{step}"
+        );
+    }
+    let steady = (
+        "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]",
+        "steps = [1]",
+    );
+    let history = ("\nhistory = [[0, 1], [100, 1]]", "");
+    let refused = Workshop::new("filling-joint", &[leaking, steady, history]).run("out", &[]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.err.contains("the flow is steady"),
+        "{}",
+        refused.err
+    );
+}

@@ -18,6 +18,7 @@ mod import;
 mod init;
 mod inspect;
 mod kept_files;
+mod lines;
 mod load_paths;
 mod machine;
 mod manners;

@@ -25,6 +25,8 @@ pub enum Dimension {
     PerLength,
     /// Relative change with pressure, 1/Pa.
     PerStress,
+    /// A velocity times the root of a time, m/s^0.5.
+    Leakoff,
     /// Degrees.
     Angle,
     /// Bytes.
@@ -70,6 +72,7 @@ impl Dimension {
             Self::VolumeRate => "a rate of volume",
             Self::PerLength => "an area per volume",
             Self::PerStress => "a compressibility",
+            Self::Leakoff => "a leak-off coefficient",
             Self::Angle => "an angle",
             Self::Memory => "an amount of memory",
             Self::Time => "a time in a unit of your own",
@@ -91,6 +94,7 @@ impl Dimension {
             Self::VolumeRate => "m3/s",
             Self::PerLength => "1/m",
             Self::PerStress => "1/Pa",
+            Self::Leakoff => "m/s^0.5",
             Self::Angle => "degrees",
             Self::Memory => "bytes",
             Self::Time => "time",
@@ -114,7 +118,7 @@ impl Dimension {
             Self::PerStress => &["1/Pa", "1/MPa", "1/GPa"],
             Self::Angle => &["degrees", "deg", "rad"],
             Self::Memory => &["B", "kB", "MB", "GB", "TB", "MiB", "GiB"],
-            Self::Time | Self::OfKey => &[],
+            Self::Leakoff | Self::Time | Self::OfKey => &[],
         }
     }
 
@@ -131,7 +135,9 @@ impl Dimension {
             Self::VolumeRate => Some([3, 0, -1]),
             Self::PerLength => Some([-1, 0, 0]),
             Self::PerStress => Some([1, -1, 2]),
-            Self::One | Self::Angle | Self::Memory | Self::Time | Self::OfKey => None,
+            Self::One | Self::Leakoff | Self::Angle | Self::Memory | Self::Time | Self::OfKey => {
+                None
+            }
         }
     }
 }

@@ -169,6 +169,15 @@ impl TaggedElements {
     }
 }
 
+/// A named curve, by its places: nothing that is done to the elements of a mesh changes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Its name.
+    pub name: String,
+    /// Ends of its pieces (m), in no order.
+    pub pieces: Vec<[[f64; 3]; 2]>,
+}
+
 /// A mesh as read: nodes, cells, facets and all their tags. Nothing is checked
 /// except that node indices are valid. [`crate::Mesh::build`] turns it into a [`crate::Mesh`].
 #[derive(Debug, Clone, Default)]
@@ -191,9 +200,35 @@ pub struct Draft {
     pub lines: TaggedElements,
     /// Whether its cells are those of a mesh of the plane, see [`Draft::extruded`].
     pub is_extruded: bool,
+    /// The named curves.
+    pub curves: Vec<Curve>,
 }
 
 impl Draft {
+    /// Takes the places of its lines for its named curves.
+    pub fn name_curves(&mut self) {
+        let lines = &self.lines;
+        let is_curve = |group: &Group| group.dimension == 1;
+        let named = self.groups.iter().enumerate();
+        let named = named.filter(|(_, group)| is_curve(group));
+        let curve = |(index, group): (usize, &Group)| {
+            let own = |line: &usize| {
+                let set = lines.group_set[*line] as usize;
+                self.group_sets[set].contains(&index)
+            };
+            let ends = |line: usize| {
+                let nodes = lines.elements.nodes_of(line);
+                [nodes[0], nodes[1]].map(|node| self.nodes[node as usize])
+            };
+            Curve {
+                name: group.name.clone(),
+                pieces: (0..lines.elements.len()).filter(own).map(ends).collect(),
+            }
+        };
+        let curves: Vec<Curve> = named.map(curve).collect();
+        self.curves = curves;
+    }
+
     /// Number of the given elements of this draft in each group.
     pub fn group_sizes(&self, elements: &TaggedElements) -> Vec<usize> {
         let mut of_set = vec![0; self.group_sets.len()];

@@ -57,7 +57,7 @@ pub use check::{
 };
 pub use disjoint_sets::DisjointSets;
 pub use doubled::{DoubledSurface, Touch};
-pub use draft::{Draft, Elements, Group, TaggedElements};
+pub use draft::{Curve, Draft, Elements, Group, TaggedElements};
 pub use element_blocks::ElementBlock;
 pub use facets::{Boundary, Facets};
 pub use fracture_edges::{FacetEdge, FractureEdges, FracturesAtNodes};

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::adjacency::Adjacency;
 use crate::doubled::{DoubledFaces, doubled_faces, doubled_surfaces};
-use crate::draft::{Draft, Elements, Group};
+use crate::draft::{Curve, Draft, Elements, Group};
 use crate::facets::{self, Boundary, Facets};
 use crate::roles::{Faces, SurfaceRole};
 use crate::sectors::{self, Sectors};
@@ -70,6 +70,8 @@ pub struct MeshData {
     /// Whether cells at crack fronts are quarter-point elements, see
     /// [`Mesh::move_to_quarter_points`].
     pub has_quarter_points: bool,
+    /// The named curves.
+    pub curves: Vec<Curve>,
 }
 
 impl Deref for Mesh {
@@ -177,6 +179,7 @@ impl Mesh {
             block,
             block_count,
             has_quarter_points: false,
+            curves: draft.curves,
             source: draft.source,
             node_tags: draft.node_tags,
             cells: draft.cells.elements,
@@ -211,6 +214,10 @@ impl Mesh {
     pub fn scale(&mut self, factor: f64) {
         assert!(factor > 0.0 && factor.is_finite(), "a factor of {factor}");
         self.data.nodes.iter_mut().for_each(|x| *x *= factor);
+        let curves = self.data.curves.iter_mut();
+        for end in curves.flat_map(|curve| &mut curve.pieces).flatten() {
+            *end = end.map(|coordinate| factor * coordinate);
+        }
     }
 
     /// Moves the middles of edges, faces and cells; none of what is promised depends on them.

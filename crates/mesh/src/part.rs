@@ -80,6 +80,7 @@ impl Whole {
             facets: self.facets(is_there),
             lines: TaggedElements::new(),
             is_extruded: self.draft.is_extruded,
+            curves: self.draft.curves.clone(),
         };
         let sizes = draft.group_sizes(&draft.facets);
         let roles: Vec<SurfaceRole> = (self.roles.iter().zip(sizes))

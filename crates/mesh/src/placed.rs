@@ -55,5 +55,9 @@ impl Draft {
         for node in &mut self.nodes {
             *node = node.map(|coordinate| factor * coordinate);
         }
+        let pieces = self.curves.iter_mut().flat_map(|curve| &mut curve.pieces);
+        for end in pieces.flatten() {
+            *end = end.map(|coordinate| factor * coordinate);
+        }
     }
 }

@@ -62,6 +62,7 @@ impl Mesh {
             block_count: 0,
             original: None,
             has_quarter_points: false,
+            curves: draft.curves,
             source: draft.source,
             node_tags: draft.node_tags,
             cells: Elements::new(),

@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn a_shell_reads_the_words_back() {
-        let words = ["kluft", "run", "my scene's.toml", "", "--out=a/b"];
+        let words = ["kluft", "run", "my scene's.toml", "", "--out=a/b-1.5", "$x"];
         let invocation = Invocation {
             words: words.map(OsString::from).to_vec(),
             own: None,

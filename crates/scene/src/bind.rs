@@ -11,7 +11,8 @@ use crate::bind_probes::{Probe, bind_probes};
 use crate::cases::{Bound, schedule};
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
-use crate::isolated::leave_out;
+use crate::fluid_doubts;
+use crate::isolated::treat;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
 use crate::placed::name_places;
@@ -161,12 +162,15 @@ pub(crate) fn bind_with(
         mesh,
     };
     if let Some(flow) = &mut flow {
-        leave_out(scene, &problem, flow, &mut decisions)?;
+        treat(scene, &problem, flow, &mut decisions)?;
     }
     let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
     let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
+    let of_flow = flow.as_ref();
+    let of_flow = of_flow.and_then(|flow| fluid_doubts::warning(scene, &problem, flow));
+    let of_flow = Vec::from_iter(of_flow);
     Ok(Binding {
-        warnings: [warnings(scene, &problem), odd, idle].concat(),
+        warnings: [warnings(scene, &problem), odd, idle, of_flow].concat(),
         problem,
         flow,
         decisions,

@@ -6,7 +6,7 @@ use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Pr
 
 use crate::cases::Bound;
 use crate::history::Timetable;
-use crate::scene::Scene;
+use crate::scene::{Isolated, Scene};
 use crate::sources::Drilling;
 
 /// The flow of a scene, if it has a fluid; what the user should know of it goes to `decisions`.
@@ -23,6 +23,13 @@ pub(crate) fn bind_flow(
     let Some(fluid) = &scene.fluid else {
         return Ok(None);
     };
+    if scene.isolated == Isolated::Undrained && scene.is_rigid() {
+        return Err(vec![Defect::new(
+            &fluid.place,
+            "isolated = \"undrained\", but the rock is rigid: what networks hold tells no pressure",
+            "isolated = \"inactive\" leaves them out; a young_modulus lets their walls move",
+        )]);
+    }
     let conduits = bound.fractures.iter();
     let conduits: Vec<Conduit> = conduits
         .map(|entry| entry.value.conduit.unwrap_or(Conduit::Sealed))
@@ -36,7 +43,9 @@ pub(crate) fn bind_flow(
     }
     let mut conditions = on_boundaries(mesh, bound, cases);
     conditions.extend(in_fractures(mesh, bound, cases));
-    let mut defects = Vec::new();
+    conditions.extend(leaking(mesh, bound, cases));
+    let mut defects = leaks_in_no_time(scene, bound);
+    let mut lines = Vec::new();
     let fluid_weight = fluid.value.fluid.density * scene.body.gravity.z;
     for (index, entry) in bound.sources.iter().enumerate() {
         let drilling = Drilling {
@@ -46,7 +55,7 @@ pub(crate) fn bind_flow(
             weight: fluid_weight,
             case: cases.of_source(index),
         };
-        match drilling.conditions(entry, decisions) {
+        match drilling.conditions(entry, (&mut lines, &mut *decisions)) {
             Ok(own) => conditions.extend(own),
             Err(defect) => defects.push(defect),
         }
@@ -54,12 +63,15 @@ pub(crate) fn bind_flow(
     if !defects.is_empty() {
         return Err(defects);
     }
+    let is_timed = matches!(scene.timetable, Timetable::Times { .. });
     let flow = Flow {
+        is_undrained: scene.isolated == Isolated::Undrained && !is_timed,
         fluid: fluid.value.fluid,
         initial_pressure: fluid.value.initial_pressure,
         conduits,
         inactive: Vec::new(),
         conditions,
+        lines,
         gravity: scene.body.gravity,
         gravity_case: cases.gravity,
     };
@@ -97,6 +109,43 @@ fn in_fractures(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondit
         })
     });
     conditions.collect()
+}
+
+/// What leaks off from fractures.
+fn leaking(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> {
+    let entries = bound.fractures.iter().zip(&mesh.fractures).enumerate();
+    let conditions = entries.filter_map(|(index, (entry, name))| {
+        Some(FlowCondition {
+            name: format!("leak-off from {name}"),
+            place: FlowPlace::Fracture(index),
+            drive: FlowDrive::Leakoff(entry.value.leakoff?),
+            case: cases.of_fracture(index),
+        })
+    });
+    conditions.collect()
+}
+
+/// Refuses what would leak off in no time, or out of fractures that store nothing.
+fn leaks_in_no_time(scene: &Scene, bound: &Bound<'_>) -> Vec<Defect> {
+    let is_timed = matches!(scene.timetable, Timetable::Times { .. });
+    let fluid = scene.fluid.as_ref().map(|entry| entry.value.fluid);
+    let stores = fluid.is_some_and(|fluid| fluid.compressibility > 0.0);
+    let (problem, remedy) = match (is_timed, scene.is_rigid() && !stores) {
+        (false, _) => (
+            "fluid leaks off with the root of time, but the flow is steady",
+            "give times = [...] (s) under [load] in place of steps, or remove leakoff",
+        ),
+        (true, true) => (
+            "fluid leaks off, but the rock is rigid and the fluid does not give way: nothing is stored",
+            "add compressibility = 4.5e-10 (1/Pa) to [fluid], or remove leakoff",
+        ),
+        (true, false) => return Vec::new(),
+    };
+    let leaking = bound.fractures.iter();
+    let leaking = leaking.filter(|entry| entry.value.leakoff.is_some());
+    leaking
+        .map(|entry| Defect::new(&entry.place, problem, remedy))
+        .collect()
 }
 
 /// How much model the flow needs.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use kluft_solver::{
-    Conduit, Field, FlowDrive, Fracture, LawParameter, LoadField, SpringStiffness, Support,
-    SurfaceLoad,
+    Conduit, Field, FlowDrive, Fracture, LawParameter, Leakoff, LoadField, SpringStiffness,
+    Support, SurfaceLoad,
 };
 
 use crate::field::{self, FieldEntry, InTime, Value, read_value};
@@ -100,6 +100,8 @@ pub struct FractureEntry {
     pub varying_pressure: Option<Box<FieldEntry>>,
     /// How it conducts; none if nothing flows in the scene.
     pub conduit: Option<Conduit>,
+    /// What leaks off from it into the rock; none if nothing does.
+    pub leakoff: Option<Leakoff>,
     /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
     pub given_pressure: Option<f64>,
     /// How the fluid pressure changes with time.

@@ -1,7 +1,7 @@
 //! What a scene says of a fluid: what it is, how fractures conduct it, what drives it.
 
 use glam::DVec3;
-use kluft_solver::{Conduit, FlowDrive, Fluid, Profile};
+use kluft_solver::{Conduit, FlowDrive, Fluid, Leakoff, Profile};
 use lie_core::{HydraulicAperture, Roughness};
 
 use crate::history::LoadHistory;
@@ -31,6 +31,10 @@ pub enum SourcePlace {
     },
     /// All of a fracture of this name.
     Fracture(String),
+    /// Along a curve of the mesh of this name, within fractures.
+    Curve(String),
+    /// Along straight lines between points (m), within fractures.
+    Points(Vec<DVec3>),
 }
 
 /// What drives fluid inside the body.
@@ -45,11 +49,13 @@ pub struct SourceEntry {
 }
 
 /// Keys of a fracture that speak of the fluid.
-const OF_FRACTURES: [&str; 5] = [
+const OF_FRACTURES: [&str; 7] = [
     "hydraulic_aperture",
     "residual_hydraulic_aperture",
     "roughness",
     "joint_roughness",
+    "leakoff",
+    "exposed_at",
     "sealed",
 ];
 
@@ -102,20 +108,16 @@ pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<Flu
     })
 }
 
-/// Reads where a source is: by one of `at`, `from` and `fracture`.
+/// Reads where a source is: by one of `at`, `from`, `fracture`, `curve` and `points`.
 fn read_place(section: &Section<'_, '_>) -> Option<SourcePlace> {
-    let given: Vec<&str> = ["at", "from", "fracture"]
+    let given: Vec<&'static str> = ["at", "from", "fracture", "curve", "points"]
         .into_iter()
         .filter(|key| section.has(key))
         .collect();
     if let [first, second, ..] = given[..] {
         let problem = format!("both {first} and {second} are given");
-        let remedy = "keep one: a place, a borehole from and to, or a fracture";
-        section.refuse(
-            if second == "from" { "from" } else { "fracture" },
-            problem,
-            remedy,
-        );
+        let remedy = "keep one: a place, a borehole from and to, a fracture, a curve, or points";
+        section.refuse(second, problem, remedy);
     }
     if section.has("to") && !section.has("from") {
         let remedy = "add from: where the borehole begins";
@@ -125,6 +127,14 @@ fn read_place(section: &Section<'_, '_>) -> Option<SourcePlace> {
         return section
             .text("fracture")
             .map(|name| SourcePlace::Fracture(name.to_owned()));
+    }
+    if section.has("curve") {
+        return section
+            .text("curve")
+            .map(|name| SourcePlace::Curve(name.to_owned()));
+    }
+    if section.has("points") {
+        return read_points(section);
     }
     section.require("radius");
     let radius = section.number("radius");
@@ -147,6 +157,23 @@ fn read_place(section: &Section<'_, '_>) -> Option<SourcePlace> {
         to: to?.into(),
         radius: radius?,
     })
+}
+
+/// Reads the points of a line.
+fn read_points(section: &Section<'_, '_>) -> Option<SourcePlace> {
+    let points: Vec<DVec3> = section
+        .vectors("points")?
+        .into_iter()
+        .map(DVec3::from)
+        .collect();
+    let has_length = points.windows(2).all(|pair| pair[0] != pair[1]);
+    if points.len() < 2 || !has_length {
+        let problem = "the points make no line".into();
+        let remedy = "give two or more places that differ, e.g. [[0, 0, 0], [1, 0, 0]]";
+        section.refuse("points", problem, remedy);
+        return None;
+    }
+    Some(SourcePlace::Points(points))
 }
 
 /// Reads what drives fluid inside the body.
@@ -206,7 +233,7 @@ pub(crate) fn read_conduit(section: &Section<'_, '_>, setting: Setting) -> Optio
         return None;
     }
     if section.flag("sealed") == Some(true) {
-        refuse_beside(section, "sealed = true", &OF_FRACTURES[..4]);
+        refuse_beside(section, "sealed = true", &OF_FRACTURES[..6]);
         return Some(Conduit::Sealed);
     }
     if section.has("hydraulic_aperture") {
@@ -219,6 +246,22 @@ pub(crate) fn read_conduit(section: &Section<'_, '_>, setting: Setting) -> Optio
         roughness: read_roughness(section),
         residual: residual.unwrap_or(0.0),
     }))
+}
+
+/// Reads what leaks off from a fracture; none if nothing does.
+pub(crate) fn read_leakoff(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option<Leakoff> {
+    let coefficient = section.number("leakoff");
+    let exposed = section.number("exposed_at");
+    if section.has("exposed_at") && !section.has("leakoff") {
+        let problem = "exposed_at is given, but nothing leaks off".into();
+        section.refuse("exposed_at", problem, "add leakoff = 1e-5 (m/s^0.5)");
+    }
+    let is_open = matches!(conduit, Some(Conduit::Open(_)));
+    let leakoff = Leakoff {
+        coefficient: coefficient?,
+        exposed: exposed.unwrap_or(0.0),
+    };
+    (is_open && leakoff.coefficient > 0.0).then_some(leakoff)
 }
 
 fn read_roughness(section: &Section<'_, '_>) -> Roughness {

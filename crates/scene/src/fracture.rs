@@ -6,7 +6,7 @@ use lie_core::{Closure, ClosureKind, FractureLaw, Friction, HydraulicAperture, T
 
 use crate::conditions::FractureEntry;
 use crate::field::{FieldEntry, InTime, Value, read_value};
-use crate::fluid::read_conduit;
+use crate::fluid::{read_conduit, read_leakoff};
 use crate::load::{Scaled, read_history};
 use crate::reader::Section;
 use crate::roles::DEFAULT;
@@ -68,6 +68,7 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
         },
         fields: fields.0,
         varying_pressure,
+        leakoff: read_leakoff(section, conduit),
         conduit,
         given_pressure: fluid_pressure.filter(|_| is_open),
         history,

@@ -1,4 +1,5 @@
-//! Networks that nothing drives, left out of the flow where the scene says so.
+//! Networks that nothing drives, left out of the flow or keeping what they hold where the scene
+//! says so.
 
 use kluft_mesh::Defect;
 use kluft_solver::{Flow, FlowSystem, Problem};
@@ -6,17 +7,21 @@ use kluft_solver::{Flow, FlowSystem, Problem};
 use crate::remedies::in_terms_of_scene;
 use crate::scene::{Isolated, Scene};
 
-/// Leaves networks that no condition acts on out of a flow, and tells how many; those that are all
+/// Leaves networks that no condition acts on out of a flow, or tells of those that keep what they
+/// hold, as the scene wants it, and how many; those that are all
 /// there is stay, to be refused.
 ///
 /// # Errors
 /// As [`FlowSystem::of`].
-pub(crate) fn leave_out(
+pub(crate) fn treat(
     scene: &Scene,
     problem: &Problem,
     flow: &mut Flow,
     decisions: &mut Vec<String>,
 ) -> Result<(), Vec<Defect>> {
+    if flow.is_undrained {
+        return keep_undrained(problem, flow, decisions);
+    }
     if scene.isolated != Isolated::Inactive || flow.conditions.is_empty() {
         return Ok(());
     }
@@ -43,5 +48,26 @@ pub(crate) fn leave_out(
         100.0 * area / whole
     ));
     flow.inactive = isolated;
+    Ok(())
+}
+
+/// Tells how many networks keep what they hold; lets the flow be as any other if none does.
+fn keep_undrained(
+    problem: &Problem,
+    flow: &mut Flow,
+    decisions: &mut Vec<String>,
+) -> Result<(), Vec<Defect>> {
+    let apertures = problem.initial_apertures();
+    let system = FlowSystem::of(&problem.mesh, flow, &apertures).map_err(in_terms_of_scene)?;
+    let networks = system.networks();
+    let kept = networks.iter().filter(|network| !network.has_pressure);
+    let (kept, all) = (kept.count(), networks.len());
+    if kept > 0 {
+        decisions.push(format!(
+            "{kept} of {all} networks are undrained: no pressure is given to them, and they keep \
+             the fluid that they hold"
+        ));
+    }
+    flow.is_undrained = kept > 0;
     Ok(())
 }

@@ -377,6 +377,7 @@ fn read_flow(root: &Section<'_, '_>, body: &BodyEntry) -> FlowSection {
 fn read_flow_section(section: Section<'_, '_>, body: &BodyEntry) -> FlowSection {
     let isolated = match section.choice("isolated") {
         Some("inactive") => Isolated::Inactive,
+        Some("undrained") => Isolated::Undrained,
         _ => Isolated::Refused,
     };
     let equivalent_permeability = section.flag("equivalent_permeability").unwrap_or(false);

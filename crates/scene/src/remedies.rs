@@ -39,7 +39,8 @@ fn words(code: &str) -> Option<&'static str> {
         NO_PRESSURE => Some(
             "add fluid_pressure to a [boundary.NAME] that they meet or to one of them, a [[source]] \
              with pressure, or sealed = true to them; isolated = \"inactive\" under [fluid] leaves \
-             out networks that nothing drives",
+             out networks that nothing drives, and \"undrained\" lets those between walls that \
+             move keep the fluid that they hold",
         ),
         _ => None,
     }

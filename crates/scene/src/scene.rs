@@ -92,6 +92,8 @@ pub enum Isolated {
     Refused,
     /// They are left out of the flow.
     Inactive,
+    /// They keep the fluid that they hold, also those whose rates add up to zero.
+    Undrained,
 }
 
 /// A scene, all values in SI units.

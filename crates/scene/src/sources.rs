@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Mesh, nearest};
-use kluft_solver::{Conduit, FlowCondition, FlowDrive, FlowPlace, Profile};
+use kluft_solver::{Conduit, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
 use lie_core::{Conduction, HydraulicAperture};
 
 use crate::cases::Bound;
 use crate::fluid::{SourceEntry, SourcePlace};
+use crate::lines::LineShares;
 use crate::scene::Named;
 
 /// A borehole further from its node than this share of the edges there is told.
@@ -48,7 +49,7 @@ impl Drilling<'_> {
     pub(crate) fn conditions(
         &self,
         entry: &Named<SourceEntry>,
-        decisions: &mut Vec<String>,
+        (lines, decisions): (&mut Vec<Vec<LineShare>>, &mut Vec<String>),
     ) -> Result<Vec<FlowCondition>, Defect> {
         let condition = |place: FlowPlace| FlowCondition {
             name: entry.name.clone(),
@@ -64,6 +65,16 @@ impl Drilling<'_> {
             SourcePlace::Fracture(name) => {
                 let fracture = self.fracture(entry, name)?;
                 Ok(vec![condition(FlowPlace::Fracture(fracture))])
+            }
+            SourcePlace::Curve(name) => {
+                let pieces = self.curve(entry, name)?;
+                lines.push(self.line(entry, &pieces, decisions)?);
+                Ok(vec![condition(FlowPlace::Line(lines.len() - 1))])
+            }
+            SourcePlace::Points(points) => {
+                let pieces: Vec<_> = points.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+                lines.push(self.line(entry, &pieces, decisions)?);
+                Ok(vec![condition(FlowPlace::Line(lines.len() - 1))])
             }
             SourcePlace::Along { from, to, radius } => {
                 self.borehole(entry, ([*from, *to], *radius), decisions)
@@ -92,6 +103,67 @@ impl Drilling<'_> {
         let problem = format!("`{name}` is sealed: nothing can flow into it");
         let remedy = "remove sealed = true there, or the source";
         Err(Defect::new(&entry.place, problem, remedy))
+    }
+
+    /// The pieces of a curve of the mesh (m).
+    fn curve(&self, entry: &Named<SourceEntry>, name: &str) -> Result<Vec<[DVec3; 2]>, Defect> {
+        let curves = &self.mesh.curves;
+        let found = curves.iter().find(|curve| curve.name == name);
+        let found = found.filter(|curve| !curve.pieces.is_empty());
+        let Some(curve) = found else {
+            let names = || curves.iter().map(|curve| curve.name.as_str());
+            let remedy = match nearest(name, names()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None if curves.is_empty() => format!(
+                    "name it in the geometry: Physical Curve(\"{name}\") = {{...}}; or give its points"
+                ),
+                None => format!(
+                    "curves of the mesh: {}",
+                    names().collect::<Vec<_>>().join(", ")
+                ),
+            };
+            let problem = format!("`{name}` is no curve of the mesh");
+            return Err(Defect::new(&entry.place, problem, remedy));
+        };
+        let pieces = curve.pieces.iter();
+        Ok(pieces.map(|ends| ends.map(DVec3::from)).collect())
+    }
+
+    /// What corners of fractures share of a line.
+    fn line(
+        &self,
+        entry: &Named<SourceEntry>,
+        pieces: &[[DVec3; 2]],
+        decisions: &mut Vec<String>,
+    ) -> Result<Vec<LineShare>, Defect> {
+        let facets = &self.mesh.facets;
+        let all = 0..facets.elements.len();
+        let conducting: Vec<usize> = all.filter(|&f| self.conducts(facets.fracture[f])).collect();
+        let found = LineShares::of(self.mesh, &conducting, pieces);
+        if found.shares.is_empty() {
+            return Err(Defect::new(
+                &entry.place,
+                "the line runs in no fracture that conducts",
+                "let it lie within one; a borehole that crosses fractures has from, to and radius",
+            ));
+        }
+        if entry.value.drive.is_pressure() && !found.is_on_edges {
+            return Err(Defect::new(
+                &entry.place,
+                "a pressure is given along a line that runs across facets, where no node has it",
+                "let edges run along it: embed it in the surface of the geometry \
+                 (Curve{...} In Surface{...}) and name it as a curve; or give a rate",
+            ));
+        }
+        let [whole, within] = found.lengths;
+        if within < (1.0 - BESIDE) * whole {
+            let name = &entry.name;
+            decisions.push(format!(
+                "{name}: {within:.4e} m of its {whole:.4e} m lie in fractures that conduct; the \
+                 rest does nothing"
+            ));
+        }
+        Ok(found.shares)
     }
 
     /// A borehole through all fractures that it crosses: a pressure is hydrostatic along it, a rate
@@ -132,6 +204,7 @@ impl Drilling<'_> {
             },
             drive: match entry.value.drive {
                 FlowDrive::Rate(rate) => FlowDrive::Rate(rate * weight / whole),
+                leakoff @ FlowDrive::Leakoff(_) => leakoff,
                 FlowDrive::Pressure(given) => FlowDrive::Pressure(Profile {
                     per_metre: self.weight,
                     at: ends[0].z,

@@ -27,11 +27,13 @@ pub enum Doubt {
     UnresolvedPath,
     /// Time steps of a flow that are too long for the accuracy asked for, however they are divided.
     LongTimeSteps,
+    /// Times or a viscosity that make no sense beside the apertures and sizes of a scene.
+    FluidTimes,
 }
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Values,
         Self::BodySize,
         Self::WideApertures,
@@ -43,6 +45,7 @@ impl Doubt {
         Self::NotUnique,
         Self::UnresolvedPath,
         Self::LongTimeSteps,
+        Self::FluidTimes,
     ];
 
     /// Its name under `silence`.
@@ -59,6 +62,7 @@ impl Doubt {
             Self::NotUnique => "not_unique",
             Self::UnresolvedPath => "unresolved_path",
             Self::LongTimeSteps => "long_time_steps",
+            Self::FluidTimes => "fluid_times",
         }
     }
 }

@@ -47,7 +47,7 @@ pub fn shape_of_gmsh_element(number: i32) -> Option<Shape> {
 }
 
 /// Builds the draft, or lists everything that stands against it.
-pub(super) fn build(survey: FileSurvey) -> Result<Draft, Vec<Defect>> {
+pub(super) fn build(mut survey: FileSurvey) -> Result<Draft, Vec<Defect>> {
     let groups = Groups::new(survey.names.clone(), &survey.entities);
     let mut defects = nodes::defects(survey.source, &survey.nodes);
     defects.extend(too_large(&survey));
@@ -67,8 +67,12 @@ pub(super) fn build(survey: FileSurvey) -> Result<Draft, Vec<Defect>> {
     let nodes = nodes.and_then(|nodes| keep(&mut defects, nodes));
     keep(&mut defects, elements);
     draft.nodes = nodes.unwrap_or_default();
-    draft.node_tags = survey.nodes.tags;
+    draft.node_tags = std::mem::take(&mut survey.nodes.tags);
     if defects.is_empty() {
+        draft.name_curves();
+        if has_cells(&survey) {
+            draft.lines = TaggedElements::new();
+        }
         Ok(draft)
     } else {
         Err(defects)
@@ -110,7 +114,7 @@ fn make_room(survey: &FileSurvey, groups: &mut Groups, draft: &mut Draft) {
         let targets = Targets {
             cells: (&mut cells, &mut draft.cells.group_set),
             facets: (&mut facets, &mut draft.facets.group_set),
-            lines: (!has_cells(survey)).then_some((&mut lines, &mut draft.lines.group_set)),
+            lines: (&mut lines, &mut draft.lines.group_set),
         };
         if let Some(((blocks, sets), shape)) = target_of(block, targets) {
             let set = groups.set_of(block.entity, &survey.entities);
@@ -132,8 +136,7 @@ fn make_room(survey: &FileSurvey, groups: &mut Groups, draft: &mut Draft) {
 struct Targets<T> {
     cells: T,
     facets: T,
-    /// None where there are cells: their lines mean nothing.
-    lines: Option<T>,
+    lines: T,
 }
 
 fn has_cells(survey: &FileSurvey) -> bool {
@@ -146,7 +149,7 @@ fn target_of<T>(block: &Block, targets: Targets<T>) -> Option<(T, Shape)> {
     let target = match block.entity.0 {
         3 => Some(targets.cells),
         2 => Some(targets.facets),
-        1 => targets.lines,
+        1 => Some(targets.lines),
         _ => None,
     };
     target.map(|target| (target, shape))
@@ -170,7 +173,7 @@ fn readings<'a>(survey: &'a FileSurvey, draft: &'a mut Draft) -> Vec<Reading<'a>
         let targets = Targets {
             cells: &mut cells,
             facets: &mut facets,
-            lines: (!has_cells(survey)).then_some(&mut lines),
+            lines: &mut lines,
         };
         let Some((rest, shape)) = target_of(block, targets) else {
             continue;

@@ -62,10 +62,13 @@ pub static FLUID: KeySection = KeySection {
         },
         Key {
             name: "isolated",
-            kind: Kind::Choice("treatment of isolated networks", &["refuse", "inactive"]),
+            kind: Kind::Choice(
+                "treatment of isolated networks",
+                &["refuse", "inactive", "undrained"],
+            ),
             need: Need::Default("\"refuse\""),
             example: "\"inactive\"",
-            says: "Networks of fractures that no pressure and no rate acts on are refused, or left out of the flow",
+            says: "Networks of fractures that no pressure and no rate acts on are refused, or left out of the flow; or, undrained, in steady flow between walls that move, they keep the fluid that they hold, and so do those whose rates add up to zero",
         },
         Key {
             name: "equivalent_permeability",
@@ -88,7 +91,7 @@ static COMPRESSIBILITY: Plausible = Plausible {
 /// A borehole.
 pub static SOURCE: KeySection = KeySection {
     pattern: "[[source]]",
-    says: "A borehole through one or more fractures, or a fracture, by its rate or its pressure",
+    says: "A borehole, a line within fractures or all of a fracture, by its rate or its pressure",
     keys: &[
         Key {
             name: "name",
@@ -100,7 +103,7 @@ pub static SOURCE: KeySection = KeySection {
         Key {
             name: "at",
             kind: Kind::Vector(quantity(Dimension::Length, Range::Finite)),
-            need: Need::Unless("there is `from` or `fracture`"),
+            need: Need::Unless("there is `from`, `fracture`, `curve` or `points`"),
             example: "[0.0, 0.0, 0.0]",
             says: "Where it is; the nearest node of a fracture is taken, and the run names it if it lies elsewhere",
         },
@@ -126,6 +129,20 @@ pub static SOURCE: KeySection = KeySection {
             says: "The fracture all of which it feeds, a rate by area times transmissivity; no borehole, and without `radius`",
         },
         Key {
+            name: "curve",
+            kind: Kind::Text,
+            need: Need::Without("`at`"),
+            example: "\"slot\"",
+            says: "The physical curve of the mesh that it feeds where it lies within fractures, a rate by length times transmissivity; without `radius`",
+        },
+        Key {
+            name: "points",
+            kind: Kind::Points(quantity(Dimension::Length, Range::Finite)),
+            need: Need::Without("`at`"),
+            example: "[[0, 0, 0], [1, 0, 0], [1, 1, 0]]",
+            says: "Such a line by its points, straight between them; its rate needs no edges along it, its pressure does",
+        },
+        Key {
             name: "rate",
             kind: number(Dimension::VolumeRate, Range::Finite),
             need: Need::Or("pressure"),
@@ -142,7 +159,7 @@ pub static SOURCE: KeySection = KeySection {
         Key {
             name: "radius",
             kind: watched(Dimension::Length, Range::Positive, &WELL_RADIUS),
-            need: Need::Unless("there is `fracture`"),
+            need: Need::Unless("there is `fracture`, `curve` or `points`"),
             example: "0.1",
             says: "Its radius, small beside the facets around it; the pressure at its wall depends on it",
         },
@@ -260,4 +277,29 @@ pub(super) const SEALED: Key = Key {
     need: Need::Default("false"),
     example: "true",
     says: "Whether nothing flows in it; fractures that cross it stay connected",
+};
+
+static LEAKOFF_COEFFICIENT: Plausible = Plausible {
+    low: 1e-10,
+    high: 1e-2,
+    usual: (1e-8, 1e-3),
+    units: &[],
+};
+
+/// What the rock beside a fracture takes up.
+pub(super) const LEAKOFF: Key = Key {
+    name: "leakoff",
+    kind: watched(Dimension::Leakoff, Range::NotNegative, &LEAKOFF_COEFFICIENT),
+    need: Need::Default("0"),
+    example: "1e-5",
+    says: "Carter's coefficient C (m/s^0.5): through each wall fluid leaks off into the rock with the velocity C / sqrt(t - t_0); where the flow takes time",
+};
+
+/// Since when it does.
+pub(super) const EXPOSED_AT: Key = Key {
+    name: "exposed_at",
+    kind: number(Dimension::Time, Range::Finite),
+    need: Need::Default("0"),
+    example: "-3600",
+    says: "Time t_0 at which the walls first meet the fluid that leaks off, in seconds; beside `leakoff`",
 };

@@ -2,7 +2,8 @@
 
 use super::field::{varied, watched_varied};
 use super::fluid::{
-    HYDRAULIC_APERTURE, JOINT_ROUGHNESS, RESIDUAL_HYDRAULIC_APERTURE, ROUGHNESS, SEALED,
+    EXPOSED_AT, HYDRAULIC_APERTURE, JOINT_ROUGHNESS, LEAKOFF, RESIDUAL_HYDRAULIC_APERTURE,
+    ROUGHNESS, SEALED,
 };
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
@@ -149,6 +150,8 @@ pub static FRACTURE: KeySection = KeySection {
         ROUGHNESS,
         JOINT_ROUGHNESS,
         SEALED,
+        LEAKOFF,
+        EXPOSED_AT,
         Key {
             name: "history",
             kind: Kind::History,

@@ -3,7 +3,7 @@
 use crate::table::{Key, KeySection, Kind, Need};
 
 /// Names of what a run may warn of.
-pub const WARNINGS: [&str; 11] = [
+pub const WARNINGS: [&str; 12] = [
     "values",
     "body_size",
     "wide_apertures",
@@ -15,6 +15,7 @@ pub const WARNINGS: [&str; 11] = [
     "not_unique",
     "unresolved_path",
     "long_time_steps",
+    "fluid_times",
 ];
 
 /// What a run does not warn of.

@@ -135,7 +135,7 @@ class Warnings(Section):
     def __init__(
         self,
         *,
-        silence: Sequence[Literal["values", "body_size", "wide_apertures", "large_displacements", "idle_histories", "initial_stress", "unnamed_surfaces", "overlapping_walls", "not_unique", "unresolved_path", "long_time_steps"]] | None = None,
+        silence: Sequence[Literal["values", "body_size", "wide_apertures", "large_displacements", "idle_histories", "initial_stress", "unnamed_surfaces", "overlapping_walls", "not_unique", "unresolved_path", "long_time_steps", "fluid_times"]] | None = None,
     ) -> None:
         super().__init__(
             silence=silence,
@@ -363,21 +363,25 @@ class InitialStress(Section):
 
 
 class Source(Section):
-    """A borehole through one or more fractures, or a fracture, by its rate or its pressure.
+    """A borehole, a line within fractures or all of a fracture, by its rate or its pressure.
 
     Args:
         name: What messages and results call it. Without it: source number 1, 2, ....
         at: Where it is; the nearest node of a fracture is taken, and the run names it if it lies
-            elsewhere (m). Required, unless there is `from` or `fracture`.
+            elsewhere (m). Required, unless there is `from`, `fracture`, `curve` or `points`.
         from_: Where a borehole begins that is open to every fracture it crosses; its `pressure` is
             that here, and hydrostatic along it (m). Without it: `at`.
         to: Where it ends (m). Required, unless there is no `from`.
         fracture: The fracture all of which it feeds, a rate by area times transmissivity; no
             borehole, and without `radius`. Without it: `at`.
+        curve: The physical curve of the mesh that it feeds where it lies within fractures, a rate
+            by length times transmissivity; without `radius`. Without it: `at`.
+        points: Such a line by its points, straight between them; its rate needs no edges along it,
+            its pressure does (m). Without it: `at`.
         rate: What flows in; negative where it flows out (m3/s). This or `pressure` is required.
         pressure: Pressure of the fluid at its wall (Pa); -1e12 to 1e12. This or `rate` is required.
         radius: Its radius, small beside the facets around it; the pressure at its wall depends on
-            it (m); > 0. Required, unless there is `fracture`.
+            it (m); > 0. Required, unless there is `fracture`, `curve` or `points`.
         history: Factor on its rate or pressure at times. Without it: grows once.
     """
 
@@ -389,6 +393,8 @@ class Source(Section):
         from_: Sequence[Quantity] | None = None,
         to: Sequence[Quantity] | None = None,
         fracture: str | None = None,
+        curve: str | None = None,
+        points: Sequence[Sequence[float]] | None = None,
         rate: Quantity | None = None,
         pressure: Quantity | None = None,
         radius: Quantity | None = None,
@@ -400,6 +406,8 @@ class Source(Section):
             **{"from": from_},
             to=to,
             fracture=fracture,
+            curve=curve,
+            points=points,
             rate=rate,
             pressure=pressure,
             radius=radius,
@@ -442,7 +450,8 @@ class Fluid(Section):
         initial_pressure: Pressure before any load, in balance with `[initial_stress]`, which is
             total: constant, or linear in the elevation (Pa); -1e12 to 1e12. Without it 0.
         isolated: Networks of fractures that no pressure and no rate acts on are refused, or left
-            out of the flow. Without it "refuse".
+            out of the flow; or, undrained, in steady flow between walls that move, they keep the
+            fluid that they hold, and so do those whose rates add up to zero. Without it "refuse".
         equivalent_permeability: Whether the permeability tensor of the whole body is computed, by
             linear pressures on all of its outer surface; in rock that deforms, before the loads and
             after each load step. Without it false.
@@ -455,7 +464,7 @@ class Fluid(Section):
         density: Quantity | None = None,
         compressibility: Quantity | None = None,
         initial_pressure: Quantity | InitialPressure | Mapping[str, Any] | None = None,
-        isolated: Literal["refuse", "inactive"] | None = None,
+        isolated: Literal["refuse", "inactive", "undrained"] | None = None,
         equivalent_permeability: bool | None = None,
     ) -> None:
         super().__init__(
@@ -658,6 +667,11 @@ class Fracture(Section):
             b; 0 to 20. Without it: `roughness`.
         sealed: Whether nothing flows in it; fractures that cross it stay connected. Without it
             false.
+        leakoff: Carter's coefficient C (m/s^0.5): through each wall fluid leaks off into the rock
+            with the velocity C / sqrt(t - t_0); where the flow takes time (m/s^0.5); >= 0. Without
+            it 0.
+        exposed_at: Time t_0 at which the walls first meet the fluid that leaks off, in seconds;
+            beside `leakoff` (time). Without it 0.
         history: Factor on the fluid pressure at times. Without it: grows once.
     """
 
@@ -683,6 +697,8 @@ class Fracture(Section):
         roughness: Quantity | None = None,
         joint_roughness: Quantity | None = None,
         sealed: bool | None = None,
+        leakoff: float | None = None,
+        exposed_at: float | None = None,
         history: Sequence[Sequence[float]] | None = None,
     ) -> None:
         super().__init__(
@@ -705,6 +721,8 @@ class Fracture(Section):
             roughness=roughness,
             joint_roughness=joint_roughness,
             sealed=sealed,
+            leakoff=leakoff,
+            exposed_at=exposed_at,
             history=history,
         )
 

@@ -205,7 +205,7 @@ fn values_that_are_hardly_meant_are_doubted_with_their_place() {
             "0.2 mm",
         ],
         [
-            "scene.toml:69: `gravity` = 981 in [body]",
+            "scene.toml:71: `gravity` = 981 in [body]",
             "981 cm/s2 = 9.81 m/s2",
         ],
     ]) {

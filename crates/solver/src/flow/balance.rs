@@ -20,7 +20,8 @@ pub struct FlowBalance {
     pub outflow: f64,
     /// What fractures take up (m^3/s); negative where they give it off, zero in steady flow.
     pub stored: f64,
-    /// The largest of what enters, leaves, is taken up and given off (m^3/s).
+    /// The largest of what enters, leaves, is taken up and given off, and moves within networks
+    /// that keep what they hold (m^3/s).
     pub moved: f64,
     /// What nodes lose or gain that should not, as a share of what moves; 0 if nothing moves but
     /// rounding.
@@ -30,20 +31,20 @@ pub struct FlowBalance {
 }
 
 /// Rates below this share of the terms they are made of are their rounding.
-const ROUNDING: f64 = 1e-15;
+pub(super) const ROUNDING: f64 = 1e-15;
 
 impl FlowBalance {
     /// The balance of what enters through conditions and what is stored at nodes (m^3/s) with what
-    /// flows; `missing` is the sum of the sizes of the differences, `terms` that of the terms of
-    /// all rates.
+    /// flows; `within` moves between nodes of networks that keep what they hold, `missing` is the
+    /// sum of the sizes of the differences, `terms` that of the terms of all rates.
     pub(super) fn of(
         entering: impl Iterator<Item = f64>,
-        stored: &[f64],
+        (stored, within): (&[f64], f64),
         [missing, terms]: [f64; 2],
     ) -> Self {
         let (inflow, outflow) = sums(entering);
         let (taken_up, given_off) = sums(stored.iter().copied());
-        let moved = [outflow, taken_up, given_off]
+        let moved = [outflow, taken_up, given_off, within]
             .into_iter()
             .fold(inflow, f64::max);
         let share = |value: f64| match moved > ROUNDING * terms {

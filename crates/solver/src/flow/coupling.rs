@@ -27,6 +27,7 @@ use super::numbering::FlowNodes;
 use super::operator::FlowOperator;
 use super::steady::FlowSystem;
 use super::topology::Topology;
+use super::undrained::{self, Undrained};
 use super::wall_points::WallPoints;
 use crate::assembly::interface::Interface;
 use crate::problem::{Conduit, Flow, Load, Problem};
@@ -47,7 +48,9 @@ pub struct Coupling<'a> {
     /// How each facet point conducts; none where nothing flows.
     hydraulic: Vec<Option<HydraulicAperture>>,
     /// Whether the flow takes time.
-    is_transient: bool,
+    pub(super) is_transient: bool,
+    /// Networks that keep what they hold; none where the flow takes time.
+    pub(super) undrained: Vec<Undrained>,
     /// Area of the facets that belongs to each node (m^2).
     areas: Vec<f64>,
     /// What belongs to each node before any load (m^3).
@@ -97,6 +100,8 @@ pub(crate) struct FlowAtWalls {
     pub(super) spaces: Vec<f64>,
     /// `dT/db` at each facet point (m^2/(Pa s)).
     pub(super) slopes: Vec<f64>,
+    /// `1 / tau` of each network that keeps what it holds (1/s).
+    pub(super) keeping: Vec<f64>,
     /// The balance.
     pub(crate) balance: FlowBalance,
     /// Flow through each condition.
@@ -110,7 +115,7 @@ impl<'a> Coupling<'a> {
     /// # Errors
     /// As [`FlowSystem::of`]; fractures integrated at Gauss points, where jumps and pressures do
     /// not belong to one node; walls in contact that leave nothing open; in steady flow, networks
-    /// without a pressure.
+    /// without a pressure that do not keep what they hold.
     pub fn of(
         problem: &'a Problem,
         flow: &'a Flow,
@@ -128,9 +133,12 @@ impl<'a> Coupling<'a> {
         let is_transient = problem.schedule.is_timed;
         if !is_transient {
             let system = FlowSystem::with(topology.clone(), conductance);
-            let undriven = system.undriven();
-            if !undriven.is_empty() {
-                return Err(undriven);
+            let refused = match flow.is_undrained {
+                true => system.unbalanced(),
+                false => system.undriven(),
+            };
+            if !refused.is_empty() {
+                return Err(refused);
             }
         }
         let points = WallPoints::of(&topology, interface);
@@ -139,9 +147,15 @@ impl<'a> Coupling<'a> {
             _ => None,
         };
         let fractures = interface.points().iter().map(|point| point.fracture);
+        let areas = points.at_rows(&vec![1.0; apertures.len()]);
+        let undrained = match is_transient {
+            true => Vec::new(),
+            false => undrained::find(&topology, &areas),
+        };
         Ok(Self {
             hydraulic: fractures.enumerate().map(conduit).collect(),
-            areas: points.at_rows(&vec![1.0; apertures.len()]),
+            areas,
+            undrained,
             initial_volumes: points.at_rows(apertures),
             points,
             topology,
@@ -157,6 +171,11 @@ impl<'a> Coupling<'a> {
     /// Whether the flow takes time.
     pub fn is_transient(&self) -> bool {
         self.is_transient
+    }
+
+    /// Whether fluid is trapped between walls: it takes time to leave, or never does.
+    pub fn traps(&self) -> bool {
+        self.is_transient || !self.undrained.is_empty()
     }
 
     /// Number of pressures.
@@ -253,20 +272,6 @@ impl<'a> Coupling<'a> {
         rows.map(|(row, phi)| phi + loaded.weight(row)).collect()
     }
 
-    /// Potentials of the steady flow under a load through walls as far apart as they are; none if
-    /// the flow takes time, or cannot be solved.
-    pub(crate) fn steady(&self, fluid: &FluidState, load: &Load) -> Option<Vec<f64>> {
-        if self.is_transient {
-            return None;
-        }
-        let mut system = self.system(fluid);
-        system.factorise().ok()?;
-        let state = system.solve(load).ok()?;
-        let loaded = self.loaded(fluid, load);
-        let rows = state.pressures.iter().enumerate();
-        Some(rows.map(|(row, p)| p - loaded.weight(row)).collect())
-    }
-
     /// The increment from a state under one load to another.
     pub(crate) fn increment(&self, fluid: &FluidState, from: &Load, to: &Load) -> FlowIncrement {
         FlowIncrement {
@@ -321,6 +326,7 @@ impl<'a> Coupling<'a> {
         let conductance = Conductance::of(nodes, stencils, transmissivity);
         let operator = FlowOperator::of(&self.topology, conductance);
         let mut loaded = self.loaded(fluid, load);
+        loaded.duration = increment.duration;
         let potentials = &fluid.potentials;
         let compressibility = self.topology.flow.fluid.compressibility;
         let density = potentials.iter().enumerate().map(|(row, potential)| {
@@ -337,10 +343,13 @@ impl<'a> Coupling<'a> {
                 terms: volumes.iter().map(|volume| volume.abs()).sum::<f64>() / duration,
             });
         }
+        let keeping = self.keeping(&operator, (fluid, load), &increment.volumes);
+        loaded.kept = self.kept(&keeping, [&volumes, &increment.volumes]);
         let missing = loaded.missing(&operator, potentials);
         let state = loaded.state(&operator, potentials.clone());
         FlowAtWalls {
             slopes: (0..self.hydraulic.len()).map(slope).collect(),
+            keeping,
             balance: state.balance,
             conditions: state.conditions,
             operator,
@@ -384,7 +393,7 @@ impl<'a> Coupling<'a> {
     }
 
     /// The flow through walls as far apart as they are.
-    fn system(&self, fluid: &FluidState) -> FlowSystem<'a> {
+    pub(super) fn system(&self, fluid: &FluidState) -> FlowSystem<'a> {
         let (nodes, stencils) = (&self.topology.nodes, &self.topology.stencils);
         let viscosity = self.topology.flow.fluid.viscosity;
         let transmissivity = self.points.at_facets(|point| {

@@ -8,7 +8,8 @@
 //! dT_f = mean of (dT/db) o,   g_if = sum_j k_ij (phi_j - phi_i),   E = L + diag(c V_0) / dt
 //! ```
 //!
-//! How a rate is shared among nodes, and the ratio of the radii of a borehole, count as fixed.
+//! How a rate is shared among nodes, and the ratio of the radii of a borehole, count as fixed. In
+//! networks that keep what they hold (see `undrained`) `s_i / tau sum dV` is added, over all rows.
 
 use kluft_algebra::{LinearFailure, ScalarCholesky, ScalarMatrix};
 use rayon::prelude::*;
@@ -143,7 +144,29 @@ impl LinearisedFlow<'_, '_> {
             let driven: f64 = entries.map(|(column, value)| value * change[column]).sum();
             self.storing[row] * spaces[row] + followed + driven
         };
-        unknowns.map(answer).collect()
+        let mut answers: Vec<f64> = unknowns.map(answer).collect();
+        self.keep(&mut answers, &spaces, change);
+        answers
+    }
+
+    /// Adds the answer of networks that keep what they hold, for the openings integrated over what
+    /// belongs to each row (m^3) and changes of the unknowns (Pa).
+    fn keep(&self, answers: &mut [f64], spaces: &[f64], change: &[f64]) {
+        let topology = &self.coupling.topology;
+        let undrained = self.coupling.undrained.iter().zip(&self.flow.keeping);
+        for (network, rate) in undrained {
+            let kept = |row: usize| {
+                let pressed = self.compressed(row) * change[topology.number[row] as usize];
+                rate * (self.flow.density[row] * spaces[row] + pressed)
+            };
+            network.share(answers, kept, |row| topology.number[row] as usize);
+        }
+    }
+
+    /// `c V_0` of a row (m^3/Pa).
+    fn compressed(&self, row: usize) -> f64 {
+        let fluid = &self.coupling.topology.flow.fluid;
+        fluid.compressibility * self.flow.spaces[row]
     }
 
     /// A factor of the Schur complement of the unknowns, where the openings of the facet points
@@ -158,13 +181,23 @@ impl LinearisedFlow<'_, '_> {
     ) -> Result<(), LinearFailure> {
         let topology = &self.coupling.topology;
         let spaces = self.coupling.points.at_rows(compliance);
-        let extra = |row: usize| self.storing[row] * spaces[row].max(0.0);
+        let mut extra: Vec<f64> = spaces.iter().map(|space| space.max(0.0)).collect();
+        for (row, extra) in extra.iter_mut().enumerate() {
+            *extra *= self.storing[row];
+        }
+        // Each node keeps its part by itself, which is the same for a pressure that is even.
+        for (network, rate) in self.coupling.undrained.iter().zip(&self.flow.keeping) {
+            for &row in network.rows() {
+                let opened = self.flow.density[row] * spaces[row].max(0.0);
+                extra[row] = rate * (opened + self.compressed(row));
+            }
+        }
         let mut matrix = self.matrix.clone();
         for (unknown, &row) in topology.free.iter().enumerate() {
             let range = matrix.pattern.offset[unknown]..matrix.pattern.offset[unknown + 1];
             let columns = &matrix.pattern.entries[range.clone()];
             let own = columns.partition_point(|&column| (column as usize) < unknown);
-            matrix.values[range.start + own] += extra(row as usize);
+            matrix.values[range.start + own] += extra[row as usize];
         }
         if matrix.values.iter().any(|value| !value.is_finite()) {
             return Err(LinearFailure::NotFinite);

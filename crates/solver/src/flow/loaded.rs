@@ -28,8 +28,12 @@ pub(super) struct Loaded<'s, 'a> {
     load: &'s Load,
     /// What potentials are counted from in each network (Pa).
     pub(super) references: Vec<f64>,
+    /// How long the increment takes that ends here (s); none in steady flow.
+    pub(super) duration: Option<f64>,
     /// What is stored at each row (m^3/s), if the flow takes time.
     pub(super) stored: Option<Stored>,
+    /// What networks that keep what they hold drive out, if there are any.
+    pub(super) kept: Option<Kept>,
 }
 
 /// What is stored at rows.
@@ -40,6 +44,16 @@ pub(super) struct Stored {
     pub(super) terms: f64,
 }
 
+/// What networks that keep what they hold drive out where they hold too much.
+pub(super) struct Kept {
+    /// At rows (m^3/s).
+    pub(super) rates: Vec<f64>,
+    /// What moves between the nodes of such networks (m^3/s).
+    pub(super) moved: f64,
+    /// Sum of the sizes of the terms (m^3/s).
+    pub(super) terms: f64,
+}
+
 impl<'s, 'a> Loaded<'s, 'a> {
     /// A steady flow; potentials are counted from zero.
     pub(super) fn of(topology: &'s Topology<'a>, load: &'s Load) -> Self {
@@ -47,7 +61,9 @@ impl<'s, 'a> Loaded<'s, 'a> {
             references: vec![0.0; topology.networks.len()],
             topology,
             load,
+            duration: None,
             stored: None,
+            kept: None,
         }
     }
 
@@ -156,11 +172,20 @@ impl<'s, 'a> Loaded<'s, 'a> {
         for (missing, stored) in missing.iter_mut().zip(self.stored_rates()) {
             *missing -= stored;
         }
+        let kept = self.kept.iter().flat_map(|kept| &kept.rates);
+        for (missing, kept) in missing.iter_mut().zip(kept) {
+            *missing -= kept;
+        }
         for entry in &operator.conditions {
             let condition = self.condition(entry);
-            let rate = nodal::rate(condition, self.load);
+            let rate = nodal::rate(condition, self.load, self.duration);
             match &entry.nodal {
                 Nodal::Given(_) => {}
+                Nodal::PerArea(areas) => {
+                    for &(row, area) in areas {
+                        missing[row] += area * rate;
+                    }
+                }
                 Nodal::Shared(shares) => {
                     for &(row, share) in shares {
                         missing[row] += share * rate;
@@ -194,8 +219,14 @@ impl<'s, 'a> Loaded<'s, 'a> {
         let conditions: Vec<ConditionFlow> = operator.conditions.iter().map(of).collect();
         let mut terms: f64 = operator.conductance.sizes(&potentials).iter().sum();
         terms += self.stored.as_ref().map_or(0.0, |stored| stored.terms);
+        let mut within = 0.0;
+        if let Some(kept) = &self.kept {
+            within = kept.moved;
+            terms += kept.terms;
+        }
         let entering = conditions.iter().map(|flow| flow.rate);
-        let balance = FlowBalance::of(entering, self.stored_rates(), [missed, terms]);
+        let stored = (self.stored_rates(), within);
+        let balance = FlowBalance::of(entering, stored, [missed, terms]);
         FlowState {
             balance,
             pressures,
@@ -214,7 +245,7 @@ impl<'s, 'a> Loaded<'s, 'a> {
         missing: &mut [f64],
     ) -> ConditionFlow {
         let condition = self.condition(entry);
-        let rate = nodal::rate(condition, self.load);
+        let rate = nodal::rate(condition, self.load, self.duration);
         match &entry.nodal {
             Nodal::Given(rows) => {
                 let sum: f64 = rows.iter().map(|&row| pressures[row]).sum();
@@ -230,6 +261,14 @@ impl<'s, 'a> Loaded<'s, 'a> {
                 ConditionFlow {
                     pressure: parts.sum(),
                     rate,
+                }
+            }
+            Nodal::PerArea(areas) => {
+                let area: f64 = areas.iter().map(|(_, area)| area).sum();
+                let parts = areas.iter().map(|&(row, area)| area * pressures[row]);
+                ConditionFlow {
+                    pressure: parts.sum::<f64>() / area,
+                    rate: area * rate,
                 }
             }
             Nodal::WellRate(well) => ConditionFlow {

@@ -16,10 +16,12 @@
 //! | `numbering` | the nodes that have a pressure |
 //! | `conductance` | transmissivities of facets, the matrix, rates of potentials |
 //! | `places`, `edges`, `wells` | where conditions act |
+//! | `node_radius` | the radius that the pressure of a node stands for |
 //! | `nodal` | conditions as they act on nodes |
 //! | `topology` | all of a flow that stays whatever the apertures |
 //! | `networks` | what hangs together hydraulically, and what has no steady state |
 //! | `isolated` | networks that nothing drives |
+//! | `undrained` | networks that keep what they hold |
 //! | `permeability` | how the body conducts as a whole |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
@@ -36,6 +38,7 @@ mod linearised;
 mod loaded;
 mod networks;
 mod nodal;
+mod node_radius;
 mod numbering;
 mod operator;
 mod permeability;
@@ -44,6 +47,7 @@ mod solve;
 mod steady;
 mod topology;
 mod transient;
+mod undrained;
 mod wall_points;
 mod walls;
 mod wells;

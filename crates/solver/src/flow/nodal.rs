@@ -12,6 +12,8 @@ pub(super) enum Nodal {
     Given(Vec<usize>),
     /// A rate that these rows share, ascending, with shares that add up to 1.
     Shared(Vec<(usize, f64)>),
+    /// A rate per area (m/s) that these rows have (m^2), ascending.
+    PerArea(Vec<(usize, f64)>),
     /// A rate through the wall of a borehole.
     WellRate(Well),
     /// The pressure at the wall of a borehole.
@@ -43,6 +45,11 @@ pub(super) fn conditions(
 
 fn nodal(place: &Place, drive: FlowDrive, transmissivity: &[f64]) -> Nodal {
     match (place, drive.is_pressure()) {
+        (Place::Rows(shares), false) if matches!(drive, FlowDrive::Leakoff(_)) => {
+            let runs = shares.chunk_by(|a, b| a.row == b.row);
+            let area = |run: &[RowShare]| run.iter().map(|share| share.weight).sum();
+            Nodal::PerArea(runs.map(|run| (run[0].row, area(run))).collect())
+        }
         (Place::Well(well), true) => Nodal::WellPressure(well.at(transmissivity)),
         (Place::Well(well), false) => Nodal::WellRate(well.at(transmissivity)),
         (Place::Rows(shares), true) => {
@@ -63,10 +70,14 @@ fn nodal(place: &Place, drive: FlowDrive, transmissivity: &[f64]) -> Nodal {
     }
 }
 
-/// The rate that a condition drives under a load (m^3/s); 0 if it gives a pressure.
-pub(super) fn rate(entry: &FlowCondition, load: &Load) -> f64 {
-    match entry.drive {
-        FlowDrive::Pressure(_) => 0.0,
-        FlowDrive::Rate(rate) => load.factor(entry.case) * rate,
+/// The rate that a condition drives under a load at the end of an increment of some duration (s;
+/// none in steady flow), in m^3/s, or in m/s if it is one per area; 0 if it gives a pressure.
+pub(super) fn rate(entry: &FlowCondition, load: &Load, duration: Option<f64>) -> f64 {
+    match (entry.drive, duration) {
+        (FlowDrive::Rate(rate), _) => load.factor(entry.case) * rate,
+        (FlowDrive::Leakoff(leakoff), Some(duration)) => {
+            leakoff.mean_rate(load.time - duration, load.time)
+        }
+        (FlowDrive::Leakoff(_), None) | (FlowDrive::Pressure(_), _) => 0.0,
     }
 }

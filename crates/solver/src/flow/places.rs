@@ -7,7 +7,7 @@ use super::conductance::Conductance;
 use super::edges;
 use super::numbering::FlowNodes;
 use super::wells::{self, Borehole};
-use crate::problem::{Flow, FlowCondition, FlowDrive, FlowPlace, Profile};
+use crate::problem::{Flow, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
 
 /// Where a condition acts.
 #[derive(Debug, Clone)]
@@ -25,7 +25,7 @@ pub(super) struct RowShare {
     pub(super) row: usize,
     /// The conducting facet: index into those of the numbering.
     pub(super) facet: usize,
-    /// Length (m) along a boundary, or area (m^2) of a fracture.
+    /// Length (m) along a boundary or a line, or area (m^2) of a fracture.
     pub(super) weight: f64,
 }
 
@@ -59,7 +59,7 @@ pub(super) fn find(
     let mut defects = Vec::new();
     let mut found = Vec::new();
     for (condition, entry) in flow.conditions.iter().enumerate() {
-        match place(mesh, entry, nodes, (stencils, conductance)) {
+        match place((mesh, &flow.lines), entry, nodes, (stencils, conductance)) {
             Ok(place) => found.push((condition, place)),
             Err(defect) => defects.push(defect),
         }
@@ -72,7 +72,7 @@ pub(super) fn find(
 }
 
 fn place(
-    mesh: &Mesh,
+    (mesh, lines): (&Mesh, &[Vec<LineShare>]),
     entry: &FlowCondition,
     nodes: &FlowNodes,
     (stencils, conductance): (&[FacetFlow], &Conductance),
@@ -89,7 +89,10 @@ fn place(
         let well = wells::at(mesh, nodes, conductance, row, (radius, &entry.name))?;
         return Ok(Place::Well(well));
     }
-    let shares = shares(mesh, entry.place, nodes, stencils);
+    let shares = match entry.place {
+        FlowPlace::Line(line) => along(nodes, &lines[line]),
+        place => shares(mesh, place, nodes, stencils),
+    };
     let counted = |share: &RowShare| share.weight * conductance.transmissivity[share.facet];
     match shares.iter().map(counted).sum::<f64>() > 0.0 {
         true => Ok(Place::Rows(shares)),
@@ -128,9 +131,23 @@ fn shares(
                 }));
             }
         }
-        FlowPlace::Well { .. } => {}
+        FlowPlace::Line(_) | FlowPlace::Well { .. } => {}
     }
     // Stable, so that a row adds up in the order of the facets.
+    parts.sort_by_key(|share| share.row);
+    parts
+}
+
+/// Rows of a line, ascending; those of one row in the order of the line.
+fn along(nodes: &FlowNodes, line: &[LineShare]) -> Vec<RowShare> {
+    let share = |share: &LineShare| {
+        Some(RowShare {
+            row: nodes.of_node(share.node)?,
+            facet: nodes.facets.binary_search(&share.facet).ok()?,
+            weight: share.length,
+        })
+    };
+    let mut parts: Vec<RowShare> = line.iter().filter_map(share).collect();
     parts.sort_by_key(|share| share.row);
     parts
 }
@@ -175,10 +192,10 @@ fn contradictions(
     defects
 }
 
-/// The pressure that a condition gives; 0 for a rate.
+/// The pressure that a condition gives; 0 for one that gives none.
 pub(super) fn profile(entry: &FlowCondition) -> Profile {
     match entry.drive {
         FlowDrive::Pressure(profile) => profile,
-        FlowDrive::Rate(_) => Profile::default(),
+        FlowDrive::Rate(_) | FlowDrive::Leakoff(_) => Profile::default(),
     }
 }

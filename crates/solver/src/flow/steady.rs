@@ -45,13 +45,13 @@ impl<'a> FlowSystem<'a> {
 
     /// Networks whose pressure nothing determines, each with its fractures.
     pub fn undriven(&self) -> Vec<Defect> {
-        let topology = &self.topology;
-        networks::without_pressure(
-            (topology.mesh, topology.flow),
-            &topology.networks,
-            &self.operator.conditions,
-            &topology.network_of_row,
-        )
+        networks::without_pressure(&self.topology, &self.operator.conditions)
+    }
+
+    /// Networks that could not keep what they hold in steady flow: no pressure is given to them,
+    /// and what rates drive into them does not leave again.
+    pub fn unbalanced(&self) -> Vec<Defect> {
+        networks::unbalanced(&self.topology, &self.operator.conditions)
     }
 
     /// Factorises the matrix, once for all loads.
@@ -59,10 +59,18 @@ impl<'a> FlowSystem<'a> {
     /// # Errors
     /// If it does not fit in memory, or a number is not finite.
     pub fn factorise(&mut self) -> Result<(), LinearFailure> {
+        self.factorise_with(|_| 0.0)
+    }
+
+    /// The same with `extra` (m^3/(Pa s)) on the diagonal of each row.
+    pub(super) fn factorise_with(
+        &mut self,
+        extra: impl Fn(usize) -> f64,
+    ) -> Result<(), LinearFailure> {
         if self.topology.free.is_empty() {
             return Ok(());
         }
-        let matrix = self.operator.free_matrix(&self.topology, |_| 0.0);
+        let matrix = self.operator.free_matrix(&self.topology, extra);
         if matrix.values.iter().any(|value| !value.is_finite()) {
             return Err(LinearFailure::NotFinite);
         }

@@ -175,6 +175,7 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
         let (topology, operator) = (&self.system.topology, &self.system.operator);
         let before = from.pressures.iter().copied();
         let mut loaded = Loaded::of(topology, end).counted_from_means_of(before);
+        loaded.duration = Some(duration);
         let rows = from.pressures.iter().enumerate();
         let mut potentials: Vec<f64> = rows.map(|(row, p)| p - loaded.weight(row)).collect();
         loaded.set_given(&mut potentials);

@@ -2,20 +2,17 @@
 //!
 //! Around a hole of radius `r_w` the pressure falls with the logarithm of the distance, which a
 //! linear pressure on facets does not follow at the node itself: what it has there belongs to a
-//! radius `r_e` that depends on the mesh (Peaceman 1978). Nodes beside are right, so that with
+//! radius `r_e` that depends on the mesh (Peaceman 1978), see `node_radius`. With
 //! `Theta = sum_f T_f theta_f`, `theta_f` the angles of the facets at the node,
 //!
 //! ```text
-//! phi_j = phi_w - Q / Theta ln(r_j / r_w),    Q = sum_j K_ij (phi_j - phi_i)
-//! =>  Q = W (phi_w - phi_i),  W = Theta / ln(r_e / r_w),
-//!     ln r_e = sum_j (-K_ij / K_ii) ln r_j - Theta / K_ii
+//! Q = W (phi_w - phi_i),    W = Theta / ln(r_e / r_w)
 //! ```
-//!
-//! On squares this is `r_e = h exp(-pi / 2)`, Peaceman's first estimate.
 
 use kluft_mesh::{Defect, Mesh};
 
 use super::conductance::Conductance;
+use super::node_radius::Surroundings;
 use super::numbering::FlowNodes;
 
 /// A borehole in facets whose transmissivities change little against each other: `r_e` stays.
@@ -60,17 +57,9 @@ pub(super) fn at(
     (radius, name): (f64, &str),
 ) -> Result<Borehole, Defect> {
     let angles = angles(mesh, nodes, row);
-    let (own, place) = (conductance.diagonal(row), nodes.node[row] as usize);
-    let distance = |column: usize| {
-        let other = mesh.nodes[nodes.node[column] as usize];
-        mesh.nodes[place].distance(other)
-    };
-    let others = conductance.matrix.row(row);
-    let others = others.filter(|(column, _)| *column != row);
-    let mean: f64 = others
-        .map(|(column, value)| -value / own * distance(column).ln())
-        .sum();
-    let equivalent = (mean - theta(&angles, &conductance.transmissivity) / own).exp();
+    let around = Surroundings::of(mesh, nodes, conductance, row);
+    let equivalent = around.logarithm(theta(&angles, &conductance.transmissivity));
+    let equivalent = equivalent.exp();
     if equivalent > radius {
         return Ok(Borehole {
             row,

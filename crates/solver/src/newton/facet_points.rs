@@ -179,7 +179,7 @@ pub(super) fn follow(
 ) -> Vec<f64> {
     let flow = system.coupling().filter(|_| system.is_smooth());
     let follows = |trial: &TrialState, state: &FacetPointState| {
-        flow.is_some_and(|flow| flow.is_transient() || opens(trial, state))
+        flow.is_some_and(|flow| flow.traps() || opens(trial, state))
     };
     let points = interface(system).points.par_iter();
     points

@@ -32,6 +32,8 @@ pub enum FlowPlace {
     Boundary(usize),
     /// All of a fracture: index into [`kluft_mesh::MeshData::fractures`].
     Fracture(usize),
+    /// Along a line within fractures: index into [`Flow::lines`].
+    Line(usize),
     /// A borehole through a node of fractures.
     Well {
         /// The node.
@@ -41,6 +43,17 @@ pub enum FlowPlace {
     },
 }
 
+/// What a corner of a facet has of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineShare {
+    /// The node at the corner.
+    pub node: u32,
+    /// The facet: index into [`kluft_mesh::MeshData::facets`].
+    pub facet: u32,
+    /// Its share of the length (m).
+    pub length: f64,
+}
+
 /// How the fluid is driven, at load factor 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FlowDrive {
@@ -48,6 +61,27 @@ pub enum FlowDrive {
     Pressure(Profile),
     /// What enters in all (m^3/s); negative where it leaves.
     Rate(f64),
+    /// What leaks off into the rock, whatever the load factor; nothing in steady flow.
+    Leakoff(Leakoff),
+}
+
+/// What fluid leaks off into rock through the walls of a fracture, by Carter's law: through each
+/// wall with the velocity `C / sqrt(t - t_0)` (Howard & Fast 1957).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Leakoff {
+    /// `C` (m/s^0.5).
+    pub coefficient: f64,
+    /// `t_0`, when the walls first meet the fluid (s).
+    pub exposed: f64,
+}
+
+impl Leakoff {
+    /// What enters through both walls in the mean of a time (m/s), which is negative: the integral
+    /// is exact, also where it begins with the exposure.
+    pub fn mean_rate(&self, from: f64, to: f64) -> f64 {
+        let root = |time: f64| (time - self.exposed).max(0.0).sqrt();
+        -4.0 * self.coefficient * (root(to) - root(from)) / (to - from)
+    }
 }
 
 impl FlowDrive {
@@ -82,23 +116,28 @@ pub struct Flow {
     pub inactive: Vec<u32>,
     /// What drives it. Outer surfaces without a condition are closed.
     pub conditions: Vec<FlowCondition>,
+    /// Lines within fractures, each by the corners that share it.
+    pub lines: Vec<Vec<LineShare>>,
     /// Pressure before any load (Pa), in equilibrium with the initial stress, which is total.
     pub initial_pressure: Profile,
     /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// Load case of gravity.
     pub gravity_case: usize,
+    /// Whether in steady flow networks without a given pressure keep the fluid that they hold, in
+    /// place of being refused; only where walls follow.
+    pub is_undrained: bool,
 }
 
 impl Flow {
     /// Whether the flow depends on how the walls move in rock that deforms: by their apertures, or,
-    /// where it takes time, by what they store.
+    /// where it takes time or networks keep what they hold, by what they store.
     pub fn follows_walls(&self, takes_time: bool) -> bool {
         let of_walls = |conduit: &Conduit| match conduit {
             Conduit::Sealed => false,
             Conduit::Open(hydraulic) => !hydraulic.is_constant(),
         };
-        takes_time || self.conduits.iter().any(of_walls)
+        takes_time || self.is_undrained || self.conduits.iter().any(of_walls)
     }
 
     /// Whether fractures whose walls do not move store fluid in a run in time: if pressure

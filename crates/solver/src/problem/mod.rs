@@ -15,7 +15,7 @@ use lie_core::{FacetQuadrature, FacetRulePoint, FractureLaw, Rock, facet_points}
 pub(crate) use field_place::FieldPlace;
 
 pub use conditions::{Condition, FixedPoint, Support, SurfaceLoad};
-pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid};
+pub use flow::{Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Leakoff, LineShare};
 pub use initial_stress::InitialStress;
 pub use kluft_field::{Field, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};

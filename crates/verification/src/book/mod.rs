@@ -7,16 +7,19 @@ mod estimate;
 mod filled_penny;
 mod filling_joint;
 mod joint_sets;
+mod leak_off;
 mod line_source;
 mod opened_channel;
 mod oscillation;
 mod parts;
 mod patch_test;
 mod paths;
+mod periodic_pressure;
 mod periodic_source;
 mod permeability;
 mod plane_cracks;
 mod pressure_step;
+mod pressurised_fault;
 mod radial_flow;
 mod refinement;
 mod scene;
@@ -54,10 +57,13 @@ pub fn report() -> Report {
             radial_flow::PAGE,
             opened_channel::PAGE,
             pressure_step::PAGE,
+            leak_off::PAGE,
+            periodic_pressure::PAGE,
             line_source::PAGE,
             periodic_source::PAGE,
             filling_joint::PAGE,
             filled_penny::PAGE,
+            pressurised_fault::PAGE,
         ],
         layout: Layout::PageEach,
     }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use kluft_mesh::Shape;
 use lie_core::{Closure, ClosureKind};
 
-use crate::oracles::diffusion::periodic;
+use crate::oracles::diffusion::periodic_source;
 use crate::report::{Effort, Finding, Study, largest, percent};
 use crate::scenes::flow::{VISCOSITY, fed_from_side, water};
 use crate::scenes::soft_slabs::{
@@ -93,7 +93,7 @@ fn found(shape: Shape, n: usize, steps: usize) -> Found {
 fn error(radii: &[f64], swings: &[f64]) -> f64 {
     let conducts = APERTURE.powi(3) / (12.0 * VISCOSITY);
     let stores = APERTURE * COMPRESSIBILITY + 1.0 / STIFFNESS;
-    let exact = |r: f64| periodic([conducts / stores, conducts], RATE, r, TAU / PERIOD);
+    let exact = |r: f64| periodic_source([conducts / stores, conducts], RATE, r, TAU / PERIOD);
     let size = |[cosine, sine]: [f64; 2]| cosine.hypot(sine);
     let pairs = radii.iter().zip(swings.chunks_exact(2));
     let errors = pairs.map(|(r, found)| {

@@ -171,18 +171,15 @@ fn run(effort: Effort) -> Finding {
     .closed_form(CLOSED_FORM, PAGE.subject)
     .text("A hole cut out of the disc, cells growing away from it:");
     let page = HOLE.on(page, &holes).text("A borehole at a node:");
-    let node = wells[0].finest() * (RADII[1] / BOREHOLE).ln();
     NODE.on(page, &wells).shows(format!(
         "With a hole that is meshed rate and pressures are of order {:.2} at least, and {} off at \
          the finest mesh. A borehole at a node needs its radius: the pressure of its node changes \
-         with the mesh and is still {} off at the finest. That at the wall is {} off on fine meshes: \
-         the radius that belongs to a node is estimated, {} off here. From 1 m on pressures are {} \
-         off.",
+         with the mesh and is still {} off at the finest. That at the wall, by the radius that belongs \
+         to a node, is {} off. From 1 m on pressures are {} off.",
         lowest_order(&holes),
         percent(cut),
         percent(wells[1].finest()),
         percent(wells[0].finest()),
-        percent(node),
         percent(wells[2].finest()),
     ))
 }

@@ -63,7 +63,7 @@ pub fn theis([diffusivity, transmissivity]: [f64; 2], rate: f64, r: f64, t: f64)
 /// Cosine and sine of the pressure (Pa) at `r` (m) beside a line that feeds a plane of
 /// transmissivity `T` (m^3/(Pa s)) at a rate (m^3/s) times the cosine of `w t`, with
 /// `K_0(z) = int_0^inf exp(-z cosh s) ds` (Carslaw and Jaeger 1959, section 10.4).
-pub fn periodic(
+pub fn periodic_source(
     [diffusivity, transmissivity]: [f64; 2],
     rate: f64,
     r: f64,
@@ -75,6 +75,42 @@ pub fn periodic(
     let integrand =
         |of: fn(f64) -> f64| trapezoidal(move |s: f64| (-z * s.cosh()).exp() * of(z * s.cosh()));
     [f64::cos, f64::sin].map(|of| factor * integrand(of))
+}
+
+/// Share of the fall of an even pressure by which a half space falls at `x` (m) whose fluid leaks
+/// off with `1/sqrt(t)` from the beginning (s), while the pressure at its end stands:
+/// `1 - sqrt(pi) ierfc(y)` with `y = x / (2 sqrt(D t))`.
+pub fn leaking(diffusivity: f64, x: f64, t: f64) -> f64 {
+    let y = 0.5 * x / (diffusivity * t).sqrt();
+    1.0 - (-y * y).exp() + PI.sqrt() * y * erfc(y)
+}
+
+/// Real and imaginary part of `cosh((1 + i) z / sqrt(2))`.
+fn complex_cosh(z: f64) -> [f64; 2] {
+    let z = z * std::f64::consts::FRAC_1_SQRT_2;
+    [z.cosh() * z.cos(), z.sinh() * z.sin()]
+}
+
+/// `a / b` of complex numbers.
+fn ratio([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    let size = c * c + d * d;
+    [(a * c + b * d) / size, (b * c - a * d) / size]
+}
+
+/// Cosine and sine of the pressure at a share `x` of the way to a closed end, where that at the
+/// open end is the cosine of `w t`; `number` is `L sqrt(w / D)`.
+pub fn periodic_to_closed_end(number: f64, x: f64) -> [f64; 2] {
+    let [real, imaginary] = ratio(complex_cosh(number * (1.0 - x)), complex_cosh(number));
+    [real, -imaginary]
+}
+
+/// Cosine and sine of what enters there, over `T / L` times the swing: `k L tanh(k L)`.
+pub fn periodic_inflow(number: f64) -> [f64; 2] {
+    let z = number * std::f64::consts::FRAC_1_SQRT_2;
+    let sinh = [z.sinh() * z.cos(), z.cosh() * z.sin()];
+    let [a, b] = ratio(sinh, complex_cosh(number));
+    // Times `(1 + i) z`.
+    [z * (a - b), -z * (a + b)]
 }
 
 #[cfg(test)]
@@ -98,6 +134,17 @@ mod tests {
         let storage = 1e-4 * 4.5e-10 + 1e-11;
         let plane = [1e-12 / 12e-3 / storage, 1e-12 / 12e-3];
         is_close(plane[0], 8.296_001_5);
+        // Amplitudes at a closed end after 20 m, and of what enters for 1 Pa.
+        for (period, end, enters) in [
+            (10.0, 4.080_864e-2, 2.293_237e-11),
+            (100.0, 0.624_612_8, 8.279_486e-12),
+        ] {
+            let number = 20.0 * (2.0 * PI / period / plane[0]).sqrt();
+            let [cosine, sine] = periodic_to_closed_end(number, 1.0);
+            is_close(cosine.hypot(sine), end);
+            let [cosine, sine] = periodic_inflow(number);
+            is_close(cosine.hypot(sine) * plane[1] / 20.0, enters);
+        }
         for (r, p) in [(1.0, 2_821.590), (5.0, 322.979_7), (10.0, 12.248_26)] {
             is_close(theis(plane, 1e-6, r, 1.0), p);
         }
@@ -107,7 +154,7 @@ mod tests {
     #[test]
     fn amplitudes_of_a_periodic_source_have_their_numbers() {
         for (r, p) in [(1.0, 3059.283), (2.0, 1929.161), (5.0, 727.3513)] {
-            let [cosine, sine] = periodic([8.296_001, 1e-12 / 12e-3], 1e-6, r, 0.2 * PI);
+            let [cosine, sine] = periodic_source([8.296_001, 1e-12 / 12e-3], 1e-6, r, 0.2 * PI);
             is_close(cosine.hypot(sine), p);
         }
     }

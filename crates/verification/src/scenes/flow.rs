@@ -50,6 +50,8 @@ pub fn water(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
         conditions,
         gravity: DVec3::ZERO,
         gravity_case: 0,
+        lines: Vec::new(),
+        is_undrained: false,
     }
 }
 

@@ -18,11 +18,11 @@ use crate::problem::{
 };
 use crate::system::{Discretisation, State, System};
 
-const NORMAL_STIFFNESS: f64 = 1e11;
-const APERTURE: f64 = 1e-5;
+pub(super) const NORMAL_STIFFNESS: f64 = 1e11;
+pub(super) const APERTURE: f64 = 1e-5;
 
 /// A slab of `n` by 1 by 2 cells and this length (m), its joint half way up.
-fn slab(shape: Shape, n: usize, length: f64) -> Mesh {
+pub(super) fn slab(shape: Shape, n: usize, length: f64) -> Mesh {
     let right = move |x: [f64; 3]| x[0] == length;
     let surfaces = [
         Patch::new("joint", &|x| x[2] == 0.5),
@@ -36,11 +36,11 @@ fn slab(shape: Shape, n: usize, length: f64) -> Mesh {
     block(shape, ([n, 1, 2], [length, 1.0, 1.0]), &surfaces, |x| x)
 }
 
-fn linear() -> Closure {
+pub(super) fn linear() -> Closure {
     Closure::new(APERTURE, NORMAL_STIFFNESS, ClosureKind::Linear)
 }
 
-fn problem(mesh: &Mesh, closure: Closure, schedule: Schedule) -> Problem {
+pub(super) fn problem(mesh: &Mesh, closure: Closure, schedule: Schedule) -> Problem {
     let rock = Rock {
         young_modulus: 1e7,
         poisson_ratio: 0.0,
@@ -69,13 +69,13 @@ fn problem(mesh: &Mesh, closure: Closure, schedule: Schedule) -> Problem {
 }
 
 /// A path of load steps.
-struct Path {
-    records: Vec<StepRecord>,
-    state: FlowState,
-    walls: State,
+pub(super) struct Path {
+    pub(super) records: Vec<StepRecord>,
+    pub(super) state: FlowState,
+    pub(super) walls: State,
 }
 
-fn solved(problem: &Problem, flow: &Flow) -> Path {
+pub(super) fn solved(problem: &Problem, flow: &Flow) -> Path {
     let discretisation = Discretisation::of(problem).expect("held");
     let mut system = System::assemble(problem, discretisation);
     system.couple(flow).expect("sound");
@@ -102,7 +102,7 @@ fn solved(problem: &Problem, flow: &Flow) -> Path {
     }
 }
 
-fn ends(mesh: &Mesh, left: f64, right: f64) -> Vec<FlowCondition> {
+pub(super) fn ends(mesh: &Mesh, left: f64, right: f64) -> Vec<FlowCondition> {
     vec![
         on_side(mesh, "side left", pressure(left)),
         on_side(mesh, "side right", pressure(right)),

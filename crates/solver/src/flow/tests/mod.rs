@@ -2,10 +2,12 @@
 
 mod closed_forms;
 mod coupled;
+mod leakoff;
 mod permeability;
 mod push;
 mod refusals;
 mod transient;
+mod undrained;
 
 use glam::DVec3;
 use kluft_mesh::structured::{Patch, cells_of};
@@ -67,6 +69,8 @@ fn flow(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
         conditions,
         gravity: DVec3::ZERO,
         gravity_case: 0,
+        lines: Vec::new(),
+        is_undrained: false,
     }
 }
 
