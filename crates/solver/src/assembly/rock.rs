@@ -369,6 +369,7 @@ mod tests {
             young_modulus,
             poisson_ratio,
             density: 0.0,
+            anisotropy: None,
         };
         let condition = |boundary, support| Condition {
             boundary,
