@@ -91,7 +91,7 @@ static COMPRESSIBILITY: Plausible = Plausible {
 /// A borehole.
 pub static SOURCE: KeySection = KeySection {
     pattern: "[[source]]",
-    says: "A borehole, a line within fractures or all of a fracture, by its rate or its pressure",
+    says: "A borehole, a line within fractures or a whole fracture, by its rate or its pressure",
     keys: &[
         Key {
             name: "name",

@@ -363,7 +363,7 @@ class InitialStress(Section):
 
 
 class Source(Section):
-    """A borehole, a line within fractures or all of a fracture, by its rate or its pressure.
+    """A borehole, a line within fractures or a whole fracture, by its rate or its pressure.
 
     Args:
         name: What messages and results call it. Without it: source number 1, 2, ....
