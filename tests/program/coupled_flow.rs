@@ -376,7 +376,8 @@ fn what_leaks_off_is_in_the_balance() {
         "normal_stiffness = 1e11\nleakoff = 2e-8",
     );
     let coarse = ("first = 0.1", "first = 1.0");
-    let out = Workshop::new("filling-joint", &[leaking, coarse]).solve("out", &[]);
+    let workshop = Workshop::new("filling-joint", &[leaking, coarse]);
+    let out = workshop.solve("out", &[]);
     let text = fs::read_to_string(out.join("sources.csv")).expect("sources.csv");
     let last = text
         .lines()

@@ -55,16 +55,6 @@ const ALLOWED: [(&str, &[&str]); 18] = [
         ],
     ),
     (
-        "kluft-python",
-        &[
-            "kluft-io",
-            "kluft-mesh",
-            "kluft-run",
-            "kluft-scene",
-            "kluft-solver",
-        ],
-    ),
-    (
         "kluft-program",
         &["kluft-io", "kluft-mesh", "kluft-run", "kluft-solver"],
     ),
@@ -94,6 +84,18 @@ const ALLOWED: [(&str, &[&str]); 18] = [
             "kluft-scene",
             "kluft-solver",
             "lie-core",
+        ],
+    ),
+    (
+        "kluft-python",
+        &[
+            PROGRAM,
+            "kluft-io",
+            "kluft-mesh",
+            "kluft-program",
+            "kluft-run",
+            "kluft-scene",
+            "kluft-solver",
         ],
     ),
     (

@@ -120,15 +120,16 @@ pub(crate) fn bind_with(
     mut mesh: Mesh,
     rock_of: impl Fn(usize) -> Option<u32>,
 ) -> Result<Binding, Vec<Defect>> {
-    let (mut defects, mut decisions) = (Vec::new(), Vec::new());
+    let (mut defects, mut decisions, mut idle) = (Vec::new(), Vec::new(), Vec::new());
     if scene.quarter_points {
         decisions.extend(quarter_points(mesh.move_to_quarter_points()));
     }
-    let rocks_of_cells = bind_rocks(scene, &mesh, &mut defects).into_iter();
-    let other = |(cell, rock)| rock_of(cell).unwrap_or(rock);
-    let rock_of_cell = rocks_of_cells.enumerate().map(other).collect();
-    let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
+    let mut rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
+    for (cell, rock) in rock_of_cell.iter_mut().enumerate() {
+        *rock = rock_of(cell).unwrap_or(*rock);
+    }
     defects.extend(wrong_gravity(scene, &mesh));
+    let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
     defects.extend(wrong_strength(scene, &mesh, &fractures));
@@ -143,7 +144,6 @@ pub(crate) fn bind_with(
         fractures,
         sources: scene.sources.iter().collect(),
     };
-    let mut idle = Vec::new();
     let schedule = schedule(scene, &bound, &mut decisions, &mut idle);
     let mut flow = bind_flow(scene, &mesh, &bound, &schedule.cases, &mut decisions)?;
     let mut problem = Problem {
@@ -166,17 +166,30 @@ pub(crate) fn bind_with(
     }
     let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
     let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
-    let of_flow = flow.as_ref();
-    let of_flow = of_flow.and_then(|flow| fluid_doubts::warning(scene, &problem, flow));
-    let of_flow = Vec::from_iter(of_flow);
     Ok(Binding {
-        warnings: [warnings(scene, &problem), odd, idle, of_flow].concat(),
+        warnings: doubts(scene, &problem, flow.as_ref(), [odd, idle]),
         problem,
         flow,
         decisions,
         oracles,
         probes,
     })
+}
+
+/// All warnings of a scene on its mesh, with those that are known.
+fn doubts(
+    scene: &Scene,
+    problem: &Problem,
+    flow: Option<&Flow>,
+    known: [Vec<String>; 2],
+) -> Vec<String> {
+    let of_flow = flow.and_then(|flow| fluid_doubts::warning(scene, problem, flow));
+    let known = known.into_iter().flatten();
+    warnings(scene, problem)
+        .into_iter()
+        .chain(known)
+        .chain(of_flow)
+        .collect()
 }
 
 /// What is wrong with the reduction of strength, where no volumes come and go.

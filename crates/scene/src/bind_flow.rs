@@ -2,7 +2,7 @@
 
 use kluft_keys::section_head;
 use kluft_mesh::{Defect, Mesh};
-use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Profile};
+use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
 
 use crate::cases::Bound;
 use crate::history::Timetable;
@@ -41,31 +41,26 @@ pub(crate) fn bind_flow(
             "add a [fracture.NAME] that is not sealed, or remove [fluid]",
         )]);
     }
+    let weight = fluid.value.fluid.density * scene.body.gravity.z;
+    let mut lines = Vec::new();
+    let fractures = (mesh, &conduits[..]);
+    let drilled = from_sources(
+        fractures,
+        (bound, cases),
+        weight,
+        (&mut lines, &mut *decisions),
+    );
+    let drilled = match (drilled, leaks_in_no_time(scene, bound)) {
+        (Ok(drilled), early) if early.is_empty() => drilled,
+        (drilled, early) => return Err([early, drilled.err().unwrap_or_default()].concat()),
+    };
     let mut conditions = on_boundaries(mesh, bound, cases);
     conditions.extend(in_fractures(mesh, bound, cases));
     conditions.extend(leaking(mesh, bound, cases));
-    let mut defects = leaks_in_no_time(scene, bound);
-    let mut lines = Vec::new();
-    let fluid_weight = fluid.value.fluid.density * scene.body.gravity.z;
-    for (index, entry) in bound.sources.iter().enumerate() {
-        let drilling = Drilling {
-            mesh,
-            conduits: &conduits,
-            bound,
-            weight: fluid_weight,
-            case: cases.of_source(index),
-        };
-        match drilling.conditions(entry, (&mut lines, &mut *decisions)) {
-            Ok(own) => conditions.extend(own),
-            Err(defect) => defects.push(defect),
-        }
-    }
-    if !defects.is_empty() {
-        return Err(defects);
-    }
-    let is_timed = matches!(scene.timetable, Timetable::Times { .. });
+    conditions.extend(drilled);
     let flow = Flow {
-        is_undrained: scene.isolated == Isolated::Undrained && !is_timed,
+        is_undrained: scene.isolated == Isolated::Undrained
+            && !matches!(scene.timetable, Timetable::Times { .. }),
         fluid: fluid.value.fluid,
         initial_pressure: fluid.value.initial_pressure,
         conduits,
@@ -77,6 +72,36 @@ pub(crate) fn bind_flow(
     };
     decisions.extend(decided(scene, &flow));
     Ok(Some(flow))
+}
+
+/// What sources do to the flow, for the weight of its fluid (Pa/m).
+///
+/// # Errors
+/// Those that meet no fracture that conducts.
+fn from_sources(
+    (mesh, conduits): (&Mesh, &[Conduit]),
+    (bound, cases): (&Bound<'_>, &Cases),
+    weight: f64,
+    (lines, decisions): (&mut Vec<Vec<LineShare>>, &mut Vec<String>),
+) -> Result<Vec<FlowCondition>, Vec<Defect>> {
+    let (mut conditions, mut defects) = (Vec::new(), Vec::new());
+    for (index, entry) in bound.sources.iter().enumerate() {
+        let drilling = Drilling {
+            mesh,
+            conduits,
+            bound,
+            weight,
+            case: cases.of_source(index),
+        };
+        match drilling.conditions(entry, (&mut *lines, &mut *decisions)) {
+            Ok(own) => conditions.extend(own),
+            Err(defect) => defects.push(defect),
+        }
+    }
+    match defects.is_empty() {
+        true => Ok(conditions),
+        false => Err(defects),
+    }
 }
 
 fn on_boundaries(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> {

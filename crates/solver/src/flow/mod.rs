@@ -19,9 +19,10 @@
 //! | `node_radius` | the radius that the pressure of a node stands for |
 //! | `nodal` | conditions as they act on nodes |
 //! | `topology` | all of a flow that stays whatever the apertures |
-//! | `networks` | what hangs together hydraulically, and what has no steady state |
+//! | `networks` | what hangs together hydraulically |
+//! | `steady_state` | networks that have none, or more than one |
 //! | `isolated` | networks that nothing drives |
-//! | `undrained` | networks that keep what they hold |
+//! | `undrained`, `keeping` | networks that keep what they hold |
 //! | `permeability` | how the body conducts as a whole |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
@@ -34,6 +35,7 @@ mod coupling;
 mod edges;
 mod fields;
 mod isolated;
+mod keeping;
 mod linearised;
 mod loaded;
 mod networks;
@@ -45,6 +47,7 @@ mod permeability;
 mod places;
 mod solve;
 mod steady;
+mod steady_state;
 mod topology;
 mod transient;
 mod undrained;
@@ -58,9 +61,10 @@ pub(crate) use coupling::{FlowAtWalls, FlowIncrement};
 pub use fields::FlowFields;
 pub(crate) use linearised::LinearisedFlow;
 pub use loaded::FlowState;
-pub use networks::{FlowNetwork, NO_PRESSURE};
+pub use networks::FlowNetwork;
 pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTensor};
 pub use steady::FlowSystem;
+pub use steady_state::NO_PRESSURE;
 pub use transient::{TimeStep, TransientFlow};
 
 #[cfg(test)]

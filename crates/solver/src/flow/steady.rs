@@ -6,9 +6,10 @@ use kluft_algebra::{LinearFailure, ScalarCholesky};
 use kluft_mesh::{Defect, Mesh};
 
 use super::conductance::{self, Conductance};
-use super::networks::{self, FlowNetwork};
+use super::networks::FlowNetwork;
 use super::numbering::FlowNodes;
 use super::operator::FlowOperator;
+use super::steady_state;
 use super::topology::Topology;
 use crate::problem::Flow;
 
@@ -45,13 +46,13 @@ impl<'a> FlowSystem<'a> {
 
     /// Networks whose pressure nothing determines, each with its fractures.
     pub fn undriven(&self) -> Vec<Defect> {
-        networks::without_pressure(&self.topology, &self.operator.conditions)
+        steady_state::without_pressure(&self.topology, &self.operator.conditions)
     }
 
     /// Networks that could not keep what they hold in steady flow: no pressure is given to them,
     /// and what rates drive into them does not leave again.
     pub fn unbalanced(&self) -> Vec<Defect> {
-        networks::unbalanced(&self.topology, &self.operator.conditions)
+        steady_state::unbalanced(&self.topology, &self.operator.conditions)
     }
 
     /// Factorises the matrix, once for all loads.

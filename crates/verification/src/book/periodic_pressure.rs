@@ -8,7 +8,7 @@ use lie_core::{Closure, ClosureKind};
 use crate::oracles::diffusion::{periodic_inflow, periodic_to_closed_end};
 use crate::report::{Effort, Finding, Study, largest, percent};
 use crate::scenes::flow::{VISCOSITY, on_side, water};
-use crate::scenes::soft_slabs::{as_given, extrapolated, path, problem, strip, times};
+use crate::scenes::soft_slabs::{DRIVEN, as_given, extrapolated, path, problem, strip, times};
 
 use super::refinement::{Refinement, Shown, largest_left, lowest_order};
 
@@ -56,7 +56,9 @@ fn found(shape: Shape, n: usize, steps: usize) -> Found {
     let time = |step: usize| PERIOD * step as f64 / steps as f64;
     let schedule = times((1..=PERIODS * steps).map(|step| (time(step), angle(step).cos())));
     let problem = problem(&mesh, closure, 0.0, schedule);
-    let mut flow = water(&mesh, vec![on_side(&mesh, "side left", SWING)]);
+    let mut driven = on_side(&mesh, "side left", SWING);
+    driven.case = DRIVEN;
+    let mut flow = water(&mesh, vec![driven]);
     flow.fluid.compressibility = COMPRESSIBILITY;
     let path = path(&problem, &flow, as_given());
     assert!(path.failed.is_none(), "{:#?}", path.failed);
