@@ -140,7 +140,7 @@ fn refinements(shape: Shape, errors: &[(f64, [f64; 2])]) -> [Refinement; 2] {
 
 fn run(effort: Effort) -> Finding {
     let (cells, steps): (&[usize], &[usize]) = match effort {
-        Effort::Quick => (&[8, 16], &[20, 40]),
+        Effort::Quick => (&[4, 8], &[40, 80]),
         Effort::Full => (&[8, 16, 32, 64], &[20, 40, 80, 160]),
     };
     let (most, last) = (cells[cells.len() - 1], steps[steps.len() - 1]);

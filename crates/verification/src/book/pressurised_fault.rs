@@ -49,7 +49,7 @@ const PROBLEM: &str = "The scene `geometries/pressurised-fault`: contact and fri
 fn run(effort: Effort) -> Finding {
     let sizes: &[f64] = match effort {
         Effort::Quick => &[0.32, 0.16],
-        Effort::Full => &[0.32, 0.16, 0.08, 0.04, 0.02],
+        Effort::Full => &[0.32, 0.16, 0.08],
     };
     let mut all = Vec::new();
     let mut refinements = Vec::new();
