@@ -142,21 +142,27 @@ fn a_system_that_gives_no_threads_is_a_failure() {
     assert_fails(&run, &["threads: the system does not give 16 threads"]);
 }
 
+/// Runs a scene where the address space is limited to so many kB; it must end by itself.
+fn run_within(workshop: &Workshop, kilobytes: usize, threads: &str) -> Run {
+    let script = format!("ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
+    let run = command("bash")
+        .args(["-c", &script, KLUFT, "run", "--threads", threads])
+        .arg(workshop.scene())
+        .output();
+    let run: Run = run.expect("it starts").into();
+    let ended = matches!(run.code, Some(0..=2));
+    assert!(ended, "{kilobytes} kB: {:?}: {}", run.code, run.err);
+    assert!(!run.err.contains("panicked"), "{}", run.err);
+    run
+}
+
 /// The kernels of each thread pack panels as large as the cache; what those of a factor do not get
 /// is named.
 #[test]
 fn memory_that_kernels_do_not_get_is_a_failure() {
     let workshop = Workshop::new("sphere", &[]);
     for limit in [1_000_000, 1_100_000, 1_200_000] {
-        let script = format!("ulimit -v {limit}; exec \"$0\" \"$@\"");
-        let run = command("bash")
-            .args(["-c", &script, KLUFT, "run", "--threads", "2"])
-            .arg(workshop.scene())
-            .output();
-        let run: Run = run.expect("it starts").into();
-        let ended = matches!(run.code, Some(0..=2));
-        assert!(ended, "{limit} kB: {:?}: {}", run.code, run.err);
-        assert!(!run.err.contains("panicked"), "{}", run.err);
+        let run = run_within(&workshop, limit, "2");
         assert!(
             run.code != Some(1) || run.err.contains("GB of memory"),
             "{}",
@@ -168,19 +174,7 @@ fn memory_that_kernels_do_not_get_is_a_failure() {
 #[test]
 fn a_limit_of_the_address_space_refuses_what_would_not_fit() {
     let workshop = Workshop::new("inclined-joint", &[]);
-    let script = "ulimit -v 400000; exec \"$0\" \"$@\"";
-    let run = command("bash")
-        .args(["-c", script, KLUFT, "run", "--threads", "1"])
-        .arg(workshop.scene())
-        .output();
-    let run: Run = run.expect("it starts").into();
-    assert!(
-        matches!(run.code, Some(0..=2)),
-        "{:?}: {}",
-        run.code,
-        run.err
-    );
-    assert!(!run.err.contains("panicked"), "{}", run.err);
+    run_within(&workshop, 400_000, "1");
 }
 
 /// An allocation that is refused in the middle of a run would abort it.
@@ -188,14 +182,7 @@ fn a_limit_of_the_address_space_refuses_what_would_not_fit() {
 fn memory_that_a_run_does_not_get_is_a_failure() {
     let workshop = Workshop::new("inclined-joint", &[]);
     for limit in (200_000..420_000).step_by(20_000) {
-        let script = format!("ulimit -v {limit}; exec \"$0\" \"$@\"");
-        let run = command("bash")
-            .args(["-c", &script, KLUFT, "run", "--threads", "2"])
-            .arg(workshop.scene())
-            .output();
-        let run: Run = run.expect("it starts").into();
-        let ended = matches!(run.code, Some(0..=2));
-        assert!(ended, "{limit} kB: {:?}: {}", run.code, run.err);
+        let run = run_within(&workshop, limit, "2");
         if run.err.contains("memory allocation of") {
             assert_fails(&run, &["memory of this process", "ulimit -v"]);
         }
