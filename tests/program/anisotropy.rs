@@ -1,28 +1,9 @@
 //! Scenes in rock that is stiffer in some directions than in others.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 
 use crate::harness::{Workshop, edited, root};
-
-fn probes(out: &Path) -> Vec<BTreeMap<String, String>> {
-    let text = fs::read_to_string(out.join("probes.csv")).expect("probes");
-    let mut table = csv::Reader::from_reader(text.as_bytes());
-    let rows = table.deserialize().collect::<Result<Vec<_>, _>>();
-    rows.expect("a table")
-}
-
-fn compare(out: &Path, wanted: &[(&str, &str, f64, f64)]) {
-    let rows = probes(out);
-    for (probe, column, value, tolerance) in wanted {
-        let mut own = rows.iter().filter(|row| row["probe"] == *probe);
-        let row = own.next().expect(probe);
-        let found: f64 = row[*column].parse().expect(column);
-        let off = found / value - 1.0;
-        assert!(off.abs() < *tolerance, "{probe} {column}: {found:e}, {off}");
-    }
-}
+use crate::plane::{compare, probes};
 
 /// Lekhnitskii's numbers in the head of the scene. Displacements are held at 80 radii, which is
 /// worth some `1/80^2`; stresses are those of cells of a twelfth of the radius.
@@ -31,7 +12,7 @@ fn a_tunnel_in_bedded_rock_is_that_of_lekhnitskii() {
     let workshop = Workshop::new("bedded-tunnel", &[]);
     let out = workshop.solve("out", &[]);
     compare(
-        &out,
+        &probes(&out),
         &[
             ("side", "displacement_x", -4.125_176e-4, 2e-3),
             ("side", "displacement_y", 8.113_933e-5, 5e-3),
@@ -91,7 +72,10 @@ fn a_crack_in_bedded_rock_opens_as_in_closed_form() {
         );
         let out = scene.solve("out", &[]);
         let opening = 2e6 * compliance(f64::from(degrees).to_radians());
-        compare(&out, &[("middle", "aperture", opening + 1e-5, 5e-4)]);
+        compare(
+            &probes(&out),
+            &[("middle", "aperture", opening + 1e-5, 5e-4)],
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -162,18 +163,23 @@ fn an_inspection_shows_a_mesh_of_the_plane_with_and_without_a_scene() {
     }
 }
 
-/// The rows of the probes of a scene of `geometries/` on a mesh with these parameters.
-fn probed(name: &str, parameters: &str) -> Vec<BTreeMap<String, String>> {
-    let mesh = format!("dimension = 2\nparameters = {{ {parameters} }}");
-    let workshop = Workshop::new(name, &[("dimension = 2", &mesh)]);
-    let out = workshop.solve("out", &[]);
+/// The rows of the probes in a folder of results.
+pub fn probes(out: &Path) -> Vec<BTreeMap<String, String>> {
     let text = fs::read_to_string(out.join("probes.csv")).expect("probes");
     let mut table = csv::Reader::from_reader(text.as_bytes());
     let rows = table.deserialize().collect::<Result<Vec<_>, _>>();
     rows.expect("a table")
 }
 
-fn compare(rows: &[BTreeMap<String, String>], wanted: &[(&str, &str, f64, f64)]) {
+/// The rows of the probes of a scene of `geometries/` on a mesh with these parameters.
+fn probed(name: &str, parameters: &str) -> Vec<BTreeMap<String, String>> {
+    let mesh = format!("dimension = 2\nparameters = {{ {parameters} }}");
+    let workshop = Workshop::new(name, &[("dimension = 2", &mesh)]);
+    probes(&workshop.solve("out", &[]))
+}
+
+/// Probes, columns, their values and how far these may be off, as shares.
+pub fn compare(rows: &[BTreeMap<String, String>], wanted: &[(&str, &str, f64, f64)]) {
     for (probe, column, value, tolerance) in wanted {
         let mut own = rows.iter().filter(|row| row["probe"] == *probe);
         let row = own.next().expect(probe);
