@@ -23,6 +23,11 @@ pub fn available_bytes() -> Option<usize> {
     System::this().available()
 }
 
+/// What a limit of the address space (`ulimit -v`) leaves this process (bytes); none without one.
+pub fn address_space_left() -> Option<usize> {
+    System::this().left_of_address_space()
+}
+
 /// Memory of the machine (bytes).
 pub fn total_bytes() -> Option<usize> {
     System::this().entry("proc/meminfo", "MemTotal:")
@@ -65,7 +70,7 @@ impl System {
 
     fn available(&self) -> Option<usize> {
         let machine = self.entry("proc/meminfo", "MemAvailable:");
-        let limits = [machine, self.left_of_address_space()];
+        let limits = [machine, self.left_beside_kernels()];
         let groups = self.left_of_groups();
         limits.into_iter().flatten().chain(groups).min()
     }
@@ -78,12 +83,18 @@ impl System {
             .find_map(|line| line.strip_prefix("Max address space"))?;
         let limit: usize = line.split_whitespace().next()?.parse().ok()?;
         let used = self.entry("proc/self/status", "VmSize:").unwrap_or(0);
+        Some(limit.saturating_sub(used))
+    }
+
+    /// What the limit of the address space leaves beside what dense kernels reserve.
+    fn left_beside_kernels(&self) -> Option<usize> {
+        let left = self.left_of_address_space()?;
         let caches = (0..4).filter_map(|index| {
             let cache = format!("sys/devices/system/cpu/cpu0/cache/index{index}/size");
             self.number(cache)
         });
         let reserved = KERNEL_CACHES * caches.max().unwrap_or(0);
-        Some(limit.saturating_sub(used).saturating_sub(reserved))
+        Some(left.saturating_sub(reserved))
     }
 
     /// What each control group that this process belongs to leaves, of both versions.

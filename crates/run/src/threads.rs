@@ -3,8 +3,13 @@
 use kluft_mesh::Defect;
 use rayon::ThreadPool;
 
+use crate::memory::address_space_left;
+
 /// Stack of each thread (bytes): that of a main thread.
 const STACK: usize = 8 << 20;
+/// Address space that the allocator of the system reserves for each thread (bytes), and once more
+/// while it does so.
+const ARENA: usize = 64 << 20;
 /// Most threads for each core: more of them only take memory and time.
 const PER_CORE: usize = 4;
 /// As many threads may always be had.
@@ -42,17 +47,31 @@ fn capped(asked: Option<usize>, cores: usize) -> ThreadCount {
 /// So many threads.
 ///
 /// # Errors
-/// If the system does not give them.
+/// If the system does not give them. One that gives a thread, but no room for its signals, would end
+/// the process; where the address space is limited, it is therefore counted before.
 pub fn pool(count: usize) -> Result<ThreadPool, Defect> {
+    let need = count * (STACK + ARENA) + ARENA;
+    if let Some(left) = address_space_left().filter(|&left| left < need) {
+        let why = format!(
+            "they need {} MB of address space, {} MB are left",
+            need >> 20,
+            left >> 20
+        );
+        return Err(not_given(count, &why));
+    }
     let builder = rayon::ThreadPoolBuilder::new()
         .num_threads(count)
         .stack_size(STACK);
-    builder.build().map_err(|error| {
-        let problem = format!("the system does not give {count} threads: {error}");
-        let remedy =
-            "ask for fewer, e.g. --threads 1, or raise the limit of processes or of memory";
-        Defect::new("threads", problem, remedy)
-    })
+    let pool = builder.build();
+    pool.map_err(|error| not_given(count, &error.to_string()))
+}
+
+fn not_given(count: usize, why: &str) -> Defect {
+    Defect::new(
+        "threads",
+        format!("the system does not give {count} threads: {why}"),
+        "ask for fewer, e.g. --threads 1, or raise the limit of processes or of memory (ulimit -v)",
+    )
 }
 
 #[cfg(test)]
