@@ -47,8 +47,8 @@ fn capped(asked: Option<usize>, cores: usize) -> ThreadCount {
 /// So many threads.
 ///
 /// # Errors
-/// If the system does not give them. One that gives a thread, but no room for its signals, would end
-/// the process; where the address space is limited, it is therefore counted before.
+/// If the system does not give them. One that gives a thread, but no room for its signals, would
+/// end the process; where the address space is limited, it is therefore counted before.
 pub fn pool(count: usize) -> Result<ThreadPool, Defect> {
     let need = count * (STACK + ARENA) + ARENA;
     if let Some(left) = address_space_left().filter(|&left| left < need) {
