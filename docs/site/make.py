@@ -6,6 +6,7 @@ With the program each scene of the gallery is run, and its page shows the fractu
 is meshed and inspected.
 """
 
+import html
 import re
 import shutil
 import subprocess
@@ -17,13 +18,24 @@ LARGEST = 400_000
 """Bytes of a geometry whose scene is run."""
 PATIENCE = 600
 """Seconds that a scene may take."""
+STYLE = """
+.grid { --ink: #444; --soft: #777; display: grid; gap: 0 1.5rem; }
+.grid { grid-template-columns: repeat(auto-fill, minmax(min(100%, 15rem), 1fr)); }
+.grid figure { margin: 1rem 0; min-width: 0; } .grid figcaption { font-weight: 600; }
+.grid svg { width: 100%; background: #fff; } .cards a { display: block; margin: 0.7rem 0; }
+.bar { display: flex; gap: 0.6rem; align-items: center; font-size: 0.9rem; }
+.bar i { flex: 1; height: 0.7rem; border-radius: 2px; }
+.body { fill: none; stroke: var(--soft); stroke-width: 1.5; } .behind { stroke-dasharray: 5 5; }
+.axes { stroke: var(--ink); stroke-width: 2.5; }
+.axes text { fill: var(--ink); stroke: none; font: 24px sans-serif; }
+""".replace("\n", " ")
 FORGE = "https://github.com/kluft/kluft/blob/main/"
 
 INDEX = """# Kluft
 
 How fractured rock deforms in three dimensions: joints close, slide and open, water flows in them.
 
-{{content}}
+{content}
 
 ```{{toctree}}
 :hidden:
@@ -92,14 +104,14 @@ def comment_of(scene: str) -> str:
     return "\n".join(lines)
 
 
-def picture_of(folder: Path, kluft: str | None) -> str:
-    """The pictures of the page that a run of a scene leaves, as HTML; nothing if it is not run.
+def pictures_of(folder: Path, kluft: str | None) -> list[str]:
+    """The pictures of the page that a run of a scene leaves, as HTML; none if it is not run.
 
     Raises:
         SystemExit: if the scene is not solved, or, if it is large, not meshed and sound.
     """
     if kluft is None:
-        return ""
+        return []
     sizes = [file.stat().st_size for file in folder.glob("*.geo")]
     is_small = not sizes or max(sizes) <= LARGEST
     command = "run" if is_small else "inspect"
@@ -108,37 +120,44 @@ def picture_of(folder: Path, kluft: str | None) -> str:
         done = subprocess.run(words, timeout=PATIENCE, capture_output=True, text=True, check=False)
         if done.returncode:
             raise SystemExit(f"{folder.name}: {done.stderr}")
-        if not is_small:
-            return ""
-        page = (Path(out) / "report.html").read_text("utf-8")
-    found = re.findall(r'<figure class="picture">.*?</figure>', page, re.S)
-    style = re.search(r"<style>(.*?)</style>", page, re.S)
-    wanted = (".grid", ".bar", ".picture", ".axes")
-    lines = (style.group(1) if style else "").splitlines()
-    rules = " ".join(rule for rule in lines if rule.startswith(wanted))
-    root = ":root { --ink: #444; --soft: #777; }"
-    return f"<style>{root} {rules}</style><div class=\"grid\">{''.join(found[:2])}</div>"
+        page = (Path(out) / "report.html").read_text("utf-8") if is_small else ""
+    return re.findall(r'<figure class="picture">.*?</figure>', page, re.S)
+
+
+def raw(text: str) -> str:
+    """A block of HTML with the style of pictures."""
+    return f"```{{raw}} html\n<style>{STYLE}</style>{text}\n```\n"
+
+
+def card(name: str, title: str, picture: str) -> str:
+    """The link to a scene in the gallery, with its picture."""
+    drawn = re.search(r"<svg.*?</svg>", picture, re.S)
+    return f"<a href=\"{name}.html\">{drawn.group(0) if drawn else ''}{html.escape(title)}</a>"
 
 
 def gallery(repository: Path, out: Path, kluft: str | None) -> None:
-    """A page for each scene."""
+    """A page for each scene, and one that shows them all."""
     out.mkdir()
-    names = []
+    names, cards = [], []
     for folder in sorted((repository / "geometries").iterdir()):
         file = folder / "scene.toml"
         if not file.is_file():
             continue
         scene = file.read_text("utf-8")
-        title = re.search(r'^title = "(.*)"', scene, re.M)
+        stated = re.search(r'^title = "(.*)"', scene, re.M)
+        title = stated.group(1) if stated else folder.name
         shown = "\n".join(scene.splitlines()[:120])
-        picture = picture_of(folder, kluft)
-        raw = f"```{{raw}} html\n{picture}\n```\n" if picture else ""
-        text = f"# {title.group(1) if title else folder.name}\n\n`geometries/{folder.name}`\n\n{raw}\n"
+        pictures = pictures_of(folder, kluft)
+        grid = raw(f"<div class=\"grid\">{''.join(pictures[:2])}</div>") if pictures else ""
+        text = f"# {title}\n\n`geometries/{folder.name}`\n\n{grid}\n"
         text += f"## What it is, and its oracle\n\n```text\n{comment_of(scene)}\n```\n\n## Scene\n\n```toml\n{shown}\n```\n"
         (out / f"{folder.name}.md").write_text(text, "utf-8")
         names.append(folder.name)
+        cards.append(card(folder.name, title, pictures[0] if pictures else ""))
     listed = "\n".join(names)
-    index = f"# Gallery\n\nScenes that run, each with its oracle.\n\n```{{toctree}}\n:maxdepth: 1\n{listed}\n```\n"
+    shown = raw(f"<div class=\"grid cards\">{''.join(cards)}</div>") if kluft else ""
+    tree = f"```{{toctree}}\n:maxdepth: 1\n{':hidden:' if kluft else ''}\n\n{listed}\n```\n"
+    index = f"# Gallery\n\nScenes that run, each with its oracle.\n\n{shown}\n{tree}"
     (out / "index.md").write_text(index, "utf-8")
 
 

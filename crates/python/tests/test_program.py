@@ -10,7 +10,7 @@ import sys
 import pytest
 
 import kluft
-from kluft.__main__ import own
+from kluft.command import own
 
 pandas = pytest.importorskip("pandas")
 
@@ -34,7 +34,8 @@ def test_the_package_and_its_own_path_are_the_command():
     said = command("--version")
     assert said.returncode == 0 and said.stdout.startswith("kluft ")
     module = [sys.executable, "-m", "kluft", "--version"]
-    assert subprocess.run(module, capture_output=True, text=True, check=True).stdout == said.stdout
+    as_module = subprocess.run(module, capture_output=True, text=True, check=True)
+    assert (as_module.stdout, as_module.stderr) == (said.stdout, "")
     wrong = command("run", "no-such-scene.toml")
     assert wrong.returncode == 2 and "remedy: " in wrong.stderr
     usage = command("run", "--no-such-option")

@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 from typing import Sequence
 
-from .__main__ import own
+from .command import own
 from .errors import InputError
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from . import _kluft
 from .keys import SceneSections, Section
 from .mesh import Mesh
-from .__main__ import own
+from .command import own
 from .prepared import PreparedRun
 from .run import FolderSource, Run
 from .solving import MemorySource, Progress, end, follower, judge

@@ -65,16 +65,31 @@ pub fn bytes_of(file: &Path) -> Vec<u8> {
     fs::read(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
-/// Runs cases on as many threads as the machine has cores; what they return, in their order.
+/// Words on the progress of a suite.
+const WORDS: usize = 20;
+/// Fewest cases between two of them.
+const FEWEST: usize = 25;
+
+/// Runs cases on as many threads as the machine has cores; what they return, in their order. Tells
+/// how many are done on standard error.
 ///
 /// # Panics
 /// If a case does.
 pub fn each<T: Send>(cases: Range<usize>, run: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(cases.start);
+    let ended = AtomicUsize::new(0);
+    let counted = |case| {
+        let result = run(case);
+        let count = 1 + ended.fetch_add(1, Ordering::Relaxed);
+        if count.is_multiple_of((cases.len() / WORDS).max(FEWEST)) {
+            eprintln!("{count} of {} cases", cases.len());
+        }
+        (case, result)
+    };
     let work = || {
         let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
         let own = numbers.take_while(|&case| case < cases.end);
-        own.map(|case| (case, run(case))).collect::<Vec<_>>()
+        own.map(counted).collect::<Vec<_>>()
     };
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let mut done: Vec<(usize, T)> = thread::scope(|scope| {
