@@ -127,8 +127,10 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
     }
     let megabytes = summary.peak_memory_bytes as f64 / 1e6;
     let text = format!(
-        "{:.2} s, {megabytes:.0} MB at most, {} threads",
-        summary.seconds.total, summary.threads
+        "{:.2} s, {megabytes:.0} MB at most, {} thread{}",
+        summary.seconds.total,
+        summary.threads,
+        if summary.threads == 1 { "" } else { "s" }
     );
     report.entry("took", &text);
     if !summary.steps.is_empty() {

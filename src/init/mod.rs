@@ -112,10 +112,19 @@ fn there_already(file: &Path) -> Defect {
 }
 
 fn neither(input: &Path) -> Defect {
+    let folder = input.display();
+    if input.join("scene.toml").is_file() {
+        let remedy = format!("run it: kluft run {folder}");
+        return Defect::new(
+            folder.to_string(),
+            "there is a scene in this folder",
+            remedy,
+        );
+    }
     let problem = match input.exists() {
         true => "this is neither a mesh nor a geometry of gmsh",
         false => "there is no such file",
     };
     let remedy = "give a mesh (.msh) or a geometry (.geo)";
-    Defect::new(input.display().to_string(), problem, remedy)
+    Defect::new(folder.to_string(), problem, remedy)
 }

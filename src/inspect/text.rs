@@ -12,6 +12,8 @@ use super::lines::{at, head_line, line, list, short};
 
 /// Groups that are listed, and in the long form.
 const GROUPS: [usize; 2] = [20, 60];
+/// Worst cells that are listed, and in the long form.
+const WORST: [usize; 2] = [1, 3];
 /// Characters of a name in the table of groups.
 const NAME: usize = 24;
 
@@ -30,7 +32,7 @@ pub fn of(inspection: &Inspection, is_long: bool) -> String {
         head_line(out, &hydraulics::head(found));
         list(out, &hydraulics::networks(found), String::clone);
     }
-    cells(out, inspection);
+    cells(out, inspection, is_long);
     unknowns(out, inspection);
     for solver in &inspection.solvers {
         cost(out, solver);
@@ -225,7 +227,7 @@ fn block_text(block: &BlockFinding) -> String {
     )
 }
 
-fn cells(out: &mut String, inspection: &Inspection) {
+fn cells(out: &mut String, inspection: &Inspection, is_long: bool) {
     let Some(cells) = &inspection.cells else {
         return;
     };
@@ -240,10 +242,11 @@ fn cells(out: &mut String, inspection: &Inspection) {
         out,
         &format!("  in tenths from 0 to 1: {:?}", cells.histogram),
     );
-    for cell in cells.worst.iter().take(3) {
+    let count = WORST[usize::from(is_long)];
+    for cell in cells.worst.iter().take(count) {
         line(out, &format!("  worst {}", cell_text(cell)));
     }
-    for cell in cells.worst_at_fractures.iter().take(3) {
+    for cell in cells.worst_at_fractures.iter().take(count) {
         line(out, &format!("  worst at fractures {}", cell_text(cell)));
     }
 }

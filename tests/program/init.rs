@@ -111,6 +111,12 @@ fn a_scene_that_is_there_stays() {
         "{}",
         run.err
     );
+    let run = on("init", folder.path());
+    assert!(
+        run.code == Some(2) && run.err.contains("run it: kluft run"),
+        "{}",
+        run.err
+    );
 }
 
 #[test]

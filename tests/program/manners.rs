@@ -362,3 +362,12 @@ fn a_mesh_without_groups_is_told_how_to_get_them() {
         assert!(run.out.contains(part), "{part}: {}", run.out);
     }
 }
+
+/// A line that is wrapped by the terminal breaks in the middle of an example.
+#[test]
+fn texts_of_help_are_written_for_eighty_columns() {
+    let files = fs::read_dir(crate::harness::root().join("src/help")).expect("a folder");
+    for file in files {
+        assert_fits(&fs::read_to_string(file.expect("a file").path()).expect("a text"));
+    }
+}

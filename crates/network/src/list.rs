@@ -36,7 +36,11 @@ const COLUMNS: [&str; 23] = [
 ];
 
 /// Other names of columns, as geologists and their programs write them.
-const OTHER_NAMES: [(&str, &str); 4] = [
+const OTHER_NAMES: [(&str, &str); 8] = [
+    ("easting", "x"),
+    ("northing", "y"),
+    ("elevation", "z"),
+    ("id", "name"),
     ("dipdir", "dip_direction"),
     ("dip_dir", "dip_direction"),
     ("dip_azimuth", "dip_direction"),
@@ -191,8 +195,9 @@ fn columns(
     let mut found = HashMap::new();
     for (index, name) in headers.iter().enumerate() {
         let name = name.trim_start_matches('\u{feff}');
-        let other = OTHER_NAMES.iter().find(|(other, _)| *other == name);
-        let meant = other.map_or(name, |(_, meant)| meant);
+        let plain = name.to_lowercase().replace([' ', '-'], "_");
+        let other = OTHER_NAMES.iter().find(|(other, _)| *other == plain);
+        let meant = other.map_or(&*plain, |(_, meant)| meant);
         let known = COLUMNS.iter().copied().find(|known| *known == meant);
         let Some(known) = known else {
             defects.push(Defect::new(
@@ -203,11 +208,11 @@ fn columns(
             continue;
         };
         if found.insert(known, index).is_some() {
-            defects.push(Defect::new(
-                &place,
-                format!("column `{name}` stands twice"),
-                "remove one of them",
-            ));
+            let problem = match name == known {
+                true => format!("column `{name}` stands twice"),
+                false => format!("column `{name}` stands twice: it means `{known}`"),
+            };
+            defects.push(Defect::new(&place, problem, "remove one of them"));
         }
     }
     if !found.contains_key("shape") && defects.is_empty() {
@@ -303,6 +308,8 @@ d, , polygon,,,,,,,,,,,, 0 0 0; 2 0 0; 0 2 0
             ("dip_azimuth", "135", "disc"),
             ("strike", "45", "disc"),
             ("strike", "-315", "disk"),
+            ("Dip Direction", "135", "Disc"),
+            ("DIP-DIR", "135", "DISK"),
         ] {
             let found = read(head, value, shape).expect(head);
             let corners = plain.corners().iter().zip(found.corners());
@@ -312,7 +319,11 @@ d, , polygon,,,,,,,,,,,, 0 0 0; 2 0 0; 0 2 0
         let both = read("dipdir,strike", "135,45", "disc").expect_err("two directions");
         assert!(both[0].to_string().contains("column `strike`"), "{both:?}");
         let twice = read("dipdir,azimuth", "135,135", "disc").expect_err("a column twice");
-        assert!(twice[0].to_string().contains("stands twice"), "{twice:?}");
+        let twice = twice[0].to_string();
+        assert!(twice.contains("it means `dip_direction`"), "{twice}");
+        let surveyed = "Shape,Easting,Northing,Elevation,Dip,Azimuth,Radius\ndisc,1,2,3,30,135,2\n";
+        let found = read_list(surveyed, "list.csv", "rest", false).expect("a list");
+        assert_eq!(found[0].polygon.corners(), plain.corners());
     }
 
     #[test]

@@ -184,7 +184,8 @@ impl<'a> Row<'a> {
 
 /// The polygon that a line describes.
 pub(crate) fn polygon(row: &mut Row<'_>) -> Option<Polygon> {
-    let outline = match row.text("shape") {
+    let shape = row.text("shape").map(str::to_lowercase);
+    let outline = match shape.as_deref() {
         Some("polygon") => return through_points(row),
         Some("disc" | "disk") => disc(row),
         Some("ellipse") => ellipse(row),

@@ -2,10 +2,15 @@
 
 use std::fmt::Write;
 
+use clap::builder::styling::{AnsiColor, Style};
 use kluft_mesh::{Defect, Excerpt};
 
 use crate::printing::one_line;
 
+const REMEDY: &str = "remedy:";
+const RED: Style = AnsiColor::Red.on_default().bold();
+const GREEN: Style = AnsiColor::Green.on_default();
+const BOLD: Style = Style::new().bold();
 /// Defects beyond these are counted by their kind.
 pub const SHOWN: usize = 20;
 /// Kinds beyond these are left out.
@@ -30,6 +35,30 @@ pub fn listed(defects: &[Defect]) -> String {
         out += &counted(&defects[SHOWN..]);
     }
     out
+}
+
+/// That list as a terminal with colours shows it: places bold, carets red, remedies green.
+pub fn coloured(listed: &str) -> String {
+    let mut out = String::with_capacity(2 * listed.len());
+    for (number, line) in listed.lines().enumerate() {
+        let text = line.trim_start();
+        let (style, end) = match text {
+            _ if number == 0 => (RED, line.len()),
+            _ if text.starts_with(REMEDY) => (GREEN, line.len() - text.len() + REMEDY.len()),
+            _ if is_caret(text) => (RED, line.len()),
+            _ if line.len() == text.len() => (BOLD, line.find(": ").unwrap_or(0)),
+            _ => (Style::new(), 0),
+        };
+        let (head, rest) = line.split_at(end);
+        let _ = writeln!(out, "{style}{head}{style:#}{rest}");
+    }
+    out
+}
+
+/// Whether a line marks with carets what is meant in the line above.
+fn is_caret(line: &str) -> bool {
+    line.strip_prefix("| ")
+        .is_some_and(|marks| marks.trim_start().chars().all(|mark| mark == '^'))
 }
 
 /// A line of a file, and below it what is meant.
@@ -112,6 +141,30 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}:\n{text}");
         }
+    }
+
+    #[test]
+    fn colours_change_no_word() {
+        let excerpt = Excerpt::of("young = 1", &(0..5));
+        let defect = Defect::new("a.toml:1", "is unknown", "rename").with_excerpt(excerpt);
+        let plain = listed(&[defect]);
+        let shown = coloured(&plain);
+        for part in [RED.render().to_string(), GREEN.render().to_string()] {
+            assert!(shown.contains(&part), "{shown:?}");
+        }
+        let bare: String =
+            shown
+                .split('\u{1b}')
+                .enumerate()
+                .fold(String::new(), |all, (i, part)| {
+                    let part = if i == 0 {
+                        part
+                    } else {
+                        part.split_once('m').map_or("", |(_, rest)| rest)
+                    };
+                    all + part
+                });
+        assert_eq!(bare, plain);
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! Why a command did not end well, and the exit code that says so.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 
 use kluft_io::NOT_WRITTEN;
 use kluft_io::gmsh::NOT_MESHED;
 use kluft_mesh::Defect;
 
-use crate::defects::listed;
+use crate::defects::{coloured, listed};
 use crate::printing::lines;
+use crate::report::wants_colours;
 
 /// Why a command did not end well.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +53,7 @@ impl Failure {
     /// Prints it to the standard error stream.
     pub fn print(&self) {
         let mut err = std::io::stderr().lock();
+        let has_colours = err.is_terminal() && wants_colours();
         // With the error stream gone there is nobody left to tell.
         let _ = match self {
             Self::NotConverged(why) => writeln!(err, "not converged: {}", lines(why)),
@@ -63,6 +65,9 @@ impl Failure {
             Self::Machine(defects) => {
                 let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
                 writeln!(err, "failed: {}", lines(&text.join("\n")))
+            }
+            Self::BadInput(defects) if has_colours => {
+                write!(err, "{}", coloured(&listed(defects)))
             }
             Self::BadInput(defects) => write!(err, "{}", listed(defects)),
             Self::Told(_) => Ok(()),

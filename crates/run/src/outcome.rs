@@ -17,6 +17,17 @@ pub enum Ending {
     NothingLeft,
 }
 
+impl Ending {
+    /// In words, as `summary.json` has it.
+    pub fn in_words(&self) -> &'static str {
+        match self {
+            Self::Solved | Self::NothingLeft => "solved",
+            Self::NotConverged(_) => "not converged",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
 /// Everything that came out of a run, the steps that converged before a failure included.
 #[derive(Debug, Clone)]
 pub struct Outcome {

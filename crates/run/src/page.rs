@@ -11,7 +11,7 @@ use kluft_report::{Frame, Page, Surface};
 pub use iterations::Iterations;
 
 use crate::outcome::Ending;
-use crate::summary::Summary;
+use crate::summary::{StepSummary, Summary};
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "report.html";
@@ -50,8 +50,6 @@ pub fn fields() -> [&'static str; 5] {
 pub struct Told<'a> {
     /// The numbers of the run.
     pub summary: &'a Summary,
-    /// How it ended, if that is known.
-    pub ending: Option<&'a Ending>,
     /// The text of `history.csv`.
     pub history: &'a str,
     /// How Newton's method went.
@@ -60,6 +58,10 @@ pub struct Told<'a> {
     pub shown: Option<&'a Shown>,
     /// The text of the scene.
     pub scene: Option<&'a str>,
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }
 
 /// Whether a text is such a page.
@@ -108,22 +110,26 @@ impl Told<'_> {
     /// How it ended, and what one should know before anything else.
     fn lead(&self, page: &mut Page) {
         let summary = self.summary;
-        let steps = summary.steps.len();
-        let ended = match self.ending {
-            None | Some(Ending::Solved | Ending::NothingLeft) => "Solved",
+        let is_converged = |step: &&StepSummary| step.completed >= 1.0;
+        let steps = summary.steps.iter().filter(is_converged).count();
+        let ended = match &summary.ending {
             Some(Ending::Stopped) => "Stopped",
             Some(Ending::NotConverged(_)) => "Not converged",
+            None if steps < summary.steps.len() => "Not converged",
+            None | Some(Ending::Solved | Ending::NothingLeft) => "Solved",
         };
         page.text(&format!(
-            "{ended}: {steps} load step{}, {} unknowns, {} cells, {} fracture facets; {:.2} s on {} threads.",
-            if steps == 1 { "" } else { "s" },
+            "{ended}: {steps} load step{}, {} unknowns, {} cells, {} fracture facets; {:.2} s on {} \
+             thread{}.",
+            plural(steps),
             summary.unknowns.total,
             summary.mesh.cells,
             summary.mesh.fracture_facets,
             summary.seconds.total,
-            summary.threads
+            summary.threads,
+            plural(summary.threads)
         ));
-        if let Some(Ending::NotConverged(why)) = self.ending {
+        if let Some(Ending::NotConverged(why)) = &summary.ending {
             page.warning(why);
         }
         for warning in summary.warnings.iter().take(MOST_LINES) {

@@ -72,7 +72,6 @@ impl<'a> Saving<'a> {
         output.write(SUMMARY, |path| self.summary.write(path))?;
         let told = Told {
             summary: self.summary,
-            ending: None,
             history: self.history,
             iterations: &Iterations::default(),
             shown: output.shown(),

@@ -392,13 +392,14 @@ impl<'a> Run<'a> {
     }
 
     fn close(&mut self, ending: &Ending) -> Result<(), Defect> {
+        self.summary.ending = Some(ending.clone());
         self.write_summary()?;
-        self.write_page(ending)?;
+        self.write_page()?;
         self.output.sync()?;
         self.output.close()
     }
 
-    fn write_page(&self, ending: &Ending) -> Result<(), Defect> {
+    fn write_page(&self) -> Result<(), Defect> {
         if !self.output.is_kept() || !self.request.report {
             return Ok(());
         }
@@ -408,7 +409,6 @@ impl<'a> Run<'a> {
         };
         let told = Told {
             summary: &self.summary,
-            ending: Some(ending),
             history,
             iterations: &self.iterations,
             shown: self.output.shown(),

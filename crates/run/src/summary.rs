@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
+use crate::outcome::Ending;
 use crate::permeability_summary::PermeabilitySummary;
 use crate::provenance::Provenance;
 use crate::spread::Spread;
@@ -232,6 +233,9 @@ pub struct Summary {
     pub kluft: &'static str,
     /// Title of the scene.
     pub title: String,
+    /// How it ended; none while it runs.
+    #[serde(serialize_with = "ending_in_words")]
+    pub ending: Option<Ending>,
     /// What it was made with, and of.
     pub provenance: Provenance,
     /// What the grids say of themselves: facts, each with its number.
@@ -278,6 +282,14 @@ pub struct Summary {
     /// The ranks, if the run was shared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ranks: Option<RankSummary>,
+}
+
+fn ending_in_words<S: serde::Serializer>(
+    ending: &Option<Ending>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let words = ending.as_ref().map(Ending::in_words);
+    serializer.serialize_str(words.unwrap_or("not finished"))
 }
 
 fn as_map<S: serde::Serializer>(

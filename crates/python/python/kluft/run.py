@@ -169,7 +169,8 @@ class Run:
     def __init__(self, source: Source, ending: str = "solved") -> None:
         self._source = source
         self.ending = ending
-        """``solved``, ``stopped`` or ``not converged``."""
+        """``solved``, ``stopped``, ``not converged``, or ``not finished`` in the folder of a run that
+        goes on or was killed."""
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -306,6 +307,4 @@ class FolderSource:
 def read(folder: str | os.PathLike[str]) -> Run:
     """The run that has written its results to a folder, by ``kluft run`` or :meth:`Run.save`."""
     source = FolderSource(folder)
-    steps = json.loads(source.summary)["steps"]
-    is_whole = all(step.get("converged", True) for step in steps)
-    return Run(source, "solved" if is_whole else "not converged")
+    return Run(source, json.loads(source.summary)["ending"])

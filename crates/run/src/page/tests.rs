@@ -54,6 +54,7 @@ fn hostile(fractures: usize) -> Summary {
             exact: Some(1.1),
             error: Some(0.1),
         }],
+        ending: Some(Ending::NotConverged(BAD.into())),
         ..Summary::default()
     };
     summary.provenance.command = Some(BAD.into());
@@ -121,10 +122,8 @@ fn noise(triangles: usize) -> Shown {
 }
 
 fn html(summary: &Summary, shown: Option<&Shown>, scene: &str) -> String {
-    let ending = Ending::NotConverged(BAD.into());
     let told = Told {
         summary,
-        ending: Some(&ending),
         history: "step,time,kind,name,aperture_mean,normal_traction_mean\n\
             1,1,fracture,<script>,1e-4,-1\n2,2,fracture,<script>,2e-4,-2\n",
         iterations: &Iterations::default(),

@@ -1,6 +1,7 @@
 //! What is asked of a suite, and how its cases are run.
 
 use std::fs;
+use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -82,7 +83,7 @@ pub fn each<T: Send>(cases: Range<usize>, run: impl Fn(usize) -> T + Sync) -> Ve
         let result = run(case);
         let count = 1 + ended.fetch_add(1, Ordering::Relaxed);
         if count.is_multiple_of((cases.len() / WORDS).max(FEWEST)) {
-            eprintln!("{count} of {} cases", cases.len());
+            let _ = writeln!(std::io::stderr().lock(), "{count} of {} cases", cases.len());
         }
         (case, result)
     };
