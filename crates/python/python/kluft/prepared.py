@@ -11,7 +11,7 @@ from . import _kluft
 from .grid import Array, Grid
 from .keys import Fracture
 from .run import FractureResult, Run, Step
-from .solving import MemorySource, Progress, end, follower, judge
+from .solving import MemorySource, Progress, followed, judge
 
 
 class Source(Protocol):
@@ -86,11 +86,10 @@ class PreparedRun(Run):
         pressures = self._push(fluid_pressure) if fluid_pressure else None
         changed = self._scene.replace(fracture=fracture) if fracture else None
         parsed = changed._parsed(needs_mesh=False) if changed is not None else None
-        told = follower(progress)
-        ending, why, reached, raised = self._prepared.advance(
-            (time, all_factors), pressures, (parsed, rock), told
-        )
-        end(told)
+        with followed(progress) as told:
+            ending, why, reached, raised = self._prepared.advance(
+                (time, all_factors), pressures, (parsed, rock), told
+            )
         if changed is not None:
             self._scene = changed
         number = len(self._source) + (ending != "solved")

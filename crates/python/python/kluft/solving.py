@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Callable
 
 from . import _kluft
@@ -42,11 +44,18 @@ class MemorySource:
         self._results.save(folder)
 
 
-def follower(progress: bool | Progress | None) -> Progress | None:
-    """Who is told of a run: nobody, a line on the error stream, or a function."""
-    if progress is True:
-        return _Line()
-    return progress or None
+@contextmanager
+def followed(progress: bool | Progress | None) -> Iterator[Progress | None]:
+    """Who is told of a run: nobody, a line on the error stream, or a function. However the run
+    ends, what is written next begins on a line of its own."""
+    if progress is not True:
+        yield progress or None
+        return
+    line = _Line()
+    try:
+        yield line
+    finally:
+        line.end()
 
 
 class _Line:
@@ -54,6 +63,7 @@ class _Line:
 
     def __init__(self) -> None:
         self.step = ""
+        self.is_open = False
 
     def __call__(self, event: dict[str, Any]) -> None:
         kind = event["event"]
@@ -67,12 +77,13 @@ class _Line:
         if text is not None:
             sys.stderr.write(f"\r{text().strip():<72}")
             sys.stderr.flush()
+            self.is_open = True
 
-
-def end(progress: Progress | None) -> None:
-    """Leaves the line that progress was written to."""
-    if isinstance(progress, _Line):
-        sys.stderr.write("\n")
+    def end(self) -> None:
+        """Ends the line, if there is one."""
+        if self.is_open:
+            sys.stderr.write("\n")
+        self.is_open = False
 
 
 def judge(run: Run, ending: str, why: str, step: int, reached: float, raised: Any) -> None:
