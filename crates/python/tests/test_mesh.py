@@ -34,6 +34,17 @@ def test_elements_that_refer_to_no_node_are_refused():
         kluft.Mesh.from_arrays(points, volumes, surfaces)
 
 
+@pytest.mark.parametrize("of, known", [("volumes", "tetra, tetra10"), ("surfaces", "triangle, ")])
+def test_an_unknown_type_of_elements_is_refused_with_those_that_are_known(of, known):
+    points, volumes, surfaces = block()
+    given = {"volumes": volumes, "surfaces": surfaces}
+    given[of] = {"odd": {"tet": [[0, 1, 2, 3]]}}
+    with pytest.raises(kluft.InputError, match="`tet`") as caught:
+        kluft.Mesh.from_arrays(points, **given)
+    defect = caught.value.defects[0]
+    assert "odd" in defect.place and known in defect.remedy
+
+
 def test_elements_may_belong_to_several_groups(scene):
     points, volumes, surfaces = block()
     surfaces[("joint", "all")] = surfaces.pop("joint")
@@ -107,6 +118,18 @@ def test_pyvista_hands_over_numbers(scene):
     np.testing.assert_allclose(aperture, closed_aperture(PRESSURE), rtol=1e-9)
     drawn = run.last.fracture_grid.to_pyvista()
     assert drawn.n_cells == 4 and drawn.area == pytest.approx(1.0)
+
+
+def test_a_grid_without_numbers_of_groups_is_told_to_name_them():
+    pyvista = pytest.importorskip("pyvista")
+    points, volumes, _ = block()
+    grid = pyvista.UnstructuredGrid({12: volumes["rock"]["hexahedron"]}, points)
+    grid.cell_data["material"] = np.ones(grid.n_cells, int)
+    with pytest.raises(kluft.InputError, match="gmsh:physical.*material") as caught:
+        kluft.Mesh.from_pyvista(grid)
+    assert "groups=" in caught.value.defects[0].remedy
+    named = kluft.Mesh.from_pyvista(grid, {1: "rock"}, groups="material")
+    assert [group["name"] for group in named.groups] == ["rock"]
 
 
 def test_gmsh_hands_over_its_model():

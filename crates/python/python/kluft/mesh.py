@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _kluft, tables
+from .errors import InputError
 from .grid import Array
 
 _VTK = {
@@ -89,7 +90,7 @@ class Mesh:
         VTK and meshio. A tuple of names stands for elements that belong to several.
 
         Raises:
-            InputError: if elements refer to nodes that are not there.
+            InputError: if elements refer to nodes that are not there, or have an unknown type.
         """
         groups = _Groups()
         for dimension, named in ((3, volumes), (2, surfaces)):
@@ -97,7 +98,7 @@ class Mesh:
                 names = (name,) if isinstance(name, str) else name
                 own = [groups.number(dimension, one) for one in names]
                 for kind, nodes in elements.items():
-                    groups.add("vtk", _VTK[kind], nodes, own)
+                    groups.add("vtk", _number(dimension, name, kind), nodes, own)
         return cls._of_groups("arrays", points, groups)
 
     @classmethod
@@ -152,7 +153,13 @@ class Mesh:
         cls, grid: Any, names: Mapping[int, str] | None = None, groups: str = "gmsh:physical"
     ) -> Mesh:
         """Takes a ``pyvista.UnstructuredGrid`` with volumes and surfaces; the cell data ``groups``
-        hold a number for each cell, 0 for none, and ``names`` the name of each number."""
+        hold a number for each cell, 0 for none, and ``names`` the name of each number.
+
+        Raises:
+            InputError: if the grid has no such cell data.
+        """
+        if groups not in grid.cell_data:
+            raise _without_groups(groups, list(grid.cell_data.keys()))
         tags = np.asarray(grid.cell_data[groups])
         blocks = [(int(kind), nodes) for kind, nodes in grid.cells_dict.items()]
         blocks = [(kind, nodes) for kind, nodes in blocks if kind in _VTK.values()]
@@ -210,6 +217,27 @@ class Mesh:
         mesh = self._mesh
         head = f"<p>{mesh.node_count} nodes, {mesh.cell_count} cells</p>"
         return head + tables.html(self.groups)
+
+
+def _number(dimension: int, name: Any, kind: str) -> int:
+    """The number of VTK for a type of elements of a volume (3) or a surface (2).
+
+    Raises:
+        InputError: if the type is unknown.
+    """
+    if kind in _VTK:
+        return _VTK[kind]
+    fitting = [one for one, number in _VTK.items() if (number in _SURFACES) == (dimension == 2)]
+    place = f"{'surface' if dimension == 2 else 'volume'} {name!r}"
+    remedy = f"take one of {', '.join(fitting)}"
+    raise InputError([(place, f"`{kind}` is no type of elements", remedy)])
+
+
+def _without_groups(groups: str, found: list[str]) -> InputError:
+    """What is wrong with a grid whose cells have no numbers of groups."""
+    remedy = "name the cell data that have a number for each volume and surface: groups=..."
+    there = f"there are {', '.join(map(repr, found))}" if found else "there are none"
+    return InputError([("cell data of the grid", f"there is no {groups!r}; {there}", remedy)])
 
 
 def _blocks(mesh: Any) -> list[tuple[int, Array]]:
