@@ -181,6 +181,13 @@ def test_a_notebook_shows_a_run(scene, mesh):
     assert "a joint" in page and "joint" in page and "<table>" in page
 
 
+def test_a_field_that_is_not_there_is_refused_with_those_that_are(scene, mesh):
+    run = scene.solve(mesh)
+    for refused in (lambda: run.plot("nonsense"), lambda: run.fractures["joint"]["nonsense"]):
+        with pytest.raises(KeyError, match="nonsense.*aperture.*slip"):
+            refused()
+
+
 def test_a_real_interrupt_ends_a_process_of_its_own(tmp_path):
     """SIGINT reaches the thread that called while the run works."""
     script = tmp_path / "long.py"

@@ -44,7 +44,13 @@ class FractureResult:
         return np.concatenate([np.arange(start, end) for start, end in pairs])
 
     def __getitem__(self, field: str) -> Array:
-        """A field by its name, on the corners of the facets or on the facets."""
+        """A field by its name, with a value or a row for each corner of the facets, or for each
+        facet.
+
+        Raises:
+            KeyError: if there is no such field, with those that there are.
+        """
+        self._grid.require(field)
         if field in self._grid.point_fields:
             return self._grid.point_fields[field][self._points()]
         return self._grid.cell_fields[field][self._facets()]
@@ -240,11 +246,17 @@ class Run:
         return Path(folder)
 
     def plot(self, field: str = "aperture", **options: Any) -> Any:
-        """Draws a field of the fractures with pyvista; ``options`` go to ``add_mesh``."""
+        """Draws a field of the fractures with pyvista; ``options`` go to ``add_mesh``.
+
+        Raises:
+            KeyError: if there is no such field, with those that there are.
+        """
+        grid = self.last.fracture_grid
+        grid.require(field)
         import pyvista
 
         plotter = pyvista.Plotter()
-        plotter.add_mesh(self.last.fracture_grid.to_pyvista(), scalars=field, **options)
+        plotter.add_mesh(grid.to_pyvista(), scalars=field, **options)
         return plotter.show()
 
     def __repr__(self) -> str:
