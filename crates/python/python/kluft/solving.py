@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Callable
@@ -63,12 +64,14 @@ class _Line:
 
     def __init__(self) -> None:
         self.step = ""
+        self.first = (0, 0.0)
+        """The step that was first, and when it began (s)."""
         self.is_open = False
 
     def __call__(self, event: dict[str, Any]) -> None:
         kind = event["event"]
         if kind == "step begins":
-            self.step = f"step {event['step']} of {event['steps']}"
+            self.begin(event["step"], event["steps"])
         text = {
             "stage begins": lambda: f"{self.step} {event['stage']}",
             "iteration": lambda: f"{self.step}, iteration {event['iteration']}, "
@@ -79,11 +82,34 @@ class _Line:
             sys.stderr.flush()
             self.is_open = True
 
+    def begin(self, number: int, count: int) -> None:
+        """Begins a step; a number that does not follow begins a run of its own."""
+        now, (first, began) = time.monotonic(), self.first
+        if not self.step or number <= first:
+            self.first = first, began = number, now
+        left = _left(now - began, number - first, count + 1 - number)
+        self.step = f"step {number} of {count}{left}"
+
     def end(self) -> None:
         """Ends the line, if there is one."""
         if self.is_open:
             sys.stderr.write("\n")
         self.is_open = False
+
+
+def _left(passed: float, done: int, steps: int) -> str:
+    """How long the steps that are left take, if they are like those done in the seconds that have
+    passed, in the words of the command; nothing before one is done, and for less than some
+    seconds."""
+    worth_saying = 5.0
+    seconds = passed / done * steps if done else 0.0
+    if seconds < worth_saying:
+        return ""
+    if seconds < 100.0:
+        return f" (about {seconds:.0f} s left)"
+    if seconds < 6000.0:
+        return f" (about {seconds / 60.0:.0f} min left)"
+    return f" (about {seconds / 3600.0:.1f} h left)"
 
 
 def judge(run: Run, ending: str, why: str, step: int, reached: float, raised: Any) -> None:
