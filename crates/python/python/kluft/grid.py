@@ -7,6 +7,8 @@ from typing import Any, Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .tables import count
+
 Array = NDArray[Any]
 Cells = tuple[Array, Array, Array]
 
@@ -69,4 +71,4 @@ class Grid:
         return grid
 
     def __repr__(self) -> str:
-        return f"Grid({len(self.points)} points; {', '.join(self.fields)})"
+        return f"Grid({count(len(self.points), 'point')}; {', '.join(self.fields)})"

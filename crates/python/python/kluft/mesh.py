@@ -56,11 +56,12 @@ class Survey:
         return tables.frame(self.fractures)
 
     def __repr__(self) -> str:
-        return f"Survey({len(self.fractures)} fractures, {len(self.blocks)} blocks)"
+        fractures = tables.count(len(self.fractures), "fracture")
+        return f"Survey({fractures}, {tables.count(len(self.blocks), 'block')})"
 
     def _repr_html_(self) -> str:
         quality = f"worst cell {self.worst_quality:.3f}, mean {self.mean_quality:.3f} of 1"
-        return f"<p>{len(self.blocks)} blocks; {quality}</p>{tables.html(self.fractures)}"
+        return f"<p>{tables.count(len(self.blocks), 'block')}; {quality}</p>{tables.html(self.fractures)}"
 
 
 class Mesh:
@@ -210,13 +211,14 @@ class Mesh:
         return Survey(self._mesh.survey(None if fractures is None else list(fractures)))
 
     def __repr__(self) -> str:
-        mesh = self._mesh
-        return f"Mesh({mesh.source!r}, {mesh.node_count} nodes, {mesh.cell_count} cells)"
+        return f"Mesh({self._mesh.source!r}, {self._size()})"
+
+    def _size(self) -> str:
+        nodes = tables.count(self._mesh.node_count, "node")
+        return f"{nodes}, {tables.count(self._mesh.cell_count, 'cell')}"
 
     def _repr_html_(self) -> str:
-        mesh = self._mesh
-        head = f"<p>{mesh.node_count} nodes, {mesh.cell_count} cells</p>"
-        return head + tables.html(self.groups)
+        return f"<p>{self._size()}</p>{tables.html(self.groups)}"
 
 
 def _number(dimension: int, name: Any, kind: str) -> int:

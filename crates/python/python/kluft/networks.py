@@ -51,7 +51,8 @@ class Network:
         return tables.frame(_flat(self.record["sets"]))
 
     def __repr__(self) -> str:
-        return f"Network({len(self.record['fractures'])} fractures in {os.fspath(self.folder)!r})"
+        fractures = tables.count(len(self.record["fractures"]), "fracture")
+        return f"Network({fractures} in {os.fspath(self.folder)!r})"
 
     def _repr_html_(self) -> str:
         return tables.html(_flat(self.record["fractures"]))

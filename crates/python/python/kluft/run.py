@@ -96,7 +96,8 @@ class FractureResult:
         return self["state"]
 
     def __repr__(self) -> str:
-        return f"FractureResult({self.name!r}, {self.numbers.get('facets', '?')} facets)"
+        facets = int(np.count_nonzero(self._grid.cell_fields["fracture"] == self._index))
+        return f"FractureResult({self.name!r}, {tables.count(facets, 'facet')})"
 
 
 def _places(indices: Array) -> slice | Array:
@@ -260,7 +261,10 @@ class Run:
         return plotter.show()
 
     def __repr__(self) -> str:
-        return f"Run({self.title!r}, {len(self._source)} load steps, {self.ending})"
+        return f"Run({self.title!r}, {self._steps_in_words()}, {self.ending})"
+
+    def _steps_in_words(self) -> str:
+        return tables.count(len(self._source), "load step")
 
     def _repr_html_(self) -> str:
         rows = [
@@ -275,8 +279,8 @@ class Run:
             }
             for name, own in self.summary["fractures"].items()
         ]
-        steps = f"{len(self._source)} load steps, {self.ending}"
-        head = f"<p><b>{_html.escape(self.title)}</b>: {steps}</p>"
+        steps = self._steps_in_words()
+        head = f"<p><b>{_html.escape(self.title)}</b>: {steps}, {self.ending}</p>"
         told = "".join(f"<li>{_html.escape(warning)}</li>" for warning in self.warnings)
         return head + tables.html(rows) + (f"<p>Warnings</p><ul>{told}</ul>" if told else "")
 
