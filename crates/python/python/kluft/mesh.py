@@ -30,6 +30,7 @@ _VTK = {
     "pyramid13": 27,
 }
 _SURFACES = {5, 22, 9, 23, 28}
+_BOUNDING = "gmsh:bounding_entities"
 
 Elements = Mapping[str, Any]
 """Nodes of elements by their type, as meshio calls it: ``{"tetra": rows of four nodes}``."""
@@ -61,7 +62,8 @@ class Survey:
 
     def _repr_html_(self) -> str:
         quality = f"worst cell {self.worst_quality:.3f}, mean {self.mean_quality:.3f} of 1"
-        return f"<p>{tables.count(len(self.blocks), 'block')}; {quality}</p>{tables.html(self.fractures)}"
+        head = f"<p>{tables.count(len(self.blocks), 'block')}; {quality}</p>"
+        return head + tables.html(self.fractures)
 
 
 class Mesh:
@@ -136,13 +138,15 @@ class Mesh:
         if physical is not None:
             return cls._of_tags("meshio", mesh.points, _blocks(mesh), physical, mesh.field_data)
         groups = _Groups()
+        # What meshio notes of a file of gmsh 4.1 here are tags of surfaces, no places of elements.
+        sets = {name: of for name, of in mesh.cell_sets.items() if name != _BOUNDING}
+        names = list(sets)
         for index, (number, nodes) in enumerate(_blocks(mesh)):
             dimension = 2 if number in _SURFACES else 3
-            member = np.zeros((len(mesh.cell_sets), len(nodes)), bool)
-            for row, blocks in zip(member, mesh.cell_sets.values()):
+            member = np.zeros((len(sets), len(nodes)), bool)
+            for row, blocks in zip(member, sets.values()):
                 places = blocks[index]
                 row[np.asarray(places if places is not None else [], np.int64)] = True
-            names = list(mesh.cell_sets)
             for columns in np.unique(member, axis=1).T if len(names) else [np.zeros(0, bool)]:
                 own = [groups.number(dimension, names[i]) for i in np.flatnonzero(columns)]
                 chosen = (member == columns[:, None]).all(axis=0)
