@@ -80,9 +80,9 @@ def test_pressures_of_no_fracture_are_refused_with_the_names_of_fractures(run):
 def test_pressures_of_another_number_are_refused_with_both_numbers(run):
     count = len(run.points("joint"))
     for pressures in (np.zeros(3), np.zeros((count, 1))):
-        with pytest.raises(ValueError, match=rf"'joint'.*{count} points.*points\('joint'\)") as caught:
+        with pytest.raises(ValueError, match=rf"{count} points.*points\('joint'\)") as caught:
             run.advance(fluid_pressure={"joint": pressures})
-        assert str(pressures.shape) in str(caught.value)
+        assert f"'joint': an array of shape {pressures.shape}" in str(caught.value)
 
 
 def test_pressures_that_are_refused_leave_those_of_the_scene(mesh):
