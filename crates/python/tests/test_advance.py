@@ -85,15 +85,16 @@ def test_pressures_of_another_number_are_refused_with_both_numbers(run):
         assert f"'joint': an array of shape {pressures.shape}" in str(caught.value)
 
 
-def test_pressures_that_are_refused_leave_those_of_the_scene(mesh):
+def test_pressures_that_do_not_come_about_leave_those_of_the_scene(mesh):
     """What is refused, and what does not converge, changes nothing."""
-    fracture = {"joint": kluft.Fracture(fluid_pressure=5e6)}
-    with scene_of().replace(fracture=fracture).prepare(mesh) as run:
-        with pytest.raises(ValueError):
-            run.advance(fluid_pressure={"joint": np.zeros(3)})
-        joint = run.advance().fractures["joint"]
-    expected = closed_aperture(PRESSURE - 5e6)
-    np.testing.assert_allclose(joint.aperture, expected, rtol=ROUNDING)
+    law = dict(aperture=0, closure="contact", friction_angle=30)
+    contact = {"joint": kluft.Fracture(**law, fluid_pressure=5e6)}
+    with scene_of(fracture=contact).prepare(mesh) as run:
+        for pressures, error in ((np.zeros(3), ValueError), (3e7, kluft.NotConverged)):
+            with pytest.raises(error):
+                run.advance(fluid_pressure={"joint": pressures})
+            joint = run.advance().fractures["joint"]
+            np.testing.assert_allclose(joint.normal_traction, -PRESSURE + 5e6, rtol=1e-6)
 
 
 def test_friction_remembers_as_in_a_run_of_many_steps(mesh):
