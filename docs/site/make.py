@@ -90,6 +90,13 @@ PYTHON = """# The package for Python
              InputError, NotConverged, Stopped, Defect, study, network, read
    :undoc-members:
 ```
+
+## Sections of a scene
+
+```{eval-rst}
+.. automodule:: kluft.keys
+   :members:
+```
 """
 
 

@@ -70,6 +70,33 @@ def test_what_does_not_fit_is_refused_and_changes_nothing(run):
     np.testing.assert_allclose(joint.aperture, closed_aperture(PRESSURE), rtol=ROUNDING)
 
 
+def test_pressures_of_no_fracture_are_refused_with_the_names_of_fractures(run):
+    for refused in (lambda: run.advance(fluid_pressure={"foo": 1e6}), lambda: run.points("foo")):
+        with pytest.raises(KeyError, match="foo; there are: joint") as caught:
+            refused()
+        assert "gravity" not in str(caught.value)
+
+
+def test_pressures_of_another_number_are_refused_with_both_numbers(run):
+    count = len(run.points("joint"))
+    for pressures in (np.zeros(3), np.zeros((count, 1))):
+        with pytest.raises(ValueError, match=rf"{count} points.*points\('joint'\)") as caught:
+            run.advance(fluid_pressure={"joint": pressures})
+        assert f"'joint': an array of shape {pressures.shape}" in str(caught.value)
+
+
+def test_pressures_that_do_not_come_about_leave_those_of_the_scene(mesh):
+    """What is refused, and what does not converge, changes nothing."""
+    law = dict(aperture=0, closure="contact", friction_angle=30)
+    contact = {"joint": kluft.Fracture(**law, fluid_pressure=5e6)}
+    with scene_of(fracture=contact).prepare(mesh) as run:
+        for pressures, error in ((np.zeros(3), ValueError), (3e7, kluft.NotConverged)):
+            with pytest.raises(error):
+                run.advance(fluid_pressure={"joint": pressures})
+            joint = run.advance().fractures["joint"]
+            np.testing.assert_allclose(joint.normal_traction, -PRESSURE + 5e6, rtol=1e-6)
+
+
 def test_friction_remembers_as_in_a_run_of_many_steps(mesh):
     """The same path of loads, asked for step by step and written into a scene."""
     held, moved = {"x": 0, "y": 0, "z": 0}, {"x": 4e-4, "y": 0, "z": -2e-4}

@@ -34,6 +34,17 @@ def test_elements_that_refer_to_no_node_are_refused():
         kluft.Mesh.from_arrays(points, volumes, surfaces)
 
 
+@pytest.mark.parametrize("of, known", [("volumes", "tetra, tetra10"), ("surfaces", "triangle, ")])
+def test_an_unknown_type_of_elements_is_refused_with_those_that_are_known(of, known):
+    points, volumes, surfaces = block()
+    given = {"volumes": volumes, "surfaces": surfaces}
+    given[of] = {"odd": {"tet": [[0, 1, 2, 3]]}}
+    with pytest.raises(kluft.InputError, match="`tet`") as caught:
+        kluft.Mesh.from_arrays(points, **given)
+    defect = caught.value.defects[0]
+    assert "odd" in defect.place and known in defect.remedy
+
+
 def test_elements_may_belong_to_several_groups(scene):
     points, volumes, surfaces = block()
     surfaces[("joint", "all")] = surfaces.pop("joint")
@@ -89,6 +100,49 @@ def test_meshio_hands_over_sets_and_tags(mesh, scene):
         np.testing.assert_allclose(scene.solve(found).fractures["joint"].aperture, expected)
 
 
+def test_what_meshio_notes_of_boundaries_is_no_group():
+    """It holds tags of surfaces, which may be larger than the number of elements."""
+    meshio = pytest.importorskip("meshio")
+    points, volumes, _ = block(1)
+    cells = [("hexahedron", volumes["rock"]["hexahedron"])]
+    sets = {"rock": [np.arange(2)], "gmsh:bounding_entities": [np.array([-7, 12])]}
+    mesh = kluft.Mesh.from_meshio(meshio.Mesh(points, cells, cell_sets=sets))
+    assert [group["name"] for group in mesh.groups] == ["rock"]
+
+
+COARSE = """
+Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {0, 1, 0}; Point(4) = {0, 0, 1};
+Line(11) = {1, 2}; Line(12) = {2, 3}; Line(13) = {3, 1};
+Line(14) = {1, 4}; Line(15) = {2, 4}; Line(16) = {3, 4};
+Curve Loop(21) = {11, 12, 13}; Curve Loop(22) = {11, 15, -14};
+Curve Loop(23) = {12, 16, -15}; Curve Loop(24) = {13, 14, -16};
+Plane Surface(21) = {21}; Plane Surface(22) = {22};
+Plane Surface(23) = {23}; Plane Surface(24) = {24};
+Surface Loop(31) = {21:24}; Volume(31) = {31};
+Transfinite Curve {11:16} = 2;
+Physical Volume("rock") = {31}; Physical Surface("base") = {21};
+"""
+
+
+@pytest.mark.skipif(shutil.which("gmsh") is None, reason="gmsh is not installed")
+def test_files_of_gmsh_come_by_way_of_meshio_and_pyvista_as_the_guide_says(tmp_path):
+    """Surfaces of few elements with large tags, which make PyVista's reader fail."""
+    meshio, pyvista = pytest.importorskip("meshio"), pytest.importorskip("pyvista")
+    geometry, file = tmp_path / "a.geo", tmp_path / "a.msh"
+    geometry.write_text(COARSE)
+    command = ["gmsh", "-3", "-format", "msh41", str(geometry), "-o", str(file)]
+    subprocess.run(command, check=True, capture_output=True)
+    with pytest.raises(IndexError):
+        pyvista.read(file)
+    mesh = meshio.read(file)
+    named = {(group["name"], group["elements"]) for group in kluft.Mesh.from_file(file).groups}
+    assert {(g["name"], g["elements"]) for g in kluft.Mesh.from_meshio(mesh).groups} == named
+    mesh.cell_sets = {}
+    names = {int(tag): name for name, (tag, _) in mesh.field_data.items()}
+    of_grid = kluft.Mesh.from_pyvista(pyvista.from_meshio(mesh), names)
+    assert {(group["name"], group["elements"]) for group in of_grid.groups} == named
+
+
 def test_pyvista_hands_over_numbers(scene):
     pyvista = pytest.importorskip("pyvista")
     points, volumes, surfaces = block()
@@ -107,6 +161,18 @@ def test_pyvista_hands_over_numbers(scene):
     np.testing.assert_allclose(aperture, closed_aperture(PRESSURE), rtol=1e-9)
     drawn = run.last.fracture_grid.to_pyvista()
     assert drawn.n_cells == 4 and drawn.area == pytest.approx(1.0)
+
+
+def test_a_grid_without_numbers_of_groups_is_told_to_name_them():
+    pyvista = pytest.importorskip("pyvista")
+    points, volumes, _ = block()
+    grid = pyvista.UnstructuredGrid({12: volumes["rock"]["hexahedron"]}, points)
+    grid.cell_data["material"] = np.ones(grid.n_cells, int)
+    with pytest.raises(kluft.InputError, match="gmsh:physical.*material") as caught:
+        kluft.Mesh.from_pyvista(grid)
+    assert "groups=" in caught.value.defects[0].remedy
+    named = kluft.Mesh.from_pyvista(grid, {1: "rock"}, groups="material")
+    assert [group["name"] for group in named.groups] == ["rock"]
 
 
 def test_gmsh_hands_over_its_model():

@@ -175,7 +175,32 @@ def test_random_sets_become_a_network():
     assert "<table>" in made._repr_html_()
 
 
-def test_a_wrong_list_names_its_line():
+@pytest.mark.parametrize("kind", [list, pandas.DataFrame])
+def test_a_wrong_list_names_its_rows(kind):
+    """Rows are counted from 0, and no file is named that the user has not written."""
     with pytest.raises(kluft.InputError) as caught:
-        kluft.network([{**LIST[0], "dip": 95}])
-    assert "dip" in caught.value.defects[0].place
+        kluft.network(kind([LIST[0], {**LIST[1], "dip": 95}]), domain=[0, 0, 0, 10, 10, 10])
+    assert caught.value.defects[0].place == "row 1, column `dip`"
+    with pytest.raises(kluft.InputError) as caught:
+        kluft.network(kind([LIST[0], {**LIST[1], "name": "flat"}]))
+    assert caught.value.defects[0].place == "row 1" and "row 0" in caught.value.defects[0].problem
+    with pytest.raises(kluft.InputError) as caught:
+        kluft.network(kind([{**LIST[0], "colour": "red"}]))
+    assert caught.value.defects[0].place == "the columns"
+    assert "listed.csv" not in str(caught.value)
+
+
+def test_a_wrong_description_names_no_file_of_ours():
+    with pytest.raises(kluft.InputError) as caught:
+        kluft.network({"sed": 3})
+    assert caught.value.defects[0].place.startswith("the description:")
+    assert "kluft-network" not in str(caught.value)
+
+
+@pytest.mark.parametrize("other", ["azimuth", "dip_dir", "dip_azimuth", "dip_direction"])
+def test_two_names_of_the_dip_direction_are_refused_as_such(other):
+    rows = [{key: value for key, value in row.items() if key != "dip_direction"} for row in LIST]
+    with pytest.raises(kluft.InputError) as caught:
+        kluft.network([{**rows[0], "dipdir": 0}, {**rows[1], other: 90}])
+    problem = f"`dipdir` and `{other}` mean the same: the dip direction"
+    assert [defect.problem for defect in caught.value.defects] == [problem]

@@ -1,6 +1,8 @@
 """Scenes made of keywords, read and written."""
 
+import inspect
 import pathlib
+import re
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ from conftest import scene_of
 
 import kluft
 
-GEOMETRIES = pathlib.Path(__file__).parents[3] / "geometries"
+ROOT = pathlib.Path(__file__).parents[3]
+GEOMETRIES = ROOT / "geometries"
 
 
 def test_keywords_become_the_text_of_a_scene(scene):
@@ -64,3 +67,16 @@ def test_doubts_are_returned():
     rock = {"rock": kluft.Rock(young_modulus=60, poisson_ratio=0.25)}
     warnings = scene_of(rock=rock).check()
     assert len(warnings) == 1 and "young_modulus" in warnings[0]
+
+
+def test_the_site_documents_all_that_the_package_offers():
+    """The names that `docs/site/make.py` hands to Sphinx; a module without names has all of its."""
+    text = (ROOT / "docs" / "site" / "make.py").read_text("utf-8")
+    pages = re.findall(r"automodule:: (\S+)\n   :members:((?:[^:`]|\n)*)", text)
+    modules = {"kluft": kluft, "kluft.keys": kluft.keys}
+    documented = set()
+    for module, members in pages:
+        names = re.findall(r"\w+", members) or modules[module].__all__
+        documented |= {getattr(modules[module], name) for name in names}
+    offered = {getattr(kluft, name) for name in kluft.__all__}
+    assert offered == documented and all(inspect.getdoc(one) for one in offered)

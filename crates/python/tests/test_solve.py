@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 import pytest
-from conftest import PRESSURE, closed_aperture, scene_of
+from conftest import PRESSURE, block, closed_aperture, scene_of
 
 import kluft
 
@@ -179,6 +179,24 @@ def test_two_runs_in_two_threads(mesh):
 def test_a_notebook_shows_a_run(scene, mesh):
     page = scene.solve(mesh)._repr_html_()
     assert "a joint" in page and "joint" in page and "<table>" in page
+
+
+def test_one_of_a_thing_is_told_in_the_singular(scene, mesh):
+    run = scene.solve(mesh)
+    assert ", 1 load step, solved)" in repr(run) and ": 1 load step, solved<" in run._repr_html_()
+    assert repr(run.fractures["joint"]) == "FractureResult('joint', 4 facets)"
+    two = scene_of(load=kluft.Load(steps=[0.5, 1.0])).solve(mesh)
+    assert "2 load steps" in repr(two) and "2 load steps" in two._repr_html_()
+    assert repr(mesh.survey()) == "Survey(1 fracture, 2 blocks)"
+    assert repr(mesh.survey(fractures=[])) == "Survey(0 fractures, 1 block)"
+    assert repr(kluft.Mesh.from_arrays(*block(1))) == "Mesh('arrays', 12 nodes, 2 cells)"
+
+
+def test_a_field_that_is_not_there_is_refused_with_those_that_are(scene, mesh):
+    run = scene.solve(mesh)
+    for refused in (lambda: run.plot("nonsense"), lambda: run.fractures["joint"]["nonsense"]):
+        with pytest.raises(KeyError, match="nonsense.*aperture.*slip"):
+            refused()
 
 
 def test_a_real_interrupt_ends_a_process_of_its_own(tmp_path):

@@ -7,6 +7,8 @@ from typing import Any, Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .tables import count
+
 Array = NDArray[Any]
 Cells = tuple[Array, Array, Array]
 
@@ -37,6 +39,20 @@ class Grid:
             self._cells = self._make_cells()
         return self._cells
 
+    @property
+    def fields(self) -> list[str]:
+        """Names of the fields on points, and of those on cells."""
+        return [*self.point_fields, *self.cell_fields]
+
+    def require(self, field: str) -> None:
+        """Refuses the name of a field that is not there.
+
+        Raises:
+            KeyError: with the fields that are.
+        """
+        if field not in self.fields:
+            raise KeyError(f"no field is called {field!r}; there are: {', '.join(self.fields)}")
+
     def to_pyvista(self) -> Any:
         """The grid as a ``pyvista.UnstructuredGrid``."""
         try:
@@ -55,5 +71,4 @@ class Grid:
         return grid
 
     def __repr__(self) -> str:
-        fields = ", ".join([*self.point_fields, *self.cell_fields])
-        return f"Grid({len(self.points)} points; {fields})"
+        return f"Grid({count(len(self.points), 'point')}; {', '.join(self.fields)})"

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _kluft, tables
+from .errors import InputError
 from .grid import Array
 
 _VTK = {
@@ -29,6 +30,7 @@ _VTK = {
     "pyramid13": 27,
 }
 _SURFACES = {5, 22, 9, 23, 28}
+_BOUNDING = "gmsh:bounding_entities"
 
 Elements = Mapping[str, Any]
 """Nodes of elements by their type, as meshio calls it: ``{"tetra": rows of four nodes}``."""
@@ -55,11 +57,13 @@ class Survey:
         return tables.frame(self.fractures)
 
     def __repr__(self) -> str:
-        return f"Survey({len(self.fractures)} fractures, {len(self.blocks)} blocks)"
+        fractures = tables.count(len(self.fractures), "fracture")
+        return f"Survey({fractures}, {tables.count(len(self.blocks), 'block')})"
 
     def _repr_html_(self) -> str:
         quality = f"worst cell {self.worst_quality:.3f}, mean {self.mean_quality:.3f} of 1"
-        return f"<p>{len(self.blocks)} blocks; {quality}</p>{tables.html(self.fractures)}"
+        head = f"<p>{tables.count(len(self.blocks), 'block')}; {quality}</p>"
+        return head + tables.html(self.fractures)
 
 
 class Mesh:
@@ -89,7 +93,7 @@ class Mesh:
         VTK and meshio. A tuple of names stands for elements that belong to several.
 
         Raises:
-            InputError: if elements refer to nodes that are not there.
+            InputError: if elements refer to nodes that are not there, or have an unknown type.
         """
         groups = _Groups()
         for dimension, named in ((3, volumes), (2, surfaces)):
@@ -97,7 +101,7 @@ class Mesh:
                 names = (name,) if isinstance(name, str) else name
                 own = [groups.number(dimension, one) for one in names]
                 for kind, nodes in elements.items():
-                    groups.add("vtk", _VTK[kind], nodes, own)
+                    groups.add("vtk", _number(dimension, name, kind), nodes, own)
         return cls._of_groups("arrays", points, groups)
 
     @classmethod
@@ -134,13 +138,15 @@ class Mesh:
         if physical is not None:
             return cls._of_tags("meshio", mesh.points, _blocks(mesh), physical, mesh.field_data)
         groups = _Groups()
+        # What meshio notes of a file of gmsh 4.1 here are tags of surfaces, no places of elements.
+        sets = {name: of for name, of in mesh.cell_sets.items() if name != _BOUNDING}
+        names = list(sets)
         for index, (number, nodes) in enumerate(_blocks(mesh)):
             dimension = 2 if number in _SURFACES else 3
-            member = np.zeros((len(mesh.cell_sets), len(nodes)), bool)
-            for row, blocks in zip(member, mesh.cell_sets.values()):
+            member = np.zeros((len(sets), len(nodes)), bool)
+            for row, blocks in zip(member, sets.values()):
                 places = blocks[index]
                 row[np.asarray(places if places is not None else [], np.int64)] = True
-            names = list(mesh.cell_sets)
             for columns in np.unique(member, axis=1).T if len(names) else [np.zeros(0, bool)]:
                 own = [groups.number(dimension, names[i]) for i in np.flatnonzero(columns)]
                 chosen = (member == columns[:, None]).all(axis=0)
@@ -152,7 +158,13 @@ class Mesh:
         cls, grid: Any, names: Mapping[int, str] | None = None, groups: str = "gmsh:physical"
     ) -> Mesh:
         """Takes a ``pyvista.UnstructuredGrid`` with volumes and surfaces; the cell data ``groups``
-        hold a number for each cell, 0 for none, and ``names`` the name of each number."""
+        hold a number for each cell, 0 for none, and ``names`` the name of each number.
+
+        Raises:
+            InputError: if the grid has no such cell data.
+        """
+        if groups not in grid.cell_data:
+            raise _without_groups(groups, list(grid.cell_data.keys()))
         tags = np.asarray(grid.cell_data[groups])
         blocks = [(int(kind), nodes) for kind, nodes in grid.cells_dict.items()]
         blocks = [(kind, nodes) for kind, nodes in blocks if kind in _VTK.values()]
@@ -203,13 +215,35 @@ class Mesh:
         return Survey(self._mesh.survey(None if fractures is None else list(fractures)))
 
     def __repr__(self) -> str:
-        mesh = self._mesh
-        return f"Mesh({mesh.source!r}, {mesh.node_count} nodes, {mesh.cell_count} cells)"
+        return f"Mesh({self._mesh.source!r}, {self._size()})"
+
+    def _size(self) -> str:
+        nodes = tables.count(self._mesh.node_count, "node")
+        return f"{nodes}, {tables.count(self._mesh.cell_count, 'cell')}"
 
     def _repr_html_(self) -> str:
-        mesh = self._mesh
-        head = f"<p>{mesh.node_count} nodes, {mesh.cell_count} cells</p>"
-        return head + tables.html(self.groups)
+        return f"<p>{self._size()}</p>{tables.html(self.groups)}"
+
+
+def _number(dimension: int, name: Any, kind: str) -> int:
+    """The number of VTK for a type of elements of a volume (3) or a surface (2).
+
+    Raises:
+        InputError: if the type is unknown.
+    """
+    if kind in _VTK:
+        return _VTK[kind]
+    fitting = [one for one, number in _VTK.items() if (number in _SURFACES) == (dimension == 2)]
+    place = f"{'surface' if dimension == 2 else 'volume'} {name!r}"
+    remedy = f"take one of {', '.join(fitting)}"
+    raise InputError([(place, f"`{kind}` is no type of elements", remedy)])
+
+
+def _without_groups(groups: str, found: list[str]) -> InputError:
+    """What is wrong with a grid whose cells have no numbers of groups."""
+    remedy = "name the cell data that have a number for each volume and surface: groups=..."
+    there = f"there are {', '.join(map(repr, found))}" if found else "there are none"
+    return InputError([("cell data of the grid", f"there is no {groups!r}; {there}", remedy)])
 
 
 def _blocks(mesh: Any) -> list[tuple[int, Array]]:

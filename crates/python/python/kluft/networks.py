@@ -6,12 +6,20 @@ import csv
 import io
 import json
 import os
+import re
 import tempfile
 from pathlib import Path
 from typing import Any, Iterable, Mapping
 
 from . import _kluft, program, tables
+from .errors import Defect, InputError
 from .scene import Scene
+
+_LISTED, _DESCRIBED = "listed.csv", "described.toml"
+_FIRST_LINE = 2
+"""Line of the first row of a list, behind the names of the columns."""
+_DIP_DIRECTION = {"dip_direction", "dipdir", "dip_dir", "dip_azimuth", "azimuth"}
+"""What the dip direction may be called, as in ``OTHER_NAMES`` of the reader of lists."""
 
 
 class Network:
@@ -43,7 +51,8 @@ class Network:
         return tables.frame(_flat(self.record["sets"]))
 
     def __repr__(self) -> str:
-        return f"Network({len(self.record['fractures'])} fractures in {os.fspath(self.folder)!r})"
+        fractures = tables.count(len(self.record["fractures"]), "fracture")
+        return f"Network({fractures} in {os.fspath(self.folder)!r})"
 
     def _repr_html_(self) -> str:
         return tables.html(_flat(self.record["fractures"]))
@@ -74,7 +83,8 @@ def network(
     fractures. Without ``out`` the files go with the network.
 
     Raises:
-        InputError: with every defect of the fractures.
+        InputError: with every defect of the fractures. Rows of a table are counted from 0, as
+            ``fractures[0]`` and ``DataFrame.iloc`` do.
     """
     kept = tempfile.TemporaryDirectory(prefix="kluft-network-") if out is None else None
     folder = Path(kept.name if kept else os.fspath(out or "")).absolute()
@@ -87,8 +97,25 @@ def network(
         arguments += ["--h", f"{h:g}"]
     if hydraulic_aperture is not None:
         arguments += ["--hydraulic-aperture", f"{hydraulic_aperture:g}"]
-    program.run(arguments, folder)
+    try:
+        program.run(arguments, folder)
+    except InputError as error:
+        raise InputError([_as_given(defect, folder) for defect in error.defects]) from None
     return Network(folder, kept)
+
+
+def _as_given(defect: Defect, folder: Path) -> tuple[str, str, str]:
+    """A defect with the rows that were given, in the place of lines of files written for them."""
+    listed = re.escape(os.fspath(folder / _LISTED))
+    described = os.fspath(folder / _DESCRIBED)
+
+    def row(line: re.Match[str]) -> str:
+        number = int(line.group(1)) - _FIRST_LINE
+        return f"row {number}" if number >= 0 else "the columns"
+
+    texts = (re.sub(rf"{listed}:(\d+)", row, text) for text in defect)
+    place, problem, remedy = (text.replace(described, "the description") for text in texts)
+    return place, problem, remedy
 
 
 def _file(fractures: Any, folder: Path) -> Path:
@@ -96,20 +123,33 @@ def _file(fractures: Any, folder: Path) -> Path:
     if isinstance(fractures, (str, os.PathLike)):
         return Path(fractures).absolute()
     if isinstance(fractures, Mapping):
-        file = folder / "described.toml"
+        file = folder / _DESCRIBED
         file.write_text(_kluft.toml_of(json.dumps(fractures)), "utf-8")
         return file
     if hasattr(fractures, "to_dict"):
         fractures = fractures.to_dict("records")
     rows = [dict(row) for row in fractures]
     columns = list(dict.fromkeys(key for row in rows for key in row))
+    _refuse_two_names(columns)
     text = io.StringIO()
     table = csv.DictWriter(text, columns, restval="")
     table.writeheader()
     table.writerows({key: _cell(value) for key, value in row.items()} for row in rows)
-    file = folder / "listed.csv"
+    file = folder / _LISTED
     file.write_text(text.getvalue(), "utf-8")
     return file
+
+
+def _refuse_two_names(columns: Iterable[str]) -> None:
+    """Refuses columns that mean the same.
+
+    Raises:
+        InputError: if more than one means the dip direction.
+    """
+    found = [f"`{name}`" for name in columns if name in _DIP_DIRECTION]
+    if len(found) > 1:
+        problem = f"{' and '.join(found)} mean the same: the dip direction"
+        raise InputError([("the columns", problem, "give all rows one of these names")])
 
 
 def _cell(value: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,7 +11,7 @@ from . import _kluft
 from .grid import Array, Grid
 from .keys import Fracture
 from .run import FractureResult, Run, Step
-from .solving import MemorySource, Progress, end, follower, judge
+from .solving import MemorySource, Progress, followed, judge
 
 
 class Source(Protocol):
@@ -48,8 +48,13 @@ class PreparedRun(Run):
         return self._prepared.acting
 
     def points(self, fracture: str) -> Array:
-        """Coordinates (m) of the corners of the facets of a fracture: where pressures are given and
-        fields of results are."""
+        """Coordinates (m) of the corners of the facets of a fracture, a row of three for each:
+        where pressures are given and fields of results are.
+
+        Raises:
+            KeyError: if no fracture has this name.
+        """
+        _refuse_unknown([fracture], list(self._facets), "fracture")
         return self._facets[fracture].points
 
     def advance(
@@ -79,40 +84,47 @@ class PreparedRun(Run):
 
         Raises:
             InputError: if something given does not fit.
+            KeyError: if nothing that acts, or no fracture, has a name that is given.
+            ValueError: if there are not as many pressures as :meth:`points`.
             NotConverged: if the step does not converge; the run stays where it was.
             Stopped: after Ctrl-C; the run stays where it was.
         """
-        all_factors = self._factors(load, factors or {}, fluid_pressure or {})
-        pressures = self._push(fluid_pressure) if fluid_pressure else None
+        own = self._own_pressures | set(fluid_pressure or {})
+        pressures = self._pushed(fluid_pressure) if fluid_pressure else None
+        all_factors = self._factors(load, factors or {}, own)
         changed = self._scene.replace(fracture=fracture) if fracture else None
         parsed = changed._parsed(needs_mesh=False) if changed is not None else None
-        told = follower(progress)
-        ending, why, reached, raised = self._prepared.advance(
-            (time, all_factors), pressures, (parsed, rock), told
-        )
-        end(told)
+        with followed(progress) as told:
+            ending, why, reached, raised = self._prepared.advance(
+                (time, all_factors), pressures, (parsed, rock), told
+            )
         if changed is not None:
             self._scene = changed
+        if ending == "solved" and pressures is not None:
+            self._own_pressures, self._pressures = own, pressures
         number = len(self._source) + (ending != "solved")
         judge(self, ending, why, number, reached, raised)
         return self.last
 
-    def _factors(
-        self, load: float, factors: Mapping[str, float], pressures: Mapping[str, Any]
-    ) -> list[float]:
-        unknown = [name for name in factors if name not in self.acting]
-        unknown += [name for name in pressures if name not in self._facets]
-        if unknown:
-            known = ", ".join(self.acting)
-            raise KeyError(f"nothing here is called {', '.join(unknown)}; there are: {known}")
-        self._own_pressures |= set(pressures)
-        given = {**{name: 0.0 for name in self._own_pressures}, **factors}
+    def _factors(self, load: float, factors: Mapping[str, float], own: set[str]) -> list[float]:
+        """A factor for each that acts; ``own`` are the fractures whose pressures are given."""
+        _refuse_unknown(factors, self.acting, "load")
+        given = {**{name: 0.0 for name in own}, **factors}
         return [float(given.get(name, load)) for name in self.acting]
 
-    def _push(self, given: Mapping[str, Any]) -> Array:
+    def _pushed(self, given: Mapping[str, Any]) -> Array:
+        """The pressures of all fractures (Pa) with those that are given."""
+        _refuse_unknown(given, list(self._facets), "fracture")
+        pressures = self._pressures.copy()
         for name, pressure in given.items():
-            self._pressures[self._facets[name]._points()] = pressure
-        return self._pressures
+            count, values = len(self.points(name)), np.asarray(pressure, np.float64)
+            if values.size != 1 and values.shape != (count,):
+                raise ValueError(
+                    f"fluid_pressure of {name!r}: an array of shape {values.shape} for {count} "
+                    f"points; give a number, or one for each of points({name!r})"
+                )
+            pressures[self._facets[name]._points()] = values
+        return pressures
 
     def close(self) -> None:
         """Gives the memory of the rock back; results stay."""
@@ -123,3 +135,14 @@ class PreparedRun(Run):
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _refuse_unknown(names: Iterable[str], known: Sequence[str], kind: str) -> None:
+    """Refuses names that nothing has.
+
+    Raises:
+        KeyError: with those that are known.
+    """
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise KeyError(f"no {kind} is called {', '.join(unknown)}; there are: {', '.join(known)}")

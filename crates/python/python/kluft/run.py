@@ -44,7 +44,13 @@ class FractureResult:
         return np.concatenate([np.arange(start, end) for start, end in pairs])
 
     def __getitem__(self, field: str) -> Array:
-        """A field by its name, on the corners of the facets or on the facets."""
+        """A field by its name, with a value or a row for each corner of the facets, or for each
+        facet.
+
+        Raises:
+            KeyError: if there is no such field, with those that there are.
+        """
+        self._grid.require(field)
         if field in self._grid.point_fields:
             return self._grid.point_fields[field][self._points()]
         return self._grid.cell_fields[field][self._facets()]
@@ -90,7 +96,8 @@ class FractureResult:
         return self["state"]
 
     def __repr__(self) -> str:
-        return f"FractureResult({self.name!r}, {self.numbers.get('facets', '?')} facets)"
+        facets = int(np.count_nonzero(self._grid.cell_fields["fracture"] == self._index))
+        return f"FractureResult({self.name!r}, {tables.count(facets, 'facet')})"
 
 
 def _places(indices: Array) -> slice | Array:
@@ -241,15 +248,24 @@ class Run:
         return Path(folder)
 
     def plot(self, field: str = "aperture", **options: Any) -> Any:
-        """Draws a field of the fractures with pyvista; ``options`` go to ``add_mesh``."""
+        """Draws a field of the fractures with pyvista; ``options`` go to ``add_mesh``.
+
+        Raises:
+            KeyError: if there is no such field, with those that there are.
+        """
+        grid = self.last.fracture_grid
+        grid.require(field)
         import pyvista
 
         plotter = pyvista.Plotter()
-        plotter.add_mesh(self.last.fracture_grid.to_pyvista(), scalars=field, **options)
+        plotter.add_mesh(grid.to_pyvista(), scalars=field, **options)
         return plotter.show()
 
     def __repr__(self) -> str:
-        return f"Run({self.title!r}, {len(self._source)} load steps, {self.ending})"
+        return f"Run({self.title!r}, {self._steps_in_words()}, {self.ending})"
+
+    def _steps_in_words(self) -> str:
+        return tables.count(len(self._source), "load step")
 
     def _repr_html_(self) -> str:
         rows = [
@@ -264,8 +280,8 @@ class Run:
             }
             for name, own in self.summary["fractures"].items()
         ]
-        steps = f"{len(self._source)} load steps, {self.ending}"
-        head = f"<p><b>{_html.escape(self.title)}</b>: {steps}</p>"
+        steps = self._steps_in_words()
+        head = f"<p><b>{_html.escape(self.title)}</b>: {steps}, {self.ending}</p>"
         told = "".join(f"<li>{_html.escape(warning)}</li>" for warning in self.warnings)
         return head + tables.html(rows) + (f"<p>Warnings</p><ul>{told}</ul>" if told else "")
 

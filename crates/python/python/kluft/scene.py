@@ -17,7 +17,7 @@ from .mesh import Mesh
 from .command import own
 from .prepared import PreparedRun
 from .run import FolderSource, Run
-from .solving import MemorySource, Progress, end, follower, judge
+from .solving import MemorySource, Progress, followed, judge
 
 _IN_MEMORY = "mesh in memory"
 
@@ -106,11 +106,10 @@ class Scene(SceneSections):
         if not keep and out is None:
             raise ValueError("keep=False needs a folder for the results: out=...")
         scene = self._parsed(needs_mesh=mesh is None)
-        told = follower(progress)
         asked = (threads, None if out is None else os.fspath(out), keep, own())
         given = None if mesh is None else mesh._mesh
-        ending, why, results, raised = _kluft.solve(scene, given, asked, told)
-        end(told)
+        with followed(progress) as told:
+            ending, why, results, raised = _kluft.solve(scene, given, asked, told)
         run = Run(MemorySource(results), ending)
         if not keep and out is not None:
             run = Run(FolderSource(out), ending)
@@ -132,10 +131,9 @@ class Scene(SceneSections):
             InputError: with every defect of scene and mesh.
         """
         scene = self._parsed(needs_mesh=mesh is None)
-        told = follower(progress)
         given = None if mesh is None else mesh._mesh
-        prepared = _kluft.Prepared(scene, given, (threads, own()), told)
-        end(told)
+        with followed(progress) as told:
+            prepared = _kluft.Prepared(scene, given, (threads, own()), told)
         return PreparedRun(self, prepared)
 
     def _parsed(self, needs_mesh: bool) -> _kluft.Scene:

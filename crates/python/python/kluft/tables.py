@@ -27,6 +27,11 @@ def _pandas() -> Any:
     return pandas
 
 
+def count(number: int, noun: str) -> str:
+    """A number of things in words: ``1 load step``, ``2 load steps``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def html(rows: Rows) -> str:
     """Rows as a table in HTML."""
     if not rows:
