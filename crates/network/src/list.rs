@@ -207,10 +207,12 @@ fn columns(
             ));
             continue;
         };
-        if found.insert(known, index).is_some() {
-            let problem = match name == known {
-                true => format!("column `{name}` stands twice"),
-                false => format!("column `{name}` stands twice: it means `{known}`"),
+        if let Some(first) = found.insert(known, index) {
+            let problem = match headers.get(first) {
+                Some(first) if first != name => {
+                    format!("columns `{first}` and `{name}` mean the same: {known}")
+                }
+                _ => format!("column `{name}` stands twice"),
             };
             defects.push(Defect::new(&place, problem, "remove one of them"));
         }
@@ -320,7 +322,10 @@ d, , polygon,,,,,,,,,,,, 0 0 0; 2 0 0; 0 2 0
         assert!(both[0].to_string().contains("column `strike`"), "{both:?}");
         let twice = read("dipdir,azimuth", "135,135", "disc").expect_err("a column twice");
         let twice = twice[0].to_string();
-        assert!(twice.contains("it means `dip_direction`"), "{twice}");
+        assert!(
+            twice.contains("`dipdir` and `azimuth` mean the same: dip_direction"),
+            "{twice}"
+        );
         let surveyed = "Shape,Easting,Northing,Elevation,Dip,Azimuth,Radius\ndisc,1,2,3,30,135,2\n";
         let found = read_list(surveyed, "list.csv", "rest", false).expect("a list");
         assert_eq!(found[0].polygon.corners(), plain.corners());

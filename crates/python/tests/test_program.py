@@ -202,5 +202,5 @@ def test_two_names_of_the_dip_direction_are_refused_as_such(other):
     rows = [{key: value for key, value in row.items() if key != "dip_direction"} for row in LIST]
     with pytest.raises(kluft.InputError) as caught:
         kluft.network([{**rows[0], "dipdir": 0}, {**rows[1], other: 90}])
-    problem = f"`dipdir` and `{other}` mean the same: the dip direction"
+    problem = f"columns `dipdir` and `{other}` mean the same: dip_direction"
     assert [defect.problem for defect in caught.value.defects] == [problem]

@@ -106,7 +106,7 @@ def test_a_name_that_the_mesh_does_not_have_is_refused(mesh):
         assert "top" in caught.value.defects[0].remedy
 
 
-def test_a_step_that_does_not_converge_keeps_those_before(mesh):
+def test_a_step_that_does_not_converge_keeps_those_before(mesh, tmp_path):
     # A free block on contact that is pulled away in the second half.
     scene = scene_of(
         fracture={"joint": kluft.Fracture(aperture=0, closure="contact", friction_angle=30)},
@@ -118,6 +118,9 @@ def test_a_step_that_does_not_converge_keeps_those_before(mesh):
     assert error.step == 2 and 0.0 <= error.reached < 1.0
     assert len(error.run.steps) == 1 and error.run.ending == "not converged"
     np.testing.assert_allclose(error.run.fractures["joint"].normal_traction, -PRESSURE, rtol=1e-6)
+    folder = error.run.save(tmp_path / "out")
+    assert "Not converged: 1 load step," in (folder / "report.html").read_text("utf-8")
+    assert kluft.read(folder).ending == "not converged"
 
 
 def test_a_callback_follows_and_stops_a_run(scene, mesh):

@@ -46,6 +46,7 @@ mod checkpoint;
 mod crack_front;
 mod decisions;
 mod doubts;
+mod ending;
 mod facts;
 mod failures;
 mod flow;
@@ -91,6 +92,7 @@ mod unresolved;
 
 pub use advance::{Advance, PreparedRock, with_prepared_rock};
 pub use cases::{ActingCases, GRAVITY};
+pub use ending::Ending;
 pub use flow::RunFlow;
 pub use flow_summary::{
     ConduitSummary, FlowSummary, Hydraulics, NetworkSummary, SourceFlow, StepFlow,
@@ -99,7 +101,7 @@ pub use grids::{integer_field, real_field};
 pub use machine::Machine;
 pub use measure::Measure;
 pub use observer::{Observer, Stage, StepStart};
-pub use outcome::{Ending, Outcome, StepResult};
+pub use outcome::{Outcome, StepResult};
 pub use output::Output;
 pub use page::NAME as REPORT;
 pub use permeability_summary::{PermeabilitySummary, PrincipalPermeability, TensorSummary};

@@ -2,31 +2,8 @@
 
 use kluft_io::Grid;
 
+use crate::ending::Ending;
 use crate::summary::{FractureSummary, StepSummary, Summary};
-
-/// How a run ended.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Ending {
-    /// All load steps converged.
-    Solved,
-    /// A load step did not converge: which, where and why.
-    NotConverged(String),
-    /// The observer stopped it.
-    Stopped,
-    /// A former run had finished all load steps: nothing was left to do.
-    NothingLeft,
-}
-
-impl Ending {
-    /// In words, as `summary.json` has it.
-    pub fn in_words(&self) -> &'static str {
-        match self {
-            Self::Solved | Self::NothingLeft => "solved",
-            Self::NotConverged(_) => "not converged",
-            Self::Stopped => "stopped",
-        }
-    }
-}
 
 /// Everything that came out of a run, the steps that converged before a failure included.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@ use kluft_report::{Frame, Page, Surface};
 
 pub use iterations::Iterations;
 
-use crate::outcome::Ending;
+use crate::ending::Ending;
 use crate::summary::{StepSummary, Summary};
 
 /// Its name in the folder of the results.

@@ -5,10 +5,11 @@ use kluft_scene::MeshSource;
 
 use crate::adapt::{self, SIZES};
 use crate::checkpoint;
+use crate::ending::Ending;
 use crate::failures;
 use crate::flow::SOURCES;
 use crate::observer::Observer;
-use crate::outcome::{Ending, Outcome};
+use crate::outcome::Outcome;
 use crate::output::{OWN, Output};
 use crate::page;
 use crate::prepare::{MESH, inputs};

@@ -12,13 +12,14 @@ use kluft_solver::{Iteration, LinearFailure, NewtonSettings, System};
 
 use crate::begin::provenance;
 use crate::checkpoint::{self, Identity};
+use crate::ending::Ending;
 use crate::facts::facts;
 use crate::failures;
 use crate::flow_history::FlowHistory;
 use crate::history::History;
 use crate::memory;
 use crate::observer::{Observer, Stage};
-use crate::outcome::{Ending, Outcome, StepResult};
+use crate::outcome::{Outcome, StepResult};
 use crate::output::{Output, SUMMARY};
 use crate::page::{self, Iterations, Told};
 use crate::prepare::{self, MeshFile};

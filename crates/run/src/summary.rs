@@ -7,9 +7,9 @@ use kluft_mesh::Defect;
 use kluft_solver::{Step, StepRecord};
 use serde::{Deserialize, Serialize};
 
+use crate::ending::Ending;
 use crate::flow_summary::{FlowSummary, StepFlow};
 use crate::measure::Measure;
-use crate::outcome::Ending;
 use crate::permeability_summary::PermeabilitySummary;
 use crate::provenance::Provenance;
 use crate::spread::Spread;

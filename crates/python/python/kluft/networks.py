@@ -18,8 +18,6 @@ from .scene import Scene
 _LISTED, _DESCRIBED = "listed.csv", "described.toml"
 _FIRST_LINE = 2
 """Line of the first row of a list, behind the names of the columns."""
-_DIP_DIRECTION = {"dip_direction", "dipdir", "dip_dir", "dip_azimuth", "azimuth"}
-"""What the dip direction may be called, as in ``OTHER_NAMES`` of the reader of lists."""
 
 
 class Network:
@@ -130,7 +128,6 @@ def _file(fractures: Any, folder: Path) -> Path:
         fractures = fractures.to_dict("records")
     rows = [dict(row) for row in fractures]
     columns = list(dict.fromkeys(key for row in rows for key in row))
-    _refuse_two_names(columns)
     text = io.StringIO()
     table = csv.DictWriter(text, columns, restval="")
     table.writeheader()
@@ -138,18 +135,6 @@ def _file(fractures: Any, folder: Path) -> Path:
     file = folder / _LISTED
     file.write_text(text.getvalue(), "utf-8")
     return file
-
-
-def _refuse_two_names(columns: Iterable[str]) -> None:
-    """Refuses columns that mean the same.
-
-    Raises:
-        InputError: if more than one means the dip direction.
-    """
-    found = [f"`{name}`" for name in columns if name in _DIP_DIRECTION]
-    if len(found) > 1:
-        problem = f"{' and '.join(found)} mean the same: the dip direction"
-        raise InputError([("the columns", problem, "give all rows one of these names")])
 
 
 def _cell(value: Any) -> Any:

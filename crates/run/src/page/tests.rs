@@ -172,6 +172,10 @@ fn a_page_of_the_largest_run_stays_small() {
 
 #[test]
 fn a_run_that_found_nothing_has_a_page() {
-    let page = html(&Summary::default(), None, "");
+    let summary = Summary {
+        ending: Some(Ending::NotConverged("too hard".into())),
+        ..Summary::default()
+    };
+    let page = html(&summary, None, "");
     assert!(page.contains("Not converged: 0 load steps"));
 }
