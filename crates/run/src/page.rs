@@ -115,8 +115,8 @@ impl Told<'_> {
         let ended = match &summary.ending {
             Some(Ending::Stopped) => "Stopped",
             Some(Ending::NotConverged(_)) => "Not converged",
-            None if steps < summary.steps.len() => "Not converged",
-            None | Some(Ending::Solved | Ending::NothingLeft) => "Solved",
+            Some(Ending::Solved | Ending::NothingLeft) => "Solved",
+            None => "Not finished",
         };
         page.text(&format!(
             "{ended}: {steps} load step{}, {} unknowns, {} cells, {} fracture facets; {:.2} s on {} \

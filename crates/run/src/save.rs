@@ -6,6 +6,7 @@ use std::path::Path;
 use kluft_io::{Grid, write_atomically};
 use kluft_mesh::Defect;
 
+use crate::ending::Ending;
 use crate::flow::{SOURCES, write_sources};
 use crate::history;
 use crate::output::{OWN, Output, SUMMARY};
@@ -69,9 +70,10 @@ impl<'a> Saving<'a> {
         if has_flow(self.summary) {
             output.write(SOURCES, |path| write_sources(path, &self.summary.steps))?;
         }
-        output.write(SUMMARY, |path| self.summary.write(path))?;
+        let summary = ended(self.summary);
+        output.write(SUMMARY, |path| summary.write(path))?;
         let told = Told {
-            summary: self.summary,
+            summary: &summary,
             history: self.history,
             iterations: &Iterations::default(),
             shown: output.shown(),
@@ -84,6 +86,17 @@ impl<'a> Saving<'a> {
         output.sync()?;
         self.output.close()
     }
+}
+
+/// The summary of a run that ends where it is saved, if it has not ended before.
+fn ended(summary: &Summary) -> Summary {
+    let mut summary = summary.clone();
+    let failed = summary.steps.iter().position(|step| step.completed < 1.0);
+    summary.ending.get_or_insert_with(|| match failed {
+        None => Ending::Solved,
+        Some(step) => Ending::NotConverged(format!("load step {} did not converge", step + 1)),
+    });
+    summary
 }
 
 fn has_flow(summary: &Summary) -> bool {
