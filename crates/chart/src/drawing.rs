@@ -49,6 +49,8 @@ const RIGHT: i32 = 25;
 const GAP: i32 = 8;
 /// Height of text (pixels).
 const TEXT: f64 = 15.0;
+/// Width of a letter, against the height of text.
+const LETTER: f64 = 0.53;
 /// Distance between names (pixels).
 const LINE: i32 = 19;
 /// Length of a rate's triangle along x (decades).
@@ -95,6 +97,16 @@ impl Layout {
         }
     }
 
+    /// Left end and height of a title (pixels), which on a telephone is made to fit.
+    fn title(self, text: &str) -> (i32, f64) {
+        if !self.below {
+            return (ROOM.0, 1.1 * TEXT);
+        }
+        let room = f64::from(ROOM.0 + self.size.0 + RIGHT - 2 * EDGE);
+        let fits = room / (LETTER * text.chars().count().max(1) as f64);
+        (EDGE, fits.min(1.1 * TEXT))
+    }
+
     /// Lower edge of the area inside the axes (units).
     fn bottom(self) -> i32 {
         (ROOM.1 + self.size.1) * UNIT
@@ -118,7 +130,7 @@ fn beside_width(chart: &Chart) -> i32 {
         .map_or(0, |band| band.name.chars().count());
     let notes = [FRONT.chars().count(), band];
     let longest = names.chain(notes).max().unwrap_or(0) as f64;
-    45 + (0.53 * TEXT * longest).ceil() as i32
+    45 + (LETTER * TEXT * longest).ceil() as i32
 }
 
 /// Name of the front.
@@ -175,12 +187,10 @@ fn draw(chart: &Chart, layout: Layout, area: &Area<'_>) -> Drawn {
         .y_label_area_size((ROOM.0 - EDGE) * UNIT)
         .build_cartesian_2d(x, y)?;
     draw_axes(chart, &mut context)?;
-    let title = text_style(1.1 * TEXT).pos(Pos::new(HPos::Left, VPos::Center));
-    area.draw(&Text::new(
-        chart.title.as_str(),
-        (ROOM.0 * UNIT, 15 * UNIT),
-        title,
-    ))?;
+    let (left, size) = layout.title(&chart.title);
+    let title = text_style(size).pos(Pos::new(HPos::Left, VPos::Center));
+    let text = Text::new(chart.title.as_str(), (left * UNIT, 15 * UNIT), title);
+    area.draw(&text)?;
     let sheet = Sheet {
         chart,
         layout,

@@ -198,6 +198,31 @@ fn a_narrow_chart_has_the_same_texts_and_fits_a_telephone() {
     assert!(width <= 390.0, "{width}");
 }
 
+/// Letters are about half as wide as high, and the drawing has ten units a pixel.
+#[test]
+fn the_title_of_a_narrow_chart_fits() {
+    let mut chart = sample();
+    chart.title = "Error of the largest opening of the joint against wall time".into();
+    let svg = chart.narrow_svg();
+    let end = svg.find(&chart.title).expect("a title");
+    let head = &svg[svg[..end].rfind("<text").expect("its tag")..end];
+    let number = |name: &str| -> f64 {
+        let rest = head.split_once(&format!("{name}=\"")).expect(name).1;
+        rest.split('"')
+            .next()
+            .and_then(|text| text.parse().ok())
+            .expect(name)
+    };
+    let units = svg.split_once("viewBox=\"0 0 ").expect("a box").1;
+    let width: f64 = units
+        .split(' ')
+        .next()
+        .and_then(|text| text.parse().ok())
+        .expect("a width");
+    let length = 0.5 * number("font-size") * chart.title.len() as f64;
+    assert!(number("x") + length < width, "{head}: {length} of {width}");
+}
+
 #[test]
 fn every_colour_of_a_drawing_has_its_shades() {
     let svg = sample().svg();
