@@ -45,7 +45,7 @@ const NAME: usize = 16;
 const WARNING: &str = "warning";
 const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
 
-/// Whether the user has not asked for none (https://no-color.org).
+/// Whether the user has not asked for none (<https://no-color.org>).
 pub fn wants_colours() -> bool {
     let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
     set("NO_COLOR").is_none() && set("TERM").is_none_or(|term| term != "dumb")
