@@ -19,16 +19,12 @@ LARGEST = 400_000
 PATIENCE = 600
 """Seconds that a scene may take."""
 STYLE = """
-.grid { --ink: #444; --soft: #777; display: grid; gap: 0 1.5rem; }
-.grid { grid-template-columns: repeat(auto-fill, minmax(min(100%, 15rem), 1fr)); }
-.grid figure { margin: 1rem 0; min-width: 0; } .grid figcaption { font-weight: 600; }
-.grid svg { width: 100%; background: #fff; } .cards a { display: block; margin: 0.7rem 0; }
-.bar { display: flex; gap: 0.6rem; align-items: center; font-size: 0.9rem; }
-.bar i { flex: 1; height: 0.7rem; border-radius: 2px; }
-.body { fill: none; stroke: var(--soft); stroke-width: 1.5; } .behind { stroke-dasharray: 5 5; }
-.axes { stroke: var(--ink); stroke-width: 2.5; }
-.axes text { fill: var(--ink); stroke: none; font: 24px sans-serif; }
-""".replace("\n", " ")
+.grid { --ink: #444; --soft: #777; } .grid svg { background: #fff; }
+.cards { grid-template-columns: repeat(auto-fill, minmax(min(100%, 15rem), 1fr)); }
+.cards a { display: block; margin: 0.7rem 0; }
+"""
+"""What pictures on the site have beside the style of the pages of runs."""
+PAGE_STYLE = "crates/report/src/page.css"
 FORGE = "https://github.com/kluft/kluft/blob/main/"
 
 INDEX = """# Kluft
@@ -131,21 +127,28 @@ def pictures_of(folder: Path, kluft: str | None) -> list[str]:
     return re.findall(r'<figure class="picture">.*?</figure>', page, re.S)
 
 
-def raw(text: str) -> str:
-    """A block of HTML with the style of pictures."""
-    return f"```{{raw}} html\n<style>{STYLE}</style>{text}\n```\n"
+def style_of(repository: Path) -> str:
+    """The style of pictures: that of the pages of runs, and the site's own."""
+    lines = (repository / PAGE_STYLE).read_text("utf-8").splitlines()
+    rules = [line for line in lines if line.startswith((".grid", ".bar", ".picture", ".axes"))]
+    return " ".join([*rules, *STYLE.split("\n")])
+
+
+def raw(style: str, text: str) -> str:
+    """A block of HTML with its style."""
+    return f"```{{raw}} html\n<style>{style}</style>{text}\n```\n"
 
 
 def card(name: str, title: str, picture: str) -> str:
     """The link to a scene in the gallery, with its picture."""
     drawn = re.search(r"<svg.*?</svg>", picture, re.S)
-    return f"<a href=\"{name}.html\">{drawn.group(0) if drawn else ''}{html.escape(title)}</a>"
+    return f"<a class=\"picture\" href=\"{name}.html\">{drawn.group(0) if drawn else ''}{html.escape(title)}</a>"
 
 
 def gallery(repository: Path, out: Path, kluft: str | None) -> None:
     """A page for each scene, and one that shows them all."""
     out.mkdir()
-    names, cards = [], []
+    names, cards, style = [], [], style_of(repository)
     for folder in sorted((repository / "geometries").iterdir()):
         file = folder / "scene.toml"
         if not file.is_file():
@@ -155,14 +158,14 @@ def gallery(repository: Path, out: Path, kluft: str | None) -> None:
         title = stated.group(1) if stated else folder.name
         shown = "\n".join(scene.splitlines()[:120])
         pictures = pictures_of(folder, kluft)
-        grid = raw(f"<div class=\"grid\">{''.join(pictures[:2])}</div>") if pictures else ""
+        grid = raw(style, f"<div class=\"grid\">{''.join(pictures[:2])}</div>") if pictures else ""
         text = f"# {title}\n\n`geometries/{folder.name}`\n\n{grid}\n"
         text += f"## What it is, and its oracle\n\n```text\n{comment_of(scene)}\n```\n\n## Scene\n\n```toml\n{shown}\n```\n"
         (out / f"{folder.name}.md").write_text(text, "utf-8")
         names.append(folder.name)
         cards.append(card(folder.name, title, pictures[0] if pictures else ""))
     listed = "\n".join(names)
-    shown = raw(f"<div class=\"grid cards\">{''.join(cards)}</div>") if kluft else ""
+    shown = raw(style, f"<div class=\"grid cards\">{''.join(cards)}</div>") if kluft else ""
     tree = f"```{{toctree}}\n:maxdepth: 1\n{':hidden:' if kluft else ''}\n\n{listed}\n```\n"
     index = f"# Gallery\n\nScenes that run, each with its oracle.\n\n{shown}\n{tree}"
     (out / "index.md").write_text(index, "utf-8")
