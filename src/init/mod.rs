@@ -12,7 +12,7 @@ use kluft_mesh::{Defect, Faces, Mesh, Survey};
 use kluft_run::{Output, read_mesh};
 
 use crate::failure::Failure;
-use crate::input::{is_geometry, is_mesh};
+use crate::input::{is_geometry, is_mesh, scene_at};
 use crate::stdout::print;
 use text::{Source, scene};
 
@@ -112,19 +112,15 @@ fn there_already(file: &Path) -> Defect {
 }
 
 fn neither(input: &Path) -> Defect {
-    let folder = input.display();
-    if input.join("scene.toml").is_file() {
-        let remedy = format!("run it: kluft run {folder}");
-        return Defect::new(
-            folder.to_string(),
-            "there is a scene in this folder",
-            remedy,
-        );
+    let place = input.display().to_string();
+    if input.is_dir() && scene_at(input).is_ok() {
+        let remedy = format!("run it: kluft run {place}");
+        return Defect::new(place, "there is a scene in this folder", remedy);
     }
     let problem = match input.exists() {
         true => "this is neither a mesh nor a geometry of gmsh",
         false => "there is no such file",
     };
     let remedy = "give a mesh (.msh) or a geometry (.geo)";
-    Defect::new(folder.to_string(), problem, remedy)
+    Defect::new(place, problem, remedy)
 }

@@ -7,7 +7,6 @@ use kluft_mesh::{Defect, Excerpt};
 
 use crate::printing::one_line;
 
-const REMEDY: &str = "remedy:";
 const RED: Style = AnsiColor::Red.on_default().bold();
 const GREEN: Style = AnsiColor::Green.on_default();
 const BOLD: Style = Style::new().bold();
@@ -19,17 +18,21 @@ const KINDS: usize = 10;
 const BEFORE: usize = 40;
 const AFTER: usize = 28;
 
-/// The first defects with their remedies, and how many more there are of each kind.
-pub fn listed(defects: &[Defect]) -> String {
+/// The first defects with their remedies, and how many more there are of each kind; with colours,
+/// places are bold, carets red and remedies green.
+pub fn listed(defects: &[Defect], has_colours: bool) -> String {
+    let shown = |style| if has_colours { style } else { Style::new() };
+    let [red, green, bold] = [RED, GREEN, BOLD].map(shown);
     let count = defects.len();
     let noun = if count == 1 { "defect" } else { "defects" };
-    let mut out = format!("{count} {noun} in the input\n");
+    let mut out = format!("{red}{count} {noun} in the input{red:#}\n");
     for defect in defects.iter().take(SHOWN) {
         let parts = [&defect.place, &defect.problem, &defect.remedy];
         let [place, problem, remedy] = parts.map(|text| one_line(text));
-        let _ = writeln!(out, "{place}: {problem}");
-        out.extend(defect.excerpt.as_deref().map(marked));
-        let _ = writeln!(out, "    remedy: {remedy}");
+        let _ = writeln!(out, "{bold}{place}{bold:#}: {problem}");
+        let excerpt = defect.excerpt.as_deref();
+        out.extend(excerpt.map(|excerpt| marked(excerpt, red)));
+        let _ = writeln!(out, "    {green}remedy:{green:#} {remedy}");
     }
     if count > SHOWN {
         out += &counted(&defects[SHOWN..]);
@@ -37,32 +40,8 @@ pub fn listed(defects: &[Defect]) -> String {
     out
 }
 
-/// That list as a terminal with colours shows it: places bold, carets red, remedies green.
-pub fn coloured(listed: &str) -> String {
-    let mut out = String::with_capacity(2 * listed.len());
-    for (number, line) in listed.lines().enumerate() {
-        let text = line.trim_start();
-        let (style, end) = match text {
-            _ if number == 0 => (RED, line.len()),
-            _ if text.starts_with(REMEDY) => (GREEN, line.len() - text.len() + REMEDY.len()),
-            _ if is_caret(text) => (RED, line.len()),
-            _ if line.len() == text.len() => (BOLD, line.find(": ").unwrap_or(0)),
-            _ => (Style::new(), 0),
-        };
-        let (head, rest) = line.split_at(end);
-        let _ = writeln!(out, "{style}{head}{style:#}{rest}");
-    }
-    out
-}
-
-/// Whether a line marks with carets what is meant in the line above.
-fn is_caret(line: &str) -> bool {
-    line.strip_prefix("| ")
-        .is_some_and(|marks| marks.trim_start().chars().all(|mark| mark == '^'))
-}
-
 /// A line of a file, and below it what is meant.
-fn marked(excerpt: &Excerpt) -> String {
+fn marked(excerpt: &Excerpt, style: Style) -> String {
     let number = excerpt.number.to_string();
     let parts = [&excerpt.before, &excerpt.marked, &excerpt.after];
     let [before, marked, after] = parts.map(|text| one_line(text));
@@ -81,7 +60,7 @@ fn marked(excerpt: &Excerpt) -> String {
     let carets = "^".repeat(marked.chars().count().clamp(1, room));
     let indent = " ".repeat(left.chars().count() + before.chars().count());
     let gutter = " ".repeat(number.len());
-    format!("    {number} | {left}{line}{right}\n    {gutter} | {indent}{carets}\n")
+    format!("    {number} | {left}{line}{right}\n    {gutter} | {indent}{style}{carets}{style:#}\n")
 }
 
 /// The last characters of a text.
@@ -131,7 +110,7 @@ mod tests {
             let problem = format!("node {i} belongs to nothing, at ({i}.5, 0, 1e-{i})");
             Defect::new("a.msh", problem, "remove it")
         });
-        let text = listed(&flat.chain(loose).collect::<Vec<_>>());
+        let text = listed(&flat.chain(loose).collect::<Vec<_>>(), false);
         assert!(text.starts_with("1007 defects in the input\n"), "{text}");
         assert_eq!(text.matches("remedy: ").count(), SHOWN);
         for part in [
@@ -147,8 +126,7 @@ mod tests {
     fn colours_change_no_word() {
         let excerpt = Excerpt::of("young = 1", &(0..5));
         let defect = Defect::new("a.toml:1", "is unknown", "rename").with_excerpt(excerpt);
-        let plain = listed(&[defect]);
-        let shown = coloured(&plain);
+        let [plain, shown] = [false, true].map(|has| listed(std::slice::from_ref(&defect), has));
         for part in [RED.render().to_string(), GREEN.render().to_string()] {
             assert!(shown.contains(&part), "{shown:?}");
         }
@@ -173,7 +151,7 @@ mod tests {
         let shown = |text: &str, at| {
             let excerpt = Excerpt::of(text, &at);
             let defect = Defect::new("a.toml:2", "is unknown", "rename").with_excerpt(excerpt);
-            listed(&[defect])
+            listed(&[defect], false)
         };
         assert_eq!(
             shown(text, 9..14),
@@ -194,7 +172,10 @@ mod tests {
 
     #[test]
     fn a_name_ends_no_line() {
-        let text = listed(&[Defect::new("a\n\u{1b}[2J.toml", "is `\u{7}`", "rename")]);
+        let text = listed(
+            &[Defect::new("a\n\u{1b}[2J.toml", "is `\u{7}`", "rename")],
+            false,
+        );
         assert_eq!(
             text,
             "1 defect in the input\na\\n\\u{1b}[2J.toml: is `\\u{7}`\n    remedy: rename\n"

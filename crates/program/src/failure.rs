@@ -6,7 +6,7 @@ use kluft_io::NOT_WRITTEN;
 use kluft_io::gmsh::NOT_MESHED;
 use kluft_mesh::Defect;
 
-use crate::defects::{coloured, listed};
+use crate::defects::listed;
 use crate::printing::lines;
 use crate::report::wants_colours;
 
@@ -66,10 +66,7 @@ impl Failure {
                 let text: Vec<String> = defects.iter().map(ToString::to_string).collect();
                 writeln!(err, "failed: {}", lines(&text.join("\n")))
             }
-            Self::BadInput(defects) if has_colours => {
-                write!(err, "{}", coloured(&listed(defects)))
-            }
-            Self::BadInput(defects) => write!(err, "{}", listed(defects)),
+            Self::BadInput(defects) => write!(err, "{}", listed(defects, has_colours)),
             Self::Told(_) => Ok(()),
         };
     }
