@@ -12,6 +12,11 @@ use rayon::prelude::*;
 pub(crate) const COMPRESSOR: &str = "vtkZLibDataCompressor";
 /// Bytes of a block before compression: a whole number of values of every type.
 const BLOCK: usize = 1 << 17;
+/// Bytes of a block that are compressed first, to see what compression gains.
+const SAMPLE: usize = 1 << 12;
+/// Share of the sample that must be gained: the mantissas of most fields are noise, which costs
+/// time and gains next to nothing.
+const LEAST_GAIN: f64 = 0.25;
 
 /// A number that VTK's files hold.
 pub(crate) trait Number: Copy + PartialOrd + std::fmt::Debug + Sync {
@@ -108,8 +113,20 @@ impl EncodedArray {
 fn compressed<T: Number>(values: &[T]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(size_of_val(values));
     values.iter().for_each(|value| value.append_to(&mut bytes));
-    let mut encoder = ZlibEncoder::new(Vec::with_capacity(bytes.len()), Compression::fast());
-    encoder.write_all(&bytes)?;
+    let middle = bytes.len() / 2;
+    let sample = &bytes[middle - middle.min(SAMPLE / 2)..bytes.len().min(middle + SAMPLE / 2)];
+    let left = deflated(sample, Compression::fast())?.len() as f64;
+    let is_worth_it = left <= (1.0 - LEAST_GAIN) * sample.len() as f64;
+    let level = match is_worth_it {
+        true => Compression::fast(),
+        false => Compression::none(),
+    };
+    deflated(&bytes, level)
+}
+
+fn deflated(bytes: &[u8], level: Compression) -> io::Result<Vec<u8>> {
+    let mut encoder = ZlibEncoder::new(Vec::with_capacity(bytes.len()), level);
+    encoder.write_all(bytes)?;
     encoder.finish()
 }
 
