@@ -44,6 +44,7 @@ impl GmshArgs {
             tools: own.and_then(|own| own.tools.clone()),
             trust: self.trust,
             time_limit: self.mesh_timeout,
+            stop: None,
             cache: cache(self.remesh),
         }
     }

@@ -83,6 +83,11 @@ pub fn sides(is_heard: bool) -> (Told, Follower) {
 }
 
 impl Told {
+    /// True once the run is to stop.
+    pub fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
     /// What says that all is done.
     pub fn bell(&self) -> Bell {
         Bell(self.events.clone())

@@ -208,7 +208,7 @@ impl Session {
         let (told, follower) = sides(is_heard);
         let (commands, asked) = channel();
         let (answers, replies) = channel();
-        let given = (scene, mesh, count, gmsh_options(own));
+        let given = (scene, mesh, count, gmsh_options(own, told.stop()));
         let thread = std::thread::spawn(move || work(given, told, asked, answers));
         Self {
             commands,

@@ -2,6 +2,8 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use kluft::{Invocation, OwnProgram};
 use kluft_io::GmshOptions;
@@ -23,9 +25,12 @@ pub fn main(py: Python<'_>, words: Vec<OsString>, own: Own) -> u8 {
     py.detach(|| kluft::execute(&invocation))
 }
 
-/// How runs in memory start gmsh: as the program does.
-pub fn gmsh_options(own: Own) -> GmshOptions {
-    GmshArgs::default().options(Some(&own_program(own)))
+/// How runs in memory start gmsh: as the program does, and until `stop` is true.
+pub fn gmsh_options(own: Own, stop: Arc<AtomicBool>) -> GmshOptions {
+    GmshOptions {
+        stop: Some(stop),
+        ..GmshArgs::default().options(Some(&own_program(own)))
+    }
 }
 
 fn own_program((file, script, code, tools): Own) -> OwnProgram {

@@ -42,7 +42,7 @@ pub fn solve(
                 command: None,
                 commit: option_env!("KLUFT_COMMIT"),
             },
-            gmsh: gmsh_options(own),
+            gmsh: gmsh_options(own, told.stop()),
             ..Request::in_memory(&scene.get().scene, mesh, &pool)
         };
         run(request, told)
@@ -58,13 +58,17 @@ pub fn solve(
         (py.detach(|| working.join()), followed)
     });
     let outcome = outcome.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    let outcome = sound(py, outcome)?;
+    let (outcome, raised) = match (outcome, followed) {
+        // A run that was stopped while gmsh made its mesh.
+        (Err(_), Err(raised)) => return Err(raised),
+        (outcome, followed) => (sound(py, outcome)?, followed.err()),
+    };
     let (ending, why) = match outcome.ending {
         Ending::Solved | Ending::NothingLeft => ("solved", String::new()),
         Ending::Stopped => ("stopped", String::new()),
         Ending::NotConverged(why) => ("not converged", why),
     };
-    let raised = followed.err().map(|error| error.into_value(py).into_any());
+    let raised = raised.map(|error| error.into_value(py).into_any());
     let results = Results::of(py, outcome.summary, outcome.history, outcome.steps);
     Ok((ending, why, results, raised))
 }

@@ -229,6 +229,32 @@ def test_a_real_interrupt_ends_a_process_of_its_own(tmp_path):
     assert 0 < int(said.split()[-1]) < 5000
 
 
+def test_an_interrupt_ends_gmsh(tmp_path):
+    """A geometry that never ends is left at once, and gmsh with it."""
+    (tmp_path / "endless.geo").write_text("For(0:1e9)\nEndFor\n")
+    script = tmp_path / "endless.py"
+    script.write_text(
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "from conftest import scene_of\n"
+        "print('begun', flush=True)\n"
+        "try:\n"
+        "    scene_of(mesh={'geometry': sys.argv[2]}).solve()\n"
+        "except KeyboardInterrupt:\n"
+        "    print('stopped', flush=True)\n"
+    )
+    here = str(pathlib.Path(__file__).parent)
+    process = subprocess.Popen(
+        [sys.executable, str(script), here, str(tmp_path / "endless.geo")],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    said, _ = process.communicate(timeout=10)
+    assert said == "stopped\n"
+
+
 def test_numbers_do_not_depend_on_threads(scene, mesh):
     one, two = (scene.solve(mesh, threads=count).rock.cell_fields["stress"] for count in (1, 2))
     np.testing.assert_array_equal(one, two)

@@ -7,7 +7,7 @@ use kluft_mesh::Defect;
 
 use super::log::Log;
 use super::options::{NOT_MESHED, NOT_STARTED};
-use super::run::{Ended, Gmsh};
+use super::run::{CutShort, Ended, Gmsh};
 
 /// Lines of what gmsh said last that a message holds.
 const LAST: usize = 3;
@@ -16,8 +16,10 @@ const LAST: usize = 3;
 pub(super) fn judge(gmsh: &Gmsh, input: &Path, ended: &Ended) -> Result<Vec<String>, Vec<Defect>> {
     let name = input.display().to_string();
     let is_launched = gmsh.options.launcher.is_some();
-    if ended.is_out_of_time {
-        return Err(vec![out_of_time(gmsh, name)]);
+    match ended.cut_short {
+        Some(CutShort::OutOfTime) => return Err(vec![out_of_time(gmsh, name)]),
+        Some(CutShort::Stopped) => return Err(vec![stopped(name)]),
+        None => {}
     }
     if is_launched && ended.status.code() == Some(NOT_STARTED.into()) {
         let why = ended.errors.lines().next_back().unwrap_or_default();
@@ -55,6 +57,16 @@ fn not_started(gmsh: &Gmsh, problem: String) -> Defect {
     let remedy = "install it (`sudo apt-get install gmsh`), or let the environment variable \
                   KLUFT_GMSH name the program";
     Defect::new(gmsh.program.display().to_string(), problem, remedy)
+}
+
+fn stopped(name: String) -> Defect {
+    let remedy = "start again: nothing was written";
+    Defect::new(
+        name,
+        "gmsh was stopped before the mesh was finished",
+        remedy,
+    )
+    .with_code(NOT_MESHED)
 }
 
 fn out_of_time(gmsh: &Gmsh, name: String) -> Defect {

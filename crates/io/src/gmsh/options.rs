@@ -2,6 +2,8 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::cache::MeshCache;
@@ -52,7 +54,7 @@ pub struct Meshed {
 
 /// How gmsh is started, and what a geometry may do. By default gmsh is a child of this process
 /// without a time limit, and a geometry that does more than describe a body is refused.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default)]
 pub struct GmshOptions {
     /// The program that becomes gmsh.
     pub launcher: Option<Launcher>,
@@ -62,6 +64,8 @@ pub struct GmshOptions {
     pub trust: bool,
     /// After this time gmsh is ended.
     pub time_limit: Option<Duration>,
+    /// gmsh is ended once this is true.
+    pub stop: Option<Arc<AtomicBool>>,
     /// Where meshes are kept for the next time.
     pub cache: Option<MeshCache>,
 }

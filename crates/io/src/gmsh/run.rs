@@ -4,6 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
@@ -37,8 +38,17 @@ pub(super) struct Ended {
     pub(super) status: ExitStatus,
     pub(super) output: String,
     pub(super) errors: String,
-    /// Whether it was ended because its time was over.
-    pub(super) is_out_of_time: bool,
+    /// Why it was ended, if it did not end by itself.
+    pub(super) cut_short: Option<CutShort>,
+}
+
+/// Why a run is ended before it ends by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum CutShort {
+    /// Its time is over.
+    OutOfTime,
+    /// Nobody wants its mesh any more.
+    Stopped,
 }
 
 impl<'a> Gmsh<'a> {
@@ -75,7 +85,7 @@ impl<'a> Gmsh<'a> {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()?;
-        watch(child, self.options.time_limit)
+        watch(child, self.options)
     }
 
     /// The program without its arguments, as the launcher wants it if there is one.
@@ -123,20 +133,21 @@ impl<'a> Gmsh<'a> {
     }
 }
 
-fn watch(mut child: Child, limit: Option<Duration>) -> io::Result<Ended> {
+fn watch(mut child: Child, options: &GmshOptions) -> io::Result<Ended> {
+    let limit = options.time_limit;
     let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
     let (ended, all) = mpsc::channel();
     let output = child.stdout.take().map(|stream| read(stream, &ended));
     let errors = child.stderr.take().map(|stream| read(stream, &ended));
     drop(ended);
     let mut pause = FIRST_PAUSE;
-    let mut is_out_of_time = false;
+    let mut cut_short = None;
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
         }
-        if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-            is_out_of_time = true;
+        cut_short = reason_to_end(options, deadline);
+        if cut_short.is_some() {
             child.kill()?;
             break child.wait()?;
         }
@@ -149,8 +160,17 @@ fn watch(mut child: Child, limit: Option<Duration>) -> io::Result<Ended> {
         status,
         output: text(output),
         errors: text(errors),
-        is_out_of_time,
+        cut_short,
     })
+}
+
+fn reason_to_end(options: &GmshOptions, deadline: Option<Instant>) -> Option<CutShort> {
+    let stop = options.stop.as_ref();
+    if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+        return Some(CutShort::Stopped);
+    }
+    let is_over = deadline.is_some_and(|deadline| Instant::now() >= deadline);
+    is_over.then_some(CutShort::OutOfTime)
 }
 
 fn read(stream: impl io::Read + Send + 'static, ended: &mpsc::Sender<()>) -> Capture {

@@ -2,6 +2,8 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::meshing::mesh_with;
@@ -236,6 +238,26 @@ fn a_program_that_prints_or_waits_for_ever_ends_with_its_time() {
         assert_eq!(defects[0].code, Some(NOT_MESHED));
         assert!(begin.elapsed() < Duration::from_secs(4), "{name}");
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_program_whose_mesh_nobody_wants_any_more_is_ended() {
+    let stop = Arc::new(AtomicBool::new(false));
+    let options = GmshOptions {
+        stop: Some(Arc::clone(&stop)),
+        ..GmshOptions::default()
+    };
+    let scene = Scene::new("unwanted", BOX);
+    let program = player(&scene, "while :; do :; done");
+    std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(200));
+        stop.store(true, Ordering::Relaxed);
+    });
+    let begin = std::time::Instant::now();
+    let defects = scene.fails_as(&program, &options, "start again");
+    assert_eq!(defects[0].code, Some(NOT_MESHED));
+    assert!(begin.elapsed() < Duration::from_secs(4));
 }
 
 #[cfg(unix)]
