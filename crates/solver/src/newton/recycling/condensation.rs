@@ -44,7 +44,7 @@ impl RecycledSpace {
     /// Norms of the directions by the energy of the tangent at a state.
     fn energy_norms(&self, system: &System<'_>, state: &State) -> Vec<f64> {
         let tangents = facet_points::tangents(system, state);
-        let matrix = self.project(system, state, &tangents).matrix;
+        let matrix = self.tangent(system, &tangents);
         let norm = |i: usize| matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt();
         (0..self.directions.len()).map(norm).collect()
     }

@@ -1,5 +1,10 @@
 //! Newton's method in the recycled space.
+//!
+//! To project the tangent costs as much as many evaluations of the laws, so it is done again only
+//! where the former one leads too slowly. The iterations end where they are worth no more than the
+//! space itself: the last guess tells how far that was from the solution.
 
+use faer::Mat;
 use kluft_algebra::dot;
 use rayon::prelude::*;
 
@@ -11,9 +16,13 @@ use crate::problem::Load;
 use crate::system::{State, System};
 
 /// Most iterations in the space.
-const MOST_ITERATIONS: usize = 8;
+const MOST_ITERATIONS: usize = 12;
 /// Energy of the last correction, against the first, that ends the iterations.
 const CONVERGED_ENERGY: f64 = 1e-18;
+/// Energy of the last correction that ends them, against what the space left of the last solution.
+const SHARE_OF_LEFT: f64 = 1e-2;
+/// Energy of a correction, against the one before, above which the tangent is projected again.
+const SLOW: f64 = 1e-2;
 /// Energy of the last correction, against the first, that a guess may have at most.
 const LARGEST_ENERGY: f64 = 1e-6;
 
@@ -32,6 +41,8 @@ struct ReducedIterate {
     errors: Vec<f64>,
     /// `V^T (loads - K y_0)` (J).
     projected_residual: Vec<f64>,
+    /// Tangent in the space, `V^T (K + fractures) V` (J); none if it is to be made.
+    matrix: Option<Mat<f64>>,
 }
 
 /// Measures of a correction in the space.
@@ -75,6 +86,7 @@ impl RecycledSpace {
             last_trials: vec![LastTrial::default(); state.facet_points.len()],
             coefficients: vec![0.0; self.directions.len()],
             errors: Vec::new(),
+            matrix: None,
             state,
         }
     }
@@ -85,12 +97,21 @@ impl RecycledSpace {
         system: &System<'_>,
         iterate: &mut ReducedIterate,
     ) -> Option<Measures> {
+        let worth = SHARE_OF_LEFT * self.left;
+        let enough = worth.clamp(CONVERGED_ENERGY, LARGEST_ENERGY);
         let mut first = None;
-        let mut last = Measures::default();
+        let mut last = Measures {
+            energy: f64::INFINITY,
+            ..Measures::default()
+        };
         for _ in 0..MOST_ITERATIONS {
+            let former = last.energy;
             last = self.iterate(system, iterate)?;
-            if last.energy <= CONVERGED_ENERGY * *first.get_or_insert(last.energy) {
+            if last.energy <= enough * *first.get_or_insert(last.energy) {
                 break;
+            }
+            if last.energy > SLOW * former {
+                iterate.matrix = None;
             }
         }
         let is_finite =
@@ -108,13 +129,15 @@ impl RecycledSpace {
             &iterate.state,
             facet_points::Linearisation::Tangents,
         );
-        let projected = self.project(system, &iterate.state, &planes.tangents);
+        let matrix = iterate.matrix.take();
+        let matrix = matrix.unwrap_or_else(|| self.tangent(system, &planes.tangents));
         let rock = self.rock_forces(&iterate.coefficients);
-        let fractures = projected.fracture_forces;
+        let fractures = self.fracture_forces(system, &iterate.state, &planes.tangents);
         let residual: Vec<f64> = (0..rock.len())
             .map(|i| iterate.projected_residual[i] - rock[i] - fractures[i])
             .collect();
-        let change = dense::solve(projected.matrix, &residual)?;
+        let change = dense::solve(matrix.clone(), &residual)?;
+        iterate.matrix = Some(matrix);
         let correction = self.combined_on_fractures(system, &change);
         iterate.errors = facet_points::follow(
             system,

@@ -6,17 +6,10 @@ use kluft_algebra::dot;
 use rayon::prelude::*;
 
 use super::space::RecycledSpace;
+use crate::assembly::interface::Interface;
 use crate::linear::Tangents;
 use crate::newton::facet_points::{self, interface};
 use crate::system::{State, System};
-
-/// A linearised system in the space.
-pub(super) struct Projected {
-    /// The tangent, `V^T (K + fractures) V` (J).
-    pub(super) matrix: Mat<f64>,
-    /// Forces of the fractures on the tangent planes of the laws, `V^T fractures` (J).
-    pub(super) fracture_forces: Vec<f64>,
-}
 
 impl RecycledSpace {
     /// `v_i . K v_j` (J).
@@ -32,36 +25,47 @@ impl RecycledSpace {
             .collect()
     }
 
-    /// The system linearised at a state.
-    pub(super) fn project(
+    /// The tangent in the space, `V^T (K + fractures) V` (J).
+    pub(super) fn tangent(&self, system: &System<'_>, tangents: &Tangents) -> Mat<f64> {
+        let interface = interface(system);
+        let stiffness: Vec<DMat3> = interface.stiffness(&tangents.exact);
+        let jumps: Vec<Vec<DVec3>> = self
+            .directions
+            .par_iter()
+            .map(|v| of_fractures(interface, v))
+            .collect();
+        let rows = self.directions.par_iter().enumerate();
+        let images: Vec<Vec<f64>> = rows
+            .map(|(i, v)| {
+                let image = interface.resistance(&stiffness, v);
+                jumps[..=i].iter().map(|own| dot(own, &image)).collect()
+            })
+            .collect();
+        Mat::from_fn(jumps.len(), jumps.len(), |i, j| {
+            self.energy(i, j) + images[i.max(j)][i.min(j)]
+        })
+    }
+
+    /// Forces of the fractures on the tangent planes of the laws, `V^T fractures` (J).
+    pub(super) fn fracture_forces(
         &self,
         system: &System<'_>,
         state: &State,
         tangents: &Tangents,
-    ) -> Projected {
+    ) -> Vec<f64> {
         let interface = interface(system);
-        let own = |vector: &[DVec3]| -> Vec<DVec3> {
-            let unknowns = interface.unknowns.iter();
-            unknowns.map(|&unknown| vector[unknown as usize]).collect()
-        };
         let tractions = facet_points::linearised_tractions(system, state, tangents);
-        let mut all_forces = vec![DVec3::ZERO; state.unknowns.len()];
-        interface.add_forces(&tractions, 1.0, &mut all_forces);
-        let forces = own(&all_forces);
-        let stiffness: Vec<DMat3> = interface.stiffness(&tangents.exact);
-        let jumps: Vec<Vec<DVec3>> = self.directions.par_iter().map(|v| own(v)).collect();
-        let images: Vec<Vec<f64>> = self
-            .directions
-            .par_iter()
-            .map(|v| interface.resistance(&stiffness, v))
-            .map(|image| jumps.iter().map(|own| dot(own, &image)).collect())
-            .collect();
-        Projected {
-            matrix: Mat::from_fn(jumps.len(), jumps.len(), |i, j| {
-                self.energy(i, j) + images[i.max(j)][i.min(j)]
-            }),
-            fracture_forces: jumps.iter().map(|own| dot(own, &forces)).collect(),
-        }
+        let mut forces = vec![DVec3::ZERO; state.unknowns.len()];
+        interface.add_forces(&tractions, 1.0, &mut forces);
+        let directions = self.directions.par_iter();
+        directions
+            .map(|v| {
+                let unknowns = interface.unknowns.iter().map(|&unknown| unknown as usize);
+                unknowns
+                    .map(|unknown| v[unknown].dot(forces[unknown]))
+                    .sum()
+            })
+            .collect()
     }
 
     /// `V c`, on the unknowns that move facet points only (m).
@@ -82,4 +86,10 @@ impl RecycledSpace {
         let directions = self.directions.iter().zip(coefficients);
         directions.map(|(v, c)| *c * v[entry]).sum()
     }
+}
+
+/// The part of a vector that moves facet points.
+fn of_fractures(interface: &Interface, vector: &[DVec3]) -> Vec<DVec3> {
+    let unknowns = interface.unknowns.iter();
+    unknowns.map(|&unknown| vector[unknown as usize]).collect()
 }
