@@ -1,7 +1,7 @@
 //! Parts of a load path, and of a flow in time, that no division resolves, in words.
 
 use kluft_scene::{Doubt, Scene};
-use kluft_solver::{StepRecord, System};
+use kluft_solver::{StepRecord, System, UnresolvedCause};
 
 use crate::failures::facet_place;
 use crate::summary::StepMeasures;
@@ -11,13 +11,17 @@ pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
     let path = record.unresolved?;
     let place = path.facet_point;
     let place = place.map(|point| facet_place(system.problem(), system, point));
-    let what = if path.difference.is_finite() {
-        format!(
+    let what = match path.cause {
+        UnresolvedCause::Differs(difference) => format!(
             "one increment and two lead to jumps that differ by {:.1} % of the largest",
-            100.0 * path.difference
-        )
-    } else {
-        "one increment leads to an equilibrium, and two shorter ones to none".to_owned()
+            100.0 * difference
+        ),
+        UnresolvedCause::HalvesDoNotEnd => {
+            "one increment leads to an equilibrium, and two shorter ones to none".to_owned()
+        }
+        UnresolvedCause::Falls => "blocks fall through open gaps, and only friction on the walls \
+                                   that stop them tells where they come to rest"
+            .to_owned(),
     };
     Some(match place {
         Some(place) => format!("{what}, most at {place}"),

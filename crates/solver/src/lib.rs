@@ -60,7 +60,7 @@ pub use linear::{
 };
 pub use newton::{
     Determinacy, Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord,
-    UnresolvedPath, determinacy, unobserved,
+    UnresolvedCause, UnresolvedPath, determinacy, unobserved,
 };
 pub use problem::{
     Cases, Condition, Conduit, Field, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,

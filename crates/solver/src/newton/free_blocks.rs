@@ -1,30 +1,67 @@
 //! Blocks that nothing holds once fractures have opened or slide.
 
+use glam::DVec3;
 use kluft_mesh::Defect;
 use rayon::prelude::*;
 
-use super::facet_points::{interface, tangent};
-use crate::space::rigid_modes::{self, Tie};
+use super::facet_points::{self, interface, tangent};
+use super::fluid;
+use super::iterate::Iterate;
+use crate::problem::Load;
+use crate::space::mechanism::Push;
+use crate::space::rigid_modes::{self, FreeMotions, Tie};
 use crate::system::{State, System};
 
 /// Stiffness that counts as none, against that of the rock beside a facet point.
 const NO_STIFFNESS: f64 = 1e-9;
+/// Force that pushes a block, against the largest force, above which it is not in balance.
+pub(super) const UNBALANCED: f64 = 1e-4;
 
-/// The blocks that can move freely in a state, with the fractures that let them.
-pub(super) fn find(system: &System<'_>, state: &State) -> Vec<Defect> {
-    let ties = ties(system, state);
-    let names = untied_fractures(system, &ties);
-    let discretisation = &system.discretisation;
-    rigid_modes::find_with(
-        system.problem,
-        &discretisation.points,
-        &discretisation.supports,
-        &ties,
-        &format!(
-            "{} has opened or slides there; hold the block, lower the load, or give the fracture friction, cohesion or stiffness",
-            names.join(", ")
-        ),
-    )
+/// The blocks that the forces of an iterate push along motions that nothing resists and no wall
+/// stops, with the fractures that let them.
+pub(super) fn find(system: &System<'_>, iterate: &Iterate) -> Vec<Defect> {
+    let ties = ties(system, &iterate.state);
+    let Some((free, push)) = push(system, &iterate.state, &iterate.rock_forces, &ties) else {
+        return Vec::new();
+    };
+    if push.is_held() || push.size() <= UNBALANCED * iterate.sizes.force {
+        return Vec::new();
+    }
+    let remedy = format!(
+        "{} has opened or slides there; hold the block, lower the load, or give the fracture friction, cohesion or stiffness",
+        untied_fractures(system, &ties).join(", ")
+    );
+    free.describe(&system.problem.mesh, &push.along, &remedy)
+}
+
+/// Whether a load pushes blocks from a state through open gaps to walls with friction.
+pub(super) fn fall(system: &System<'_>, from: &State, load: &Load) -> bool {
+    let ties = ties(system, from);
+    if ties.iter().all(|tie| tie.across && tie.along) {
+        return false;
+    }
+    let mut state = from.clone();
+    facet_points::move_supports(system, &mut state, load);
+    let rock_forces = system.rock_forces(&state.unknowns);
+    let scale = system.force_scale(&rock_forces, &system.law_tractions(&state), load);
+    push(system, &state, &rock_forces, &ties)
+        .is_some_and(|(_, push)| push.is_held() && push.size() > UNBALANCED * scale)
+}
+
+/// Motions that `ties` leave free, and what the forces push along them; none if there are too many
+/// blocks to tell.
+fn push(
+    system: &System<'_>,
+    state: &State,
+    rock_forces: &[DVec3],
+    ties: &[Tie],
+) -> Option<(FreeMotions, Push)> {
+    let (problem, space) = (system.problem, &system.discretisation);
+    let free = rigid_modes::free_motions(problem, &space.points, &space.supports, ties)?;
+    let tractions = fluid::total_tractions(system, state, system.law_tractions(state));
+    let residual = system.residual(rock_forces, &tractions, &state.load);
+    let push = Push::of(&free, problem, &space.points, &residual);
+    Some((free, push))
 }
 
 /// Names of the fractures with facets that let their sides move.

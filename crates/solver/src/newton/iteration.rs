@@ -129,7 +129,7 @@ impl Newton {
             step.go_on()?;
             // Springs hold every block.
             if iterate.linearisation == Linearisation::Tangents {
-                rigid_body_motion.test(step, &iterate.state, &iteration, count)?;
+                rigid_body_motion.test(step, iterate, &iteration, count)?;
             }
         }
         Err(StepOutcome::OutOfIterations)

@@ -11,6 +11,9 @@ use super::{Iteration, Step, StepOutcome};
 const WHOLE_CORRECTIONS: usize = 6;
 /// How often a correction is halved.
 const HALVINGS: usize = 4;
+/// Share of its errors that a shorter correction must gain: until a block that moves freely meets a
+/// wall, all leave the same forces out of balance, and the longest is the best.
+const LEAST_GAIN: f64 = 1e-2;
 
 /// What a search compares: both measures are against what is large.
 pub(super) fn merit(iteration: &Iteration) -> f64 {
@@ -56,8 +59,9 @@ fn search(
         let Ok(iteration) = next.correct(step, part) else {
             continue;
         };
-        let better = |best: &(Iteration, Iterate)| merit(&iteration) < merit(&best.0);
-        if best.as_ref().is_none_or(better) {
+        let gained =
+            (1.0 - LEAST_GAIN) * best.as_ref().map_or(f64::INFINITY, |best| merit(&best.0));
+        if merit(&iteration) < gained {
             best = Some((iteration, next));
         }
         if merit(&iteration) < former {

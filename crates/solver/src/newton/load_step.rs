@@ -82,7 +82,7 @@ impl Newton {
         let mut iterate = self.predict(step.system, from, load);
         let converged = self.iterate_to_convergence(step, &mut iterate);
         if let Err(outcome) = converged {
-            step.explain(&outcome, &iterate.state);
+            step.explain(&outcome, &iterate);
             return Err(outcome);
         }
         Ok(self.commit(step.system, iterate))

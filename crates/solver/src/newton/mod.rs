@@ -46,7 +46,7 @@ mod substepping;
 use step::Step;
 
 pub use determinacy::{Determinacy, determinacy};
-pub use record::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
+pub use record::{Iteration, StepOutcome, StepRecord, UnresolvedCause, UnresolvedPath};
 pub(crate) use recycling::bytes as recycling_bytes;
 pub use restart::RestartState;
 pub use settings::NewtonSettings;

@@ -45,15 +45,26 @@ pub enum StepOutcome {
     Stopped,
 }
 
-/// A part of a load step that one increment and two solve differently, however short it is: walls
-/// jump to another place there, and another number of load steps may lead to another equilibrium.
+/// A part of a load step that does not tell where the loads lead: walls jump or fall to another
+/// place there, and another number of load steps may lead to another equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnresolvedPath {
-    /// Largest difference of the jumps against the largest jump; infinite if two increments lead
-    /// nowhere.
-    pub difference: f64,
+    /// Why it does not.
+    pub cause: UnresolvedCause,
     /// The facet point where it is.
     pub facet_point: Option<usize>,
+}
+
+/// Why a path is not resolved, the worst last.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub enum UnresolvedCause {
+    /// One increment and two, however short, differ by so much in their jumps, against the largest.
+    Differs(f64),
+    /// One increment leads to an equilibrium, and two shorter ones to none.
+    HalvesDoNotEnd,
+    /// Blocks fall through open gaps, and only friction on the walls that stop them tells where
+    /// they come to rest.
+    Falls,
 }
 
 /// Record of a load step.

@@ -3,9 +3,10 @@
 use std::ops::ControlFlow;
 
 use super::free_blocks;
+use super::iterate::Iterate;
 use super::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
 use crate::problem::Load;
-use crate::system::{State, System};
+use crate::system::System;
 
 /// Who is told of each iteration, by its number and measures, and may stop the step.
 type Observe<'a> = dyn FnMut(usize, &Iteration) -> ControlFlow<()> + 'a;
@@ -53,7 +54,7 @@ impl<'a> Step<'a> {
     /// Records a part of the step whose path is not resolved, if it is the least resolved so far.
     pub(super) fn leave_unresolved(&mut self, path: UnresolvedPath) {
         let former = self.record.unresolved.as_ref();
-        if former.is_none_or(|former| former.difference < path.difference) {
+        if former.is_none_or(|former| former.cause < path.cause) {
             self.record.unresolved = Some(path);
         }
     }
@@ -68,12 +69,12 @@ impl<'a> Step<'a> {
         self.record.time_error = Some(worst);
     }
 
-    /// Records the blocks that nothing holds in the state where an increment failed, unless they
+    /// Records the blocks that nothing holds in the iterate where an increment failed, unless they
     /// are known.
-    pub(super) fn explain(&mut self, outcome: &StepOutcome, state: &State) {
+    pub(super) fn explain(&mut self, outcome: &StepOutcome, iterate: &Iterate) {
         let is_known = !self.record.rigid_motions.is_empty() || *outcome == StepOutcome::Stopped;
         if !is_known && !self.system.is_smooth() {
-            self.record.rigid_motions = free_blocks::find(self.system, state);
+            self.record.rigid_motions = free_blocks::find(self.system, iterate);
         }
     }
 

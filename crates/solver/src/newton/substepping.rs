@@ -13,7 +13,8 @@ use kluft_algebra::largest;
 
 use super::convergence::ratio;
 use super::facet_points::interface;
-use super::{Newton, Step, StepOutcome, UnresolvedPath};
+use super::free_blocks;
+use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
 use crate::FacetPointState;
 use crate::flow::Coupling;
 use crate::problem::Load;
@@ -84,6 +85,12 @@ impl Newton {
             true => step.system.problem.schedule.walked_from(&state.load),
             false => state.load.clone(),
         };
+        if step.system.is_path_dependent() && free_blocks::fall(step.system, state, load) {
+            step.leave_unresolved(UnresolvedPath {
+                cause: UnresolvedCause::Falls,
+                facet_point: None,
+            });
+        }
         let mut here = Reached {
             state: state.clone(),
             share: 0.0,
@@ -155,9 +162,7 @@ impl Newton {
         let apart = slides.then(|| difference(step.system, &whole, &halves));
         let in_time = flows.then(|| flows_apart(step.system, &whole, &halves));
         let flow = in_time.map(|apart| apart / self.settings.time);
-        let path = apart
-            .as_ref()
-            .map(|apart| apart.difference / self.settings.path);
+        let path = apart.as_ref().map(|(apart, _)| apart / self.settings.path);
         let error = path.into_iter().chain(flow).fold(0.0, f64::max);
         if error > 1.0 && !substep.is_smallest {
             return Solved::TooLong {
@@ -169,7 +174,11 @@ impl Newton {
             step.leave_time_error(apart);
         }
         if let Some(apart) = apart.filter(|_| path.is_some_and(|path| path > 1.0)) {
-            step.leave_unresolved(apart);
+            let (difference, facet_point) = apart;
+            step.leave_unresolved(UnresolvedPath {
+                cause: UnresolvedCause::Differs(difference),
+                facet_point,
+            });
         }
         Solved::Accepted {
             end: halves,
@@ -222,17 +231,14 @@ fn is_elastic(from: &State, to: &State) -> bool {
 }
 
 /// Largest difference of the jumps of two states, against the largest jump, and where it is.
-fn difference(system: &System<'_>, a: &State, b: &State) -> UnresolvedPath {
+fn difference(system: &System<'_>, a: &State, b: &State) -> (f64, Option<usize>) {
     let pairs = a.unknowns.iter().zip(&b.unknowns);
     let between: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
     let apart = interface(system).jumps(&between, &Load::NONE);
     let size = largest(&interface(system).jumps(&b.unknowns, &b.load));
     let length = |point: usize| apart[point].length();
     let facet_point = (0..apart.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
-    UnresolvedPath {
-        difference: ratio(largest(&apart), size),
-        facet_point,
-    }
+    (ratio(largest(&apart), size), facet_point)
 }
 
 /// What stands for a substep that no division resolves: the end of a longer one that converged in
@@ -251,7 +257,7 @@ fn let_be(
     let facet_point = step.record.worst_facet_point;
     step.record.rigid_motions.clear();
     step.leave_unresolved(UnresolvedPath {
-        difference: f64::INFINITY,
+        cause: UnresolvedCause::HalvesDoNotEnd,
         facet_point,
     });
     Ok(end)

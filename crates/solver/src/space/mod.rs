@@ -2,6 +2,7 @@
 
 pub(crate) mod cell;
 pub(crate) mod folded;
+pub(crate) mod mechanism;
 pub(crate) mod pattern;
 pub(crate) mod rigid_modes;
 pub(crate) mod sector_nodes;

@@ -17,6 +17,8 @@ use kluft_algebra::trace;
 /// Below this share of the largest eigenvalue a motion counts as unresisted; the others are far
 /// above it, because all lengths are in units of the body.
 const FREE: f64 = 1e-11;
+/// Square of a motion, against that of the body that moves most, above which a body is pushed too.
+const MOVES: f64 = 1e-3;
 /// The eigenproblem is dense; with more loose blocks than this the check is left to the
 /// factorisation.
 const MOST_BLOCKS: usize = 400;
@@ -64,33 +66,19 @@ pub(crate) fn find(
     };
     let facets = 0..problem.mesh.facets.elements.len();
     let ties: Vec<Tie> = facets.map(tie).collect();
-    let found = find_with(problem, points, supports, &ties, HOLD);
-    let coded = found.into_iter();
-    coded.map(|defect| defect.with_code(UNHELD_BLOCK)).collect()
-}
-
-/// Names every group of blocks that can move freely with what `ties` hold, one for each facet.
-pub(crate) fn find_with(
-    problem: &Problem,
-    points: &SectorNodes,
-    supports: &Supports,
-    ties: &[Tie],
-    remedy: &str,
-) -> Vec<Defect> {
-    let Some(free) = free_motions(problem, points, supports, ties) else {
+    let Some(free) = free_motions(problem, points, supports, &ties) else {
         return Vec::new();
     };
-    let mesh = &problem.mesh;
-    (0..free.body_count)
-        .filter_map(|body| {
-            let share = |motion: usize| -> f64 {
-                let squares = free.motions.iter().map(|own| own[body][motion].powi(2));
-                squares.sum()
-            };
-            let shares: Vec<f64> = (0..6).map(share).collect();
-            describe(mesh, &free.body_of_block, body, &shares, remedy)
-        })
-        .collect()
+    let named = |body: usize| {
+        let share = |component: usize| -> f64 {
+            let squares = free.motions.iter().map(|own| own[body][component].powi(2));
+            squares.sum()
+        };
+        let shares: [f64; 6] = std::array::from_fn(share);
+        let defect = describe(&problem.mesh, &free.body_of_block, body, &shares, HOLD)?;
+        Some(defect.with_code(UNHELD_BLOCK))
+    };
+    (0..free.body_count).filter_map(named).collect()
 }
 
 /// Rigid motions of bodies, which are blocks that fractures hold together, that nothing resists.
@@ -141,6 +129,43 @@ pub(crate) fn free_motions(
 }
 
 impl FreeMotions {
+    /// The work of forces (N, on the unknowns) along each of the motions.
+    pub(crate) fn work(&self, mesh: &Mesh, points: &SectorNodes, forces: &[DVec3]) -> Vec<f64> {
+        let body_of_point = bodies_of_points(mesh, points, &self.body_of_block);
+        let mut of_bodies = vec![[0.0; 6]; self.body_count];
+        for (point, &body) in body_of_point.iter().enumerate() {
+            let force = points.point_force(forces, point);
+            let at = mesh.nodes[points.node[point] as usize];
+            let own = along(self.bounds, at, force);
+            let sums = of_bodies[body as usize].iter_mut();
+            sums.zip(own).for_each(|(sum, own)| *sum += own);
+        }
+        let of_motion = |motion: &Vec<[f64; 6]>| {
+            let pairs = motion.iter().zip(&of_bodies);
+            pairs.map(|(a, b)| dot(a, b)).sum()
+        };
+        self.motions.iter().map(of_motion).collect()
+    }
+
+    /// Names every body that these coefficients of the motions move, by what it does most.
+    pub(crate) fn describe(&self, mesh: &Mesh, coefficients: &[f64], remedy: &str) -> Vec<Defect> {
+        let entry = |body: usize, component: usize| -> f64 {
+            let motions = self.motions.iter().zip(coefficients);
+            motions.map(|(motion, c)| c * motion[body][component]).sum()
+        };
+        let of_body =
+            |body| -> [f64; 6] { std::array::from_fn(|component| entry(body, component).powi(2)) };
+        let shares: Vec<[f64; 6]> = (0..self.body_count).map(of_body).collect();
+        let most = |shares: &[f64; 6]| shares.iter().copied().fold(0.0, f64::max);
+        let largest = shares.iter().map(most).fold(0.0, f64::max);
+        let moving = (0..self.body_count).filter(|&body| most(&shares[body]) > MOVES * largest);
+        let named = |body: usize| {
+            let own = shares[body].map(|share| share / most(&shares[body]));
+            describe(mesh, &self.body_of_block, body, &own, remedy)
+        };
+        moving.filter_map(named).collect()
+    }
+
     /// The jump at a corner of a facet in each of the motions; lengths in units of the body.
     pub(crate) fn jumps(&self, mesh: &Mesh, facet: usize, at: DVec3) -> Vec<DVec3> {
         let [plus, minus] = blocks_at(mesh, facet).map(|block| self.body_of_block[block] as usize);
@@ -287,11 +312,19 @@ impl Constraints<'_> {
     /// What the six rigid motions do along `direction` at a position; rotations about the middle of
     /// the mesh, lengths in units of its size.
     fn motion(&self, at: DVec3, direction: DVec3) -> [f64; 6] {
-        let (low, high) = self.bounds;
-        let arm = (at - 0.5 * (low + high)) / (high - low).length();
-        let (d, turn) = (direction, arm.cross(direction));
-        [d.x, d.y, d.z, turn.x, turn.y, turn.z]
+        along(self.bounds, at, direction)
     }
+}
+
+/// What the six rigid motions of a body of these bounds do along `direction` at a position.
+fn along((low, high): (DVec3, DVec3), at: DVec3, direction: DVec3) -> [f64; 6] {
+    let arm = (at - 0.5 * (low + high)) / (high - low).length();
+    let (d, turn) = (direction, arm.cross(direction));
+    [d.x, d.y, d.z, turn.x, turn.y, turn.z]
+}
+
+fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn add(sum: &mut Mat<f64>, parts: &[(usize, [f64; 6])]) {

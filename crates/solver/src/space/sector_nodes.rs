@@ -119,4 +119,20 @@ impl SectorNodes {
             .map(|i| coefficient(sectors, i, k) * forces[first + i as usize])
             .sum()
     }
+
+    /// Force on one point from the forces on its node's unknowns: the inverse of [`Self::gather`],
+    /// `f_i = r_0 / s + r_i` for `i > 0`, and `f_0` such that all add up to `r_0`.
+    pub fn point_force(&self, forces: &[DVec3], point: usize) -> DVec3 {
+        let (sector, sectors) = self.sector(point);
+        let first = point - sector as usize;
+        let mean = forces[first] / f64::from(sectors);
+        match sector {
+            0 => {
+                mean - forces[first + 1..first + sectors as usize]
+                    .iter()
+                    .sum::<DVec3>()
+            }
+            _ => mean + forces[point],
+        }
+    }
 }
