@@ -68,7 +68,7 @@ fn balance_below_cutoff(x_c: f64, kappa: f64, q: f64) -> (f64, f64) {
     (x_c + d, d - a)
 }
 
-/// Root `s = ln x` of `(e^s - 1) (1 + s^2 + kappa) = q < 0`, by Newton kept inside a bracket.
+/// Root `s = ln x` of `(e^s - 1) (1 + s^2 + kappa) = q < 0`, by Halley kept inside a bracket.
 fn balance_logarithm(kappa: f64, q: f64) -> f64 {
     // For s <= -1 the left side is below -0.63 (1 + s^2), which bounds the root.
     let mut low = -1.0 - (-q / 0.63).sqrt();
@@ -82,10 +82,13 @@ fn balance_logarithm(kappa: f64, q: f64) -> f64 {
         } else {
             low = s;
         }
-        let slope = (closing + 1.0) * (1.0 + s * s + kappa) + 2.0 * s * closing;
-        let newton = s - excess / slope;
-        let inside = newton > low && newton < high;
-        let next = if inside { newton } else { 0.5 * (low + high) };
+        let (x, m) = (closing + 1.0, 1.0 + s * s + kappa);
+        let slope = x * m + 2.0 * s * closing;
+        let bend = x * (m + 4.0 * s) + 2.0 * closing;
+        let newton = excess / slope;
+        let halley = s - newton / (1.0 - 0.5 * newton * bend / slope).max(0.5);
+        let inside = halley > low && halley < high;
+        let next = if inside { halley } else { 0.5 * (low + high) };
         if (next - s).abs() <= 4.0 * f64::EPSILON * s.abs() {
             return next;
         }

@@ -20,11 +20,11 @@ const MOST_ITERATIONS: usize = 12;
 /// Energy of the last correction, against the first, that ends the iterations.
 const CONVERGED_ENERGY: f64 = 1e-18;
 /// Energy of the last correction that ends them, against what the space left of the last solution.
-const SHARE_OF_LEFT: f64 = 1e-2;
+const SHARE_OF_LEFT: f64 = 1e-1;
 /// Energy of a correction, against the one before, above which the tangent is projected again.
 const SLOW: f64 = 1e-2;
-/// Energy of the last correction, against the first, that a guess may have at most.
-const LARGEST_ENERGY: f64 = 1e-6;
+/// Largest energy of the last correction, against the first, that ends them.
+const LARGEST_ENERGY: f64 = 1e-3;
 
 /// A guess.
 pub(in crate::newton) struct GalerkinGuess {
