@@ -110,6 +110,31 @@ fn a_corner_that_hardly_resists_closes_its_gap() {
     }
 }
 
+/// Blocks whose walls are apart at first, and slide freely: a tenth of the load pushes them as far
+/// as the whole, until the walls meet. No law depends on the path.
+#[test]
+fn blocks_that_fly_until_they_meet_a_wall_are_held() {
+    let whole = solved_by(&SOLVERS[..2], "pushed_blocks.toml", &[]);
+    let parts = [("steps = [1.0]", "steps = [0.1, 1.0]")];
+    let divided = solved_by(&SOLVERS[..2], "pushed_blocks.toml", &parts);
+    assert_one_answer(&[whole, divided].concat(), &["east", "north"]);
+}
+
+/// A block above an open gap, pushed down and to a side with less than friction bears once it is
+/// closed: it comes to rest, but nothing tells where.
+#[test]
+fn a_block_that_falls_onto_friction_is_said_to_rest_anywhere() {
+    for said in solved_by(&SOLVERS[..1], "falling_block.toml", &[]) {
+        let path = said["steps"][0]["unresolved"].as_str().expect("words");
+        assert!(path.contains("fall through open gaps"), "{path}");
+    }
+    // Pressed together from the start it does not fall.
+    let closed = [("aperture = 1e-3", "aperture = 0.0")];
+    for said in solved_by(&SOLVERS[..1], "falling_block.toml", &closed) {
+        assert!(said["steps"][0]["unresolved"].is_null());
+    }
+}
+
 /// A core in a contact without friction: pressed from above, free to the sides.
 #[test]
 fn apertures_beside_rock_that_floats_are_no_results() {
