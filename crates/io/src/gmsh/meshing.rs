@@ -136,13 +136,12 @@ fn make(
                 // It must not be taken for that of the next.
                 let _ = std::fs::remove_file(&made);
             }
-            Err(defects) => return Err(defects),
+            Err(defects) => return Err(beside_former(defects, &failures(&failed, attempts))),
         }
     };
     workspace.publish(MADE, meshing.output).map_err(one)?;
     let number = failed.len();
-    let failed = failed.iter().zip(attempts);
-    let failed = failed.map(|(defect, way)| format!("{} failed: {}", way.name, defect.problem));
+    let failed = failures(&failed, attempts).into_iter();
     let used = (number > 0).then(|| format!("meshed in another way: {}", attempts[number].name));
     Ok(Meshed {
         warnings: failed.chain(used).chain(warnings).collect(),
@@ -150,6 +149,22 @@ fn make(
         seconds: start.elapsed().as_secs_f64(),
         is_kept: false,
     })
+}
+
+/// Why each of the first ways failed.
+fn failures(failed: &[Defect], attempts: &[Attempt]) -> Vec<String> {
+    let failed = failed.iter().zip(attempts);
+    failed
+        .map(|(defect, way)| format!("{} failed: {}", way.name, defect.problem))
+        .collect()
+}
+
+/// The defects of the last way, the first with why the ways before it failed.
+fn beside_former(mut defects: Vec<Defect>, failures: &[String]) -> Vec<Defect> {
+    if let Some(first) = defects.first_mut().filter(|_| !failures.is_empty()) {
+        first.problem = format!("{}; before, {}", first.problem, failures.join("; "));
+    }
+    defects
 }
 
 /// Runs gmsh once; its warnings.

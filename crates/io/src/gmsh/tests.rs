@@ -467,6 +467,12 @@ fn the_forms_of_a_network_are_tried_in_turn() {
         "{warnings:?}"
     );
     assert_eq!(warnings[1], "meshed in another way: split fractures");
+    let text = "kill -SEGV $$";
+    let defects = scene.mesh(&player(&scene, text), &[]).expect_err("none");
+    for way in ["whole fractures", "split fractures, surfaces by Delaunay"] {
+        let failed = format!("{way} failed");
+        assert!(defects[0].problem.contains(&failed), "{defects:?}");
+    }
     let form = [("form".to_owned(), 0.0)];
     scene
         .mesh(&player(&scene, text), &form)
