@@ -184,6 +184,11 @@ impl FreeMotions {
     }
 }
 
+/// Number of bodies that `ties` leave, one for each facet.
+pub(crate) fn body_count(mesh: &Mesh, ties: &[Tie]) -> usize {
+    tie_blocks(mesh, ties).1
+}
+
 /// Blocks joined by fractures stiff in normal and shear move as one body.
 fn tie_blocks(mesh: &Mesh, ties: &[Tie]) -> (Vec<u32>, usize) {
     let mut body: Vec<u32> = (0..mesh.block_count as u32).collect();

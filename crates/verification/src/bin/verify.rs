@@ -64,6 +64,9 @@ struct SoakChoice {
     /// The number of cases [default: that of each suite]
     #[arg(long, value_name = "COUNT")]
     cases: Option<usize>,
+    /// Keep the results in docs/verification although the cases are not the usual ones
+    #[arg(long, conflicts_with = "quick")]
+    keep: bool,
     /// One case by its number, or the first of several
     #[arg(long, value_name = "NUMBER")]
     case: Option<usize>,
@@ -110,10 +113,12 @@ fn write(report: &Report, choice: &Choice) -> Result<(), Box<dyn Error>> {
     Ok(report.write_overview(&folder)?)
 }
 
-/// Suites that ran other cases than the usual ones leave the committed page alone.
+/// Suites that ran other cases than the usual ones leave the committed page alone, unless they are
+/// to be kept.
 fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
     let report = soak::report();
-    let (effort, folder) = target(choice.quick || choice.cases().is_some());
+    let is_other = choice.cases().is_some() && !choice.keep;
+    let (effort, folder) = target(choice.quick || is_other);
     let mut asked = Asked::of(effort);
     asked.seed = choice.seed;
     asked.cases = choice.cases();
