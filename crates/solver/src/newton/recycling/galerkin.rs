@@ -1,8 +1,7 @@
 //! Newton's method in the recycled space.
 //!
 //! To project the tangent costs as much as many evaluations of the laws, so it is done again only
-//! where the former one leads too slowly. The iterations end where they are worth no more than the
-//! space itself: the last guess tells how far that was from the solution.
+//! where the former one leads too slowly.
 
 use faer::Mat;
 use kluft_algebra::dot;
@@ -19,12 +18,10 @@ use crate::system::{State, System};
 const MOST_ITERATIONS: usize = 12;
 /// Energy of the last correction, against the first, that ends the iterations.
 const CONVERGED_ENERGY: f64 = 1e-18;
-/// Energy of the last correction that ends them, against what the space left of the last solution.
-const SHARE_OF_LEFT: f64 = 1e-1;
 /// Energy of a correction, against the one before, above which the tangent is projected again.
 const SLOW: f64 = 1e-2;
-/// Largest energy of the last correction, against the first, that ends them.
-const LARGEST_ENERGY: f64 = 1e-3;
+/// Energy of the last correction, against the first, that a guess may have at most.
+const LARGEST_ENERGY: f64 = 1e-6;
 
 /// A guess.
 pub(in crate::newton) struct GalerkinGuess {
@@ -97,8 +94,6 @@ impl RecycledSpace {
         system: &System<'_>,
         iterate: &mut ReducedIterate,
     ) -> Option<Measures> {
-        let worth = SHARE_OF_LEFT * self.left;
-        let enough = worth.clamp(CONVERGED_ENERGY, LARGEST_ENERGY);
         let mut first = None;
         let mut last = Measures {
             energy: f64::INFINITY,
@@ -107,7 +102,7 @@ impl RecycledSpace {
         for _ in 0..MOST_ITERATIONS {
             let former = last.energy;
             last = self.iterate(system, iterate)?;
-            if last.energy <= enough * *first.get_or_insert(last.energy) {
+            if last.energy <= CONVERGED_ENERGY * *first.get_or_insert(last.energy) {
                 break;
             }
             if last.energy > SLOW * former {

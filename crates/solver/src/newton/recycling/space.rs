@@ -25,8 +25,6 @@ pub(in crate::newton) struct RecycledSpace {
     pub(super) corrections: Vec<Vec<f64>>,
     /// What is computed once for each direction.
     pub(super) known: Vec<Known>,
-    /// Energy of what the last guess left to correct, against its own, in the rock; 0 before.
-    pub(super) left: f64,
 }
 
 /// What is known of a direction.
@@ -64,7 +62,6 @@ impl RecycledSpace {
         corrections: Vec<Correction>,
     ) {
         if let Some(guess) = guess {
-            self.left = self.left_by(&guess, corrections.first());
             self.corrections.insert(0, guess.coefficients);
         }
         for correction in corrections {
@@ -77,17 +74,6 @@ impl RecycledSpace {
             self.add_direction(correction.unknowns, &rock_forces, correction.size);
         }
         self.corrections.truncate(KEPT_CORRECTIONS);
-    }
-
-    /// Energy of the first correction of a guess, against that of the guess, in the rock.
-    fn left_by(&self, guess: &LastCorrection, first: Option<&Correction>) -> f64 {
-        let forces = self.rock_forces(&guess.coefficients);
-        let pairs = guess.coefficients.iter().zip(forces);
-        let own = pairs.map(|(c, force)| c * force).sum::<f64>();
-        let first = first.and_then(|first| Some((first, first.rock_forces.as_ref()?)));
-        let left = first.map_or(0.0, |(first, forces)| dot(&first.unknowns, forces));
-        let share = left / own;
-        if share.is_finite() { share } else { 0.0 }
     }
 
     /// Adds a direction `v`, given `K v` (N) and its largest displacement (m).
