@@ -206,7 +206,7 @@ def worst_cell(options, folder):
     ended = run(options, folder, "inspect", mesh, "--json", "--out", folder / "inspected")
     if ended.code != 0:
         return ""
-    return f"{json.loads(ended.printed)['cells']['worst'][0]['quality']:.6f}"
+    return f"{json.loads(ended.printed)['cells']['worst'][0]['quality']:.3e}"
 
 
 def measure(options, fractures, seed):
@@ -284,7 +284,7 @@ def column(rows, used):
         ),
         "features mended": middle(values(rows, "mended")),
         "features left small": middle(values(rows, "left_small")),
-        "worst cell": f"{min(worst):.4f}" if worst else "-",
+        "worst cell": f"{min(worst):.1e}" if worst else "-",
         "cells": middle(values(meshed, "cells")),
         "unknowns": middle(values(meshed, "unknowns")),
     }

@@ -101,11 +101,16 @@ fn mixed(place: &str, outer: usize, inner: &[u64]) -> Defect {
     )
 }
 
-/// Defects of the nodes and cells of a draft by themselves: nothing to solve, coordinates that are
-/// not finite, cells without volume or inside out.
+/// Defects of the nodes and cells of a draft: nothing to solve, coordinates that are not finite,
+/// cells without volume or inside out; if there are none, cells that lie on top of others.
 pub fn cell_defects(draft: &Draft) -> Vec<Defect> {
     let nodes: Vec<DVec3> = draft.nodes.iter().map(|node| DVec3::from(*node)).collect();
-    cells(draft, &nodes)
+    let defects = cells(draft, &nodes);
+    if defects.is_empty() {
+        faces(draft, &Adjacency::of(draft))
+    } else {
+        defects
+    }
 }
 
 /// Defects of the nodes and cells by themselves.

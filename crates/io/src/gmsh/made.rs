@@ -50,7 +50,7 @@ pub(super) fn check_made(
     Err(Defect::new(place, problem, remedy))
 }
 
-/// Whether every cell has a volume.
+/// Whether every cell has a volume of its own.
 pub(super) fn check_cells(made: &Path) -> Result<(), Vec<Defect>> {
     let defects = cell_defects(&read_msh(made)?);
     if defects.is_empty() {

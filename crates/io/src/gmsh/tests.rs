@@ -437,20 +437,29 @@ fn where_the_usual_way_fails_another_is_tried() {
 
 #[cfg(unix)]
 #[test]
-fn a_mesh_with_flat_cells_is_made_in_another_way() {
-    let scene = Scene::new("flat", BOX);
-    let flat = "$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 4 1 4\\n3 1 0 4\\n1\\n2\\n3\\n4\\n\
-                0 0 0\\n1 0 0\\n0 1 0\\n1 1 0\\n$EndNodes\\n$Elements\\n1 1 1 1\\n3 1 4 1\\n1 1 2 3 4\\n\
-                $EndElements\\n";
-    let text = format!(
-        "for last; do :; done; case \"$*\" in *'Mesh.Algorithm3D 1e1 '*) exec gmsh \"$@\";; esac\n\
-         printf '{flat}' > \"$last\""
-    );
-    let warnings = scene.mesh(&player(&scene, &text), &[]).expect("a mesh");
-    assert!(
-        warnings[0].contains("the cell has no volume"),
-        "{warnings:?}"
-    );
+fn a_mesh_with_flat_or_overlapping_cells_is_made_in_another_way() {
+    let flat = "1 4 1 4\\n3 1 0 4\\n1\\n2\\n3\\n4\\n0 0 0\\n1 0 0\\n0 1 0\\n1 1 0\\n\
+                $EndNodes\\n$Elements\\n1 1 1 1\\n3 1 4 1\\n1 1 2 3 4\\n";
+    let overlapping = "1 5 1 5\\n3 1 0 5\\n1\\n2\\n3\\n4\\n5\\n\
+                       0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n0.2 0.2 2\\n\
+                       $EndNodes\\n$Elements\\n1 2 1 2\\n3 1 4 2\\n1 1 2 3 4\\n2 1 2 3 5\\n";
+    for (name, mesh, problem) in [
+        ("flat", flat, "the cell has no volume"),
+        (
+            "overlapping",
+            overlapping,
+            "the cell overlaps its neighbour",
+        ),
+    ] {
+        let scene = Scene::new(name, BOX);
+        let text = format!(
+            "for last; do :; done; case \"$*\" in *'Mesh.Algorithm3D 1e1 '*) exec gmsh \"$@\";; esac\n\
+             printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n{mesh}$EndElements\\n' \
+             > \"$last\""
+        );
+        let warnings = scene.mesh(&player(&scene, &text), &[]).expect("a mesh");
+        assert!(warnings[0].contains(problem), "{warnings:?}");
+    }
 }
 
 #[cfg(unix)]
