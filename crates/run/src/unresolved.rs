@@ -13,11 +13,14 @@ pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
     let place = place.map(|point| facet_place(system.problem(), system, point));
     let what = match path.cause {
         UnresolvedCause::Differs(difference) => format!(
-            "one increment and two lead to jumps that differ by {:.1} % of the largest",
+            "however short it is divided, one increment and two lead to jumps that differ by {:.1} % \
+             of the largest",
             100.0 * difference
         ),
         UnresolvedCause::HalvesDoNotEnd => {
-            "one increment leads to an equilibrium, and two shorter ones to none".to_owned()
+            "however short it is divided, one increment leads to an equilibrium, and two shorter \
+             ones to none"
+                .to_owned()
         }
         UnresolvedCause::Falls => "blocks fall through open gaps, and only friction on the walls \
                                    that stop them tells where they come to rest"
@@ -39,9 +42,9 @@ pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
     let (number, first) = told().next()?;
     let others = others(told().count() - 1);
     let text = format!(
-        "the path of the loads is not resolved: in step {number}, however short it is divided, \
-         {}{others}: walls jump to another place there, and other load steps may lead to another \
-         equilibrium; compare a run with more of them",
+        "the path of the loads is not resolved: in step {number}, {}{others}: walls jump or fall \
+         to another place there, and other load steps may lead to another equilibrium; compare a \
+         run with more of them",
         first.unresolved.as_deref().unwrap_or_default()
     );
     scene.warning(Doubt::UnresolvedPath, &text)
