@@ -3,8 +3,9 @@
 use std::fs;
 
 use serde_json::Value;
+use tempfile::TempDir;
 
-use crate::harness::{kluft, root, scratch, summary};
+use crate::harness::{Run, kluft, root, scratch, summary};
 
 const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
 
@@ -14,7 +15,19 @@ fn solved(scene: &str, edits: &[(&str, &str)]) -> Vec<Value> {
 }
 
 fn solved_by(solvers: &[&str], scene: &str, edits: &[(&str, &str)]) -> Vec<Value> {
-    let folder = scratch();
+    let solve = |(run, out): (Run, TempDir)| {
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        summary(&out.path().join("out"))
+    };
+    ran_by(solvers, scene, edits).map(solve).collect()
+}
+
+/// Runs of a scene of this test with each solver, and the folders that hold `out`.
+fn ran_by(
+    solvers: &[&str],
+    scene: &str,
+    edits: &[(&str, &str)],
+) -> impl Iterator<Item = (Run, TempDir)> {
     let own = root().join("tests/program/one_answer");
     let text = fs::read_to_string(own.join(scene)).expect("the scene");
     let beside = format!("geometry = \"{}/", own.display());
@@ -22,22 +35,13 @@ fn solved_by(solvers: &[&str], scene: &str, edits: &[(&str, &str)]) -> Vec<Value
     let text = edits
         .iter()
         .fold(text, |text, (from, to)| text.replace(from, to));
-    let solve = |solver: &str| {
-        let file = folder.path().join(format!("{solver}.toml"));
-        let out = folder.path().join(solver);
+    solvers.iter().map(move |solver| {
+        let folder = scratch();
+        let file = folder.path().join("scene.toml");
         let text = format!("{text}\n[solver]\nlinear = \"{solver}\"\n");
         fs::write(&file, text).expect("written");
-        let arguments = [
-            "run".as_ref(),
-            file.as_os_str(),
-            "--out".as_ref(),
-            out.as_os_str(),
-        ];
-        let run = kluft(&arguments);
-        assert_eq!(run.code, Some(0), "{solver}: {}", run.err);
-        summary(&out)
-    };
-    solvers.iter().copied().map(solve).collect()
+        (kluft(&["run".as_ref(), file.as_os_str()]), folder)
+    })
 }
 
 /// The smallest, mean and largest aperture of a fracture (m).
@@ -165,6 +169,28 @@ fn rounding_does_not_keep_a_run_from_ending() {
                 assert!((closed / 5e-8 - 1.0).abs() < 1e-3, "closed by {closed:e} m");
             }
         }
+    }
+}
+
+/// Initial stress of a million times what the joint's stiffness and aperture make of a stress: its
+/// aperture is less than the smallest number, its stiffness more than the largest.
+#[test]
+fn a_law_that_no_longer_answers_is_named_whatever_the_solver() {
+    let edits = [
+        ("50e3", "50e9"),
+        (
+            "normal_stiffness = 2e10",
+            "normal_stiffness = 2e3\nfriction_angle = 30",
+        ),
+        (
+            "[boundary.bottom]",
+            "[initial_stress]\nzz = -5e6\n[boundary.bottom]",
+        ),
+    ];
+    for (run, _) in ran_by(&SOLVERS, "layers.toml", &edits) {
+        assert_eq!(run.code, Some(1), "{}", run.err);
+        let why = "a number is no longer finite at fracture `f`, facet at node";
+        assert!(run.err.contains(why), "{}", run.err);
     }
 }
 

@@ -97,7 +97,12 @@ impl Newton {
             (Ok(()), _) => Ok(()),
             (Err(outcome), Some(start)) if outcome != StepOutcome::Stopped => {
                 *iterate = start;
-                self.iterate_by_splitting(step, iterate)
+                let split = self.iterate_by_splitting(step, iterate);
+                split.map_err(|failed| match failed {
+                    // The law that no longer answers is known.
+                    StepOutcome::NotFinite(None) => outcome,
+                    failed => failed,
+                })
             }
             (failed, _) => failed,
         }
@@ -181,7 +186,10 @@ impl Newton {
         self.update_tangent(step, &planes.tangents, iterate.damping)?;
         let is_recycled = self.recycled.is_some() && system.is_smooth();
         let solved = self.solve_linearised(system, iterate, &planes.tangents);
-        let (correction, spent) = solved.map_err(StepOutcome::Linear)?;
+        let (correction, spent) = solved.map_err(|failure| match failure {
+            LinearFailure::NotFinite => StepOutcome::NotFinite(None),
+            failure => StepOutcome::Linear(failure),
+        })?;
         let update = Update {
             correction: &correction,
             planes: &planes,
@@ -199,12 +207,19 @@ impl Newton {
     }
 
     /// Gives the linear solver the tangents.
+    ///
+    /// # Errors
+    /// If one is not finite, where its law no longer answers, or the solver fails.
     fn update_tangent(
         &mut self,
         step: &mut Step<'_>,
         tangents: &Tangents,
         damping: f64,
     ) -> Result<(), StepOutcome> {
+        let broken = tangents.exact.iter().position(|one| !one.is_finite());
+        if broken.is_some() {
+            return Err(StepOutcome::NotFinite(broken));
+        }
         let start = Instant::now();
         let system = step.system;
         let updated = if system.is_smooth() {

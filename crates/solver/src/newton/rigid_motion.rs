@@ -38,6 +38,7 @@ impl RigidBodyMotion {
             };
         }
         if self.unconstrained == UNCONSTRAINED_ITERATIONS {
+            step.pushed = step.record.rigid_motions.clone();
             return Err(StepOutcome::RigidBodyMotion);
         }
         Ok(())

@@ -21,6 +21,8 @@ use super::{Newton, Step, StepOutcome};
 const FIRST_ITERATIONS: usize = 20;
 /// How often it is tried.
 const TRIALS: u32 = 3;
+/// How often where shorter increments are to be tried.
+const BRIEF_TRIALS: u32 = 1;
 /// Iterations of such a trial.
 const NEWTON_ITERATIONS: usize = 10;
 
@@ -35,7 +37,11 @@ impl Newton {
         iterate: &mut Iterate,
     ) -> Result<(), StepOutcome> {
         let mut outcome = StepOutcome::OutOfIterations;
-        for trial in 0..TRIALS {
+        let trials = match step.is_tried_briefly {
+            true => BRIEF_TRIALS,
+            false => TRIALS,
+        };
+        for trial in 0..trials {
             iterate.linearisation = Linearisation::Springs;
             match self.iterate_at_most(FIRST_ITERATIONS << trial, step, iterate) {
                 Err(StepOutcome::OutOfIterations) => {}

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use kluft_mesh::Defect;
+
 use super::free_blocks;
 use super::iterate::Iterate;
 use super::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
@@ -17,6 +19,10 @@ pub(super) struct Step<'a> {
     pub(super) record: StepRecord,
     /// The share of the load step that the increment at hand leads to.
     pub(super) share: f64,
+    /// Whether the increment at hand is given up soon, because shorter ones are to be tried.
+    pub(super) is_tried_briefly: bool,
+    /// Blocks that an increment from the same state as that at hand pushed.
+    pub(super) pushed: Vec<Defect>,
     observe: &'a mut Observe<'a>,
     is_stopped: bool,
 }
@@ -27,6 +33,8 @@ impl<'a> Step<'a> {
             system,
             record: StepRecord::new(load.clone()),
             share: 1.0,
+            is_tried_briefly: false,
+            pushed: Vec::new(),
             observe,
             is_stopped: false,
         }
@@ -76,6 +84,16 @@ impl<'a> Step<'a> {
         if !is_known && !self.system.is_smooth() {
             self.record.rigid_motions = free_blocks::find(self.system, iterate);
         }
+    }
+
+    /// Why a step fails whose shortest increment has an outcome: for the blocks that a longer one
+    /// pushed, if the shortest knows none.
+    pub(super) fn failed_by(&mut self, outcome: StepOutcome) -> StepOutcome {
+        if self.record.rigid_motions.is_empty() && !self.pushed.is_empty() {
+            self.record.rigid_motions = std::mem::take(&mut self.pushed);
+            return StepOutcome::RigidBodyMotion;
+        }
+        outcome
     }
 
     /// The record after `seconds` altogether.

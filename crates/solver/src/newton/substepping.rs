@@ -85,12 +85,7 @@ impl Newton {
             true => step.system.problem.schedule.walked_from(&state.load),
             false => state.load.clone(),
         };
-        if step.system.is_path_dependent() && free_blocks::fall(step.system, state, load) {
-            step.leave_unresolved(UnresolvedPath {
-                cause: UnresolvedCause::Falls,
-                facet_point: None,
-            });
-        }
+        tell_falls(step, state, load);
         let mut here = Reached {
             state: state.clone(),
             share: 0.0,
@@ -105,6 +100,9 @@ impl Newton {
                 end: End::between(&start, load, end),
                 is_smallest: increment <= SMALLEST_SUBSTEP,
             };
+            // Whole steps are tried in earnest before they are divided.
+            step.is_tried_briefly =
+                step.system.is_path_dependent() && increment < 1.0 && !substep.is_smallest;
             let reached = |state: State| Reached { state, share: end };
             let next = match self.solve_substep(step, &here.state, &substep) {
                 Solved::Accepted { end, may_grow } => {
@@ -127,6 +125,7 @@ impl Newton {
             if let Some(next) = next {
                 self.path.remember(step.system, &here.state);
                 (here, coarse) = (next, None);
+                step.pushed.clear();
                 step.record.completed = here.share;
             }
         }
@@ -202,6 +201,16 @@ impl Newton {
     }
 }
 
+/// Records that blocks fall where only friction tells where they come to rest.
+fn tell_falls(step: &mut Step<'_>, from: &State, load: &Load) {
+    if step.system.is_path_dependent() && free_blocks::fall(step.system, from, load) {
+        step.leave_unresolved(UnresolvedPath {
+            cause: UnresolvedCause::Falls,
+            facet_point: None,
+        });
+    }
+}
+
 /// Whether a shorter substep would change nothing about a failure. Without friction a block that
 /// moves freely at the end does so whatever the path.
 fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool {
@@ -245,14 +254,18 @@ fn difference(system: &System<'_>, a: &State, b: &State) -> (f64, Option<usize>)
 /// one increment.
 ///
 /// # Errors
-/// The outcome of the shortest, if there is none.
+/// If there is none: [`StepOutcome::RigidBodyMotion`] if a longer one pushed blocks that nothing
+/// holds, else the outcome of the shortest.
 fn let_be(
     step: &mut Step<'_>,
     outcome: StepOutcome,
     coarse: Option<Reached>,
 ) -> Result<Reached, StepOutcome> {
-    let Some(end) = coarse.filter(|_| outcome != StepOutcome::Stopped) else {
+    if outcome == StepOutcome::Stopped {
         return Err(outcome);
+    }
+    let Some(end) = coarse else {
+        return Err(step.failed_by(outcome));
     };
     let facet_point = step.record.worst_facet_point;
     step.record.rigid_motions.clear();

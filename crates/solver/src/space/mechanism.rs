@@ -16,7 +16,7 @@ use glam::DVec3;
 use kluft_mesh::facet_area_vector;
 use lie_core::FractureLaw;
 
-use super::rigid_modes::FreeMotions;
+use super::rigid_modes::{FreeMotions, dot};
 use super::sector_nodes::SectorNodes;
 use crate::problem::Problem;
 
@@ -149,10 +149,6 @@ fn walls(free: &FreeMotions, problem: &Problem) -> Vec<Wall> {
     let all = (0..mesh.facets.elements.len()).flat_map(of_facet);
     all.filter(|wall| wall.square > ROUNDING * ROUNDING)
         .collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn length(vector: &[f64]) -> f64 {

@@ -328,7 +328,7 @@ fn along((low, high): (DVec3, DVec3), at: DVec3, direction: DVec3) -> [f64; 6] {
     [d.x, d.y, d.z, turn.x, turn.y, turn.z]
 }
 
-fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
