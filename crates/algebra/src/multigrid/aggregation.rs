@@ -4,6 +4,8 @@ use rayon::prelude::*;
 
 use super::sparse::{Sparse, rows_per_task};
 
+/// Blocks whose norm is not above this share of the diagonal do not tie nodes together.
+pub(super) const STRENGTH: f32 = 0.05;
 /// Marks a node without strong neighbours: the smoother alone takes care of it.
 pub(super) const ALONE: u32 = u32::MAX;
 
@@ -15,22 +17,27 @@ pub(super) struct Aggregates {
     pub(super) count: usize,
 }
 
+/// Square of the Frobenius norm of a block.
+#[inline(always)]
+pub(super) fn square<const N: usize>(block: &[[f32; N]; N]) -> f32 {
+    block.as_flattened().iter().map(|x| x * x).sum()
+}
+
 /// Squared Frobenius norm of each block.
 fn norms<const N: usize>(matrix: &Sparse<N, N>) -> Vec<f32> {
-    let square = |block: &[[f32; N]; N]| block.as_flattened().iter().map(|x| x * x).sum();
     let blocks = matrix.blocks.par_iter().with_min_len(rows_per_task::<N>());
     blocks.map(square).collect()
 }
 
 /// Greedy aggregation (Vanek, Mandel, Brezina 1996): first whole neighbourhoods in the order of the
 /// nodes, then each node left over joins the strongest neighbouring one, and what is then left
-/// forms aggregates of its own. Neighbours count where the norm of their block exceeds `threshold`
+/// forms aggregates of its own. Neighbours count where the norm of their block exceeds [`STRENGTH`]
 /// (of the unit diagonal).
-pub(super) fn aggregate<const N: usize>(matrix: &Sparse<N, N>, threshold: f32) -> Aggregates {
+pub(super) fn aggregate<const N: usize>(matrix: &Sparse<N, N>) -> Aggregates {
     let greedy = Greedy {
         matrix,
         norms: norms(matrix),
-        least: threshold * threshold,
+        least: STRENGTH * STRENGTH,
     };
     let mut aggregates = Aggregates {
         of_node: vec![ALONE; matrix.rows()],

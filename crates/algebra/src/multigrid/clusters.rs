@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use super::aggregation::square;
 use super::sparse::Sparse;
 use crate::lists::Lists;
 
@@ -129,7 +130,7 @@ fn ties(means: &Sparse<3, 3>, nodes: &[u32]) -> Vec<(f32, u32, u32)> {
     let tied = |row: usize| {
         let blocks = means.row(row).filter(move |(column, _)| *column > row);
         blocks.filter_map(move |(column, block)| {
-            let square: f32 = block.as_flattened().iter().map(|x| x * x).sum();
+            let square = square(block);
             (square > TIED * TIED).then_some((square, nodes[row], nodes[column]))
         })
     };

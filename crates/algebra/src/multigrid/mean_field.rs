@@ -4,15 +4,13 @@ use glam::DVec3;
 
 use super::block_jacobi::{self, Factors};
 use super::clusters::Clusters;
+use super::prolongation::Unsmoothed;
 use super::sparse::{Sparse, Transpose, rows_per_task};
 use super::sum_rows::SumRows;
-use super::{aggregation, prolongation, spectrum, tentative};
+use super::{aggregation, spectrum, tentative};
 use crate::block_rows::numbers;
 use crate::failure::MultigridFailure;
 use crate::small::{Modes, narrow};
-
-/// Blocks whose norm is below this share of the diagonal do not tie nodes together.
-pub(super) const STRENGTH: f32 = 0.02;
 
 /// The mean motions of nodes with unknowns, and the motions of their aggregates.
 pub struct MeanField {
@@ -43,9 +41,14 @@ impl MeanField {
         if !bound.is_finite() {
             return Err(MultigridFailure::NotFinite);
         }
-        let aggregates = aggregation::aggregate(&matrix, STRENGTH);
+        let aggregates = aggregation::aggregate(&matrix);
         let tentative = tentative::tentative(&aggregates, &modes);
-        let mut prolongator = prolongation::smoothed(&matrix, bound, &aggregates, &tentative);
+        let unsmoothed = Unsmoothed {
+            aggregates: &aggregates,
+            tentative: &tentative,
+            modes: &modes,
+        };
+        let mut prolongator = unsmoothed.smoothed(&matrix, bound);
         block_jacobi::unscale(&factors, &mut prolongator);
         let means = Self {
             transpose: Transpose::of(&prolongator, aggregates.count),

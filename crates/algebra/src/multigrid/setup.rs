@@ -8,12 +8,13 @@ use super::clusters::Clusters;
 use super::coarsest::Dense;
 use super::cycle::{Below, Level, Transfer};
 use super::galerkin::{self, Coarse};
-use super::mean_field::{CoarseBasis, MeanField, STRENGTH};
+use super::mean_field::{CoarseBasis, MeanField};
+use super::prolongation::Unsmoothed;
 use super::smoother::Smoother;
 use super::sparse::{Sparse, Transpose};
 use super::sum_rows::{RowSubset, SumRows};
 use super::triple_product::PartialProduct;
-use super::{aggregation, prolongation, spectrum, tentative};
+use super::{aggregation, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
 use crate::failure::MultigridFailure;
 use crate::small::Modes;
@@ -245,12 +246,17 @@ fn below(
         let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
         return Ok((Below::Inverse(dense), None));
     }
-    let aggregates = aggregation::aggregate(matrix, STRENGTH);
+    let aggregates = aggregation::aggregate(matrix);
     if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
         return Ok((Below::Nothing, None));
     }
     let tentative = tentative::tentative(&aggregates, modes);
-    let prolongator = prolongation::smoothed(matrix, largest_eigenvalue, &aggregates, &tentative);
+    let unsmoothed = Unsmoothed {
+        aggregates: &aggregates,
+        tentative: &tentative,
+        modes,
+    };
+    let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue);
     let transpose = Transpose::of(&prolongator, aggregates.count);
     let product = PartialProduct::whole(matrix, &prolongator, &transpose);
     let storage = Sparse::default();

@@ -7,15 +7,27 @@ use super::sparse::{Sparse, rows_per_task};
 
 /// Number of products with the matrix in one smoothing.
 const DEGREE: usize = 2;
+/// `beta_k`, for which the bound of the two-level method is smallest (Lottes 2022, table 1).
+const WEIGHTS: [f64; DEGREE] = [1.02387287570313, 1.26408905371085];
 
-/// A Chebyshev polynomial of the fourth kind (Lottes 2022; Adams et al. 2003 for Chebyshev
-/// smoothing as such), which needs no lower end of the spectrum:
-/// `d_k = a_k d_(k-1) + b_k (r - A z_(k-1))`, `z_k = z_(k-1) + d_k`.
+/// A Chebyshev polynomial of the fourth kind with optimal weights (Lottes 2022; Adams et al. 2003
+/// for Chebyshev smoothing as such), which needs no lower end of the spectrum:
+/// `d_k = a_k d_(k-1) + b_k (r - A (z_0 + d_1 + ... + d_(k-1)))`, `z = z_0 + sum_k beta_k d_k`.
 #[derive(Debug, Clone)]
 pub(super) struct Smoother {
     largest_eigenvalue: f64,
-    /// `a_k` and `b_k`.
-    steps: [(f32, f32); DEGREE],
+    steps: [ChebyshevStep; DEGREE],
+}
+
+/// How a step comes about and what the solution takes of it.
+#[derive(Debug, Clone, Copy)]
+struct ChebyshevStep {
+    /// `a_k`.
+    before: f32,
+    /// `b_k`.
+    residual: f32,
+    /// Of the last step, beyond what the solution has of it, and of this one.
+    weights: [f32; 2],
 }
 
 /// Vectors that a level works with, one entry a node.
@@ -49,7 +61,15 @@ impl Smoother {
             let k = (index + 1) as f64;
             let a = (2.0 * k - 3.0).max(0.0) / (2.0 * k + 1.0);
             let b = (8.0 * k - 4.0) / (2.0 * k + 1.0) / largest_eigenvalue;
-            (a as f32, b as f32)
+            let weights = match index + 1 == DEGREE {
+                true => [WEIGHTS[index - 1] - 1.0, WEIGHTS[index]],
+                false => [0.0, 1.0],
+            };
+            ChebyshevStep {
+                before: a as f32,
+                residual: b as f32,
+                weights: weights.map(|weight| weight as f32),
+            }
         };
         Self {
             largest_eigenvalue,
@@ -67,7 +87,7 @@ impl Smoother {
 
     /// Smooths from zero.
     pub(super) fn start<const N: usize>(&self, matrix: &Sparse<N, N>, work: &mut Work<N>) {
-        let (_, factor) = self.steps[0];
+        let factor = self.steps[0].residual;
         let rows = rows_per_task::<N>();
         let targets = work.solution.par_chunks_mut(rows);
         let targets = targets.zip(work.step.par_chunks_mut(rows));
@@ -78,20 +98,21 @@ impl Smoother {
                 *solution = *step;
             }
         });
-        for &(a, b) in &self.steps[1..] {
-            advance(matrix, work, a, b);
+        for &step in &self.steps[1..] {
+            advance(matrix, work, step);
         }
     }
 
     /// Smooths what the solution is so far.
     pub(super) fn resume<const N: usize>(&self, matrix: &Sparse<N, N>, work: &mut Work<N>) {
-        for &(a, b) in &self.steps {
-            advance(matrix, work, a, b);
+        for &step in &self.steps {
+            advance(matrix, work, step);
         }
     }
 }
 
-fn advance<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>, a: f32, b: f32) {
+fn advance<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>, by: ChebyshevStep) {
+    let (a, b, [last, own]) = (by.before, by.residual, by.weights);
     let rows = rows_per_task::<N>();
     let (rhs, old) = (&work.rhs, &work.solution);
     let targets = work.next.par_chunks_mut(rows);
@@ -101,8 +122,9 @@ fn advance<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>, a: f32, b:
             let row = task * rows + place;
             let product = matrix.times(row, old);
             for i in 0..N {
+                let before = step[i];
                 step[i] = a * step[i] + b * (rhs[row][i] - product[i]);
-                next[i] = old[row][i] + step[i];
+                next[i] = old[row][i] + last * before + own * step[i];
             }
         }
     });

@@ -19,6 +19,13 @@ pub(super) struct Tentative<const N: usize> {
     pub(super) modes: Vec<Modes<6>>,
 }
 
+impl<const N: usize> Tentative<N> {
+    /// What `T` would have for a node with these modes in an aggregate.
+    pub(super) fn extended(&self, modes: &Modes<N>, aggregate: u32) -> [[f32; 6]; N] {
+        modes.map(|row| solve(row, &self.modes[aggregate as usize]))
+    }
+}
+
 /// Builds the tentative prolongator of given modes.
 pub(super) fn tentative<const N: usize>(
     aggregates: &Aggregates,

@@ -4,7 +4,6 @@ use glam::{DMat3, DVec3};
 
 use super::block_jacobi::Factors;
 use super::clusters::Clusters;
-use super::mean_field::STRENGTH;
 use super::{aggregation, tentative, *};
 use crate::block_matrix::{BlockMatrix, BlockPattern};
 use crate::conjugate_gradients::{
@@ -50,6 +49,11 @@ impl Case {
 /// A cube of `edge^3` nodes joined by springs to all nodes around each; the nodes of one face are
 /// tied to where they are.
 fn lattice(edge: usize) -> Case {
+    weighed_lattice(edge, |_| 1.0)
+}
+
+/// The same with springs of a stiffness that depends on how many coordinates they span.
+fn weighed_lattice(edge: usize, stiffness: fn(usize) -> f64) -> Case {
     let place = |node: usize| [node % edge, node / edge % edge, node / edge / edge];
     let at = |node: usize| DVec3::from_array(place(node).map(|x| x as f64));
     let nodes = edge.pow(3);
@@ -60,8 +64,10 @@ fn lattice(edge: usize) -> Case {
             pairs.into_iter().all(|(a, b)| a.abs_diff(b) <= 1)
         };
         let spring = |other: usize| {
-            let arm = (at(other) - at(node)).normalize_or_zero();
-            DMat3::from_cols(arm.x * arm, arm.y * arm, arm.z * arm)
+            let span = at(other) - at(node);
+            let arm = span.normalize_or_zero();
+            let stiffness = stiffness(span.abs().element_sum() as usize);
+            stiffness * DMat3::from_cols(arm.x * arm, arm.y * arm, arm.z * arm)
         };
         let around: Vec<usize> = (0..nodes).filter(is_near).collect();
         let mut own: DMat3 = around.iter().map(|&other| spring(other)).sum();
@@ -115,7 +121,7 @@ fn rigid_motions_are_prolonged_exactly() {
     let mut scaled = Sparse::default();
     block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
     let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&scaled, STRENGTH);
+    let aggregates = aggregation::aggregate(&scaled);
     let tentative = tentative::tentative(&aggregates, &modes);
     for (node, &aggregate) in aggregates.of_node.iter().enumerate() {
         if aggregate == aggregation::ALONE {
@@ -130,6 +136,66 @@ fn rigid_motions_are_prolonged_exactly() {
             }
         }
     }
+}
+
+/// `(I - omega A) B`, row by row.
+fn smoothed_modes(
+    scaled: &Sparse<3, 3>,
+    modes: &[[[f64; 6]; 3]],
+    omega: f64,
+) -> Vec<[[f64; 6]; 3]> {
+    let row = |row: usize| {
+        let mut sum = modes[row];
+        small::add(&mut sum, -omega, &modes[row]);
+        for (column, block) in scaled.row(row) {
+            let image = small::transpose(&small::widen(block));
+            small::add(&mut sum, -omega, &small::product(&image, &modes[column]));
+        }
+        sum
+    };
+    (0..modes.len()).map(row).collect()
+}
+
+/// Neighbours along space diagonals hardly resist: `P R = (I - omega A) B` holds all the same, and
+/// fewer aggregates move a node than it has around it.
+#[test]
+fn weak_neighbours_cost_no_rigid_motion() {
+    let case = weighed_lattice(9, |span| [1.0, 1.0, 1.0, 0.02][span]);
+    let rows = SumRows::of_fixed(case.rows());
+    let single = Clusters::single(rows.count());
+    let factors = Factors::of(&rows, &single).unwrap();
+    let mut scaled = Sparse::default();
+    block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
+    let modes = block_jacobi::modes(&factors, &case.modes);
+    let aggregates = aggregation::aggregate(&scaled);
+    let tentative = tentative::tentative(&aggregates, &modes);
+    let unsmoothed = prolongation::Unsmoothed {
+        aggregates: &aggregates,
+        tentative: &tentative,
+        modes: &modes,
+    };
+    let bound = spectrum::largest_eigenvalue(&scaled);
+    let prolongator = unsmoothed.smoothed(&scaled, bound);
+    let expected = smoothed_modes(&scaled, &modes, 4.0 / 3.0 / bound);
+    let mut around = 0;
+    for (row, expected) in expected.iter().enumerate() {
+        let mut sum = [[0.0; 6]; 3];
+        for (column, block) in prolongator.row(row) {
+            let part = small::product(&small::widen(block), &tentative.modes[column]);
+            small::add(&mut sum, 1.0, &part);
+        }
+        for (entry, expected) in sum.as_flattened().iter().zip(expected.as_flattened()) {
+            // `P` is stored in single precision.
+            assert!((entry - expected).abs() < 1e-5, "{entry} and {expected}");
+        }
+        let neighbours = scaled.row(row).map(|(at, _)| at).chain([row]);
+        let mut of_nodes: Vec<u32> = neighbours.map(|at| aggregates.of_node[at]).collect();
+        of_nodes.sort_unstable();
+        of_nodes.dedup();
+        around += of_nodes.len();
+    }
+    let moving = prolongator.blocks.len();
+    assert!(moving < around, "{moving} of {around}");
 }
 
 #[test]

@@ -111,7 +111,7 @@ pub struct Workload {
     /// Whether tractions depend on the path, as with friction: each step is solved in one substep
     /// and in two, and the tangents are not symmetric.
     pub is_path_dependent: bool,
-    /// Factor on the iterations of the multigrid, 1 for cells of about equal edges.
+    /// Factor on the work of the multigrid, 1 for cells of about equal edges.
     pub difficulty: f64,
     /// The flow that is solved with it, if there is one.
     pub flow: Option<FlowWorkload>,
@@ -346,12 +346,14 @@ pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Predictio
     }
 }
 
-/// How many times the iterations of regular cells flat or slender ones and nearly incompressible
-/// rocks ask of the multigrid: fitted to layers of flat prisms and to Poisson's ratios near 1/2.
+/// How many times the work of regular cells flat or slender ones and nearly incompressible rocks
+/// ask of the multigrid: fitted to layers of flat prisms and to Poisson's ratios near 1/2. The
+/// flatter the cells, the more of them the smoother inverts at once, up to a limit.
 fn difficulty(mesh: &Mesh, rocks: &[Rock]) -> f64 {
     /// Cells looked at.
     const SAMPLE: usize = 5000;
     const REGULAR: f64 = 3.0;
+    const FLATTEST: f64 = 5.0;
     let step = (mesh.cells.len() / SAMPLE).max(1);
     let mut ratios: Vec<f64> = (0..mesh.cells.len())
         .step_by(step)
@@ -359,7 +361,7 @@ fn difficulty(mesh: &Mesh, rocks: &[Rock]) -> f64 {
         .collect();
     ratios.sort_by(f64::total_cmp);
     let flat = ratios.get(ratios.len() * 9 / 10).copied().unwrap_or(1.0);
-    let of_shape = 1.0 + 0.16 * (flat - REGULAR).max(0.0);
+    let of_shape = (1.0 + 0.16 * (flat - REGULAR).max(0.0)).min(FLATTEST);
     let of_rock = |rock: &Rock| (0.1 / (1.0 - 2.0 * rock.poisson_ratio)).max(1.0).powf(0.75);
     rocks.iter().map(of_rock).fold(of_shape, f64::max)
 }
@@ -396,7 +398,7 @@ mod tests {
             Mesh::build(draft, &roles).expect("a sound mesh")
         };
         assert_eq!(difficulty(&layer(0.25), &[ROCK]), 1.0);
-        assert!((difficulty(&layer(0.0025), &[ROCK]) - 16.52).abs() < 1e-9);
+        assert_eq!(difficulty(&layer(0.0025), &[ROCK]), 5.0);
         let soft = Rock {
             poisson_ratio: 0.4999,
             ..ROCK

@@ -22,6 +22,7 @@ use crate::system::{Discretisation, System};
 struct Box {
     shape: Shape,
     counts: [usize; 3],
+    sides: [f64; 3],
     poisson_ratio: f64,
     /// Stiffness of every second cell relative to the others.
     contrast: f64,
@@ -33,6 +34,7 @@ struct Box {
 const CLAMPED: Box = Box {
     shape: Shape::Tet4,
     counts: [8; 3],
+    sides: [1.0; 3],
     poisson_ratio: 0.3,
     contrast: 1.0,
     stretch: |x| x,
@@ -54,7 +56,7 @@ impl Box {
         let patches: Vec<Patch<'_>> = places
             .map(|(name, contains)| Patch { name, contains })
             .collect();
-        let mut draft = cells_of(self.shape, self.counts, [1.0; 3], &patches);
+        let mut draft = cells_of(self.shape, self.counts, self.sides, &patches);
         for node in &mut draft.nodes {
             *node = node.map(self.stretch);
         }
@@ -265,6 +267,19 @@ fn hard_boxes_are_solved() {
     for (name, case, most) in cases {
         let iterations = case.case().solve().1;
         assert!(iterations <= most, "{name}: {iterations} iterations");
+    }
+}
+
+#[test]
+fn flat_cells_take_no_more_iterations() {
+    for ratio in [10.0, 30.0, 100.0] {
+        let case = Box {
+            counts: [12; 3],
+            sides: [1.0, 1.0, 1.0 / ratio],
+            ..CLAMPED
+        };
+        let iterations = case.case().solve().1;
+        assert!(iterations <= 30, "1:{ratio}: {iterations} iterations");
     }
 }
 
