@@ -47,8 +47,8 @@ pub fn determinacy(system: &System<'_>, state: &State) -> Option<Vec<Determinacy
     Some(facets)
 }
 
-/// What free motions of blocks leave undetermined.
-fn floating(system: &System<'_>, state: &State) -> Option<Vec<Determinacy>> {
+/// What free motions of blocks leave undetermined at each facet; nothing of too many bodies.
+pub(super) fn floating(system: &System<'_>, state: &State) -> Option<Vec<Determinacy>> {
     let (problem, space) = (system.problem, &system.discretisation);
     let ties = free_blocks::ties(system, state);
     let free = rigid_modes::free_motions(problem, &space.points, &space.supports, &ties)?;

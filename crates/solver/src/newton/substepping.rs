@@ -2,7 +2,7 @@
 //!
 //! Without friction, a breaking bond or a flow that takes time the end does not depend on the path,
 //! so the step is divided only if it does not converge. With them, a substep is solved in one
-//! increment and in two; where the jumps differ by more than
+//! increment and in two; where the jumps that the loads determine differ by more than
 //! [`NewtonSettings::path`](super::NewtonSettings::path), or what the fluid fills and its pressures
 //! by more than [`NewtonSettings::time`](super::NewtonSettings::time), it is divided. Loads and
 //! what drives the flow walk with it. What no division resolves, walls that jump to another place
@@ -12,6 +12,7 @@ use glam::DVec3;
 use kluft_algebra::largest;
 
 use super::convergence::ratio;
+use super::determinacy::{self, Determinacy};
 use super::facet_points::interface;
 use super::free_blocks;
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
@@ -158,7 +159,7 @@ impl Newton {
             Ok(halves) => halves,
             Err(outcome) => return Solved::failed(outcome, Some(whole)),
         };
-        let apart = slides.then(|| difference(step.system, &whole, &halves));
+        let apart = slides.then(|| difference(step.system, &whole, &halves, self.settings.path));
         let in_time = flows.then(|| flows_apart(step.system, &whole, &halves));
         let flow = in_time.map(|apart| apart / self.settings.time);
         let path = apart.as_ref().map(|(apart, _)| apart / self.settings.path);
@@ -239,15 +240,33 @@ fn is_elastic(from: &State, to: &State) -> bool {
     pairs.into_iter().all(unbroken)
 }
 
-/// Largest difference of the jumps of two states, against the largest jump, and where it is.
-fn difference(system: &System<'_>, a: &State, b: &State) -> (f64, Option<usize>) {
+/// Largest difference of the jumps of two states, against the largest jump, and where it is; beyond
+/// a tolerance, of what the loads determine of them in the second.
+fn difference(system: &System<'_>, a: &State, b: &State, tolerance: f64) -> (f64, Option<usize>) {
     let pairs = a.unknowns.iter().zip(&b.unknowns);
     let between: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
-    let apart = interface(system).jumps(&between, &Load::NONE);
+    let mut apart = interface(system).jumps(&between, &Load::NONE);
     let size = largest(&interface(system).jumps(&b.unknowns, &b.load));
+    if largest(&apart) > tolerance * size {
+        leave_undetermined(system, b, &mut apart);
+    }
     let length = |point: usize| apart[point].length();
     let facet_point = (0..apart.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
     (ratio(largest(&apart), size), facet_point)
+}
+
+/// Takes from jumps what the loads do not determine in a state: no shorter step would.
+fn leave_undetermined(system: &System<'_>, state: &State, jumps: &mut [DVec3]) {
+    let Some(facets) = determinacy::floating(system, state) else {
+        return;
+    };
+    for (jump, point) in jumps.iter_mut().zip(&interface(system).points) {
+        match facets[point.facet as usize] {
+            Determinacy::Aperture => *jump = DVec3::ZERO,
+            Determinacy::Slip => *jump = jump.dot(point.normal) * point.normal,
+            Determinacy::Determined | Determinacy::Metastable => {}
+        }
+    }
 }
 
 /// What stands for a substep that no division resolves: the end of a longer one that converged in

@@ -4,6 +4,7 @@
 use std::error::Error;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Parser, Subcommand};
 use kluft_verification::report::{Effort, Finding, Report};
@@ -64,6 +65,9 @@ struct SoakChoice {
     /// The number of cases [default: that of each suite]
     #[arg(long, value_name = "COUNT")]
     cases: Option<usize>,
+    /// Begin no more cases after this time, min
+    #[arg(long, value_name = "MINUTES")]
+    minutes: Option<u32>,
     /// Keep the results in docs/verification although the cases are not the usual ones
     #[arg(long, conflicts_with = "quick")]
     keep: bool,
@@ -117,11 +121,16 @@ fn write(report: &Report, choice: &Choice) -> Result<(), Box<dyn Error>> {
 /// to be kept.
 fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
     let report = soak::report();
-    let is_other = choice.cases().is_some() && !choice.keep;
+    let is_usual = choice.cases().is_none() && choice.minutes.is_none();
+    let is_other = !is_usual && !choice.keep;
     let (effort, folder) = target(choice.quick || is_other);
     let mut asked = Asked::of(effort);
     asked.seed = choice.seed;
     asked.cases = choice.cases();
+    let time = choice
+        .minutes
+        .map(|count| Duration::from_secs(60 * u64::from(count)));
+    asked.until = time.map(|time| Instant::now() + time);
     asked.program = choice.program.clone().unwrap_or(asked.program);
     report.chosen(&choice.only)?;
     let is_chosen = |name: &str| choice.only.is_empty() || choice.only.iter().any(|n| n == name);

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
+use std::time::Instant;
 
 use crate::report::Effort;
 use crate::root;
@@ -19,6 +20,8 @@ pub struct Asked {
     pub seed: u64,
     /// The cases to run, by number.
     pub cases: Option<Range<usize>>,
+    /// When no more cases are begun.
+    pub until: Option<Instant>,
     /// The program that is run, killed and starved.
     pub program: PathBuf,
 }
@@ -32,17 +35,51 @@ impl Asked {
             effort,
             seed: 1,
             cases: None,
+            until: None,
             program: here.with_file_name(name),
         }
     }
 
-    /// The cases to run: the first `quick` or `full` ones unless others are asked for.
-    pub fn cases(&self, quick: usize, full: usize) -> Range<usize> {
-        let count = match self.effort {
-            Effort::Quick => quick,
-            Effort::Full => full,
+    /// Runs the first `quick` or `full` cases, or those that are asked for, on as many threads as
+    /// the machine has cores; what they return, in their order. Tells how many are done on standard
+    /// error.
+    ///
+    /// # Panics
+    /// If a case does.
+    pub fn each<T: Send>(
+        &self,
+        quick: usize,
+        full: usize,
+        run: impl Fn(usize) -> T + Sync,
+    ) -> Vec<T> {
+        let usual = match self.effort {
+            Effort::Quick => 0..quick,
+            Effort::Full => 0..full,
         };
-        self.cases.clone().unwrap_or(0..count)
+        let cases = self.cases.clone().unwrap_or(usual);
+        let next = AtomicUsize::new(cases.start);
+        let ended = AtomicUsize::new(0);
+        let is_time = || self.until.is_none_or(|until| Instant::now() < until);
+        let counted = |case| {
+            let result = run(case);
+            tell_progress(1 + ended.fetch_add(1, Ordering::Relaxed), cases.len());
+            (case, result)
+        };
+        let work = || {
+            let numbers =
+                std::iter::from_fn(|| is_time().then(|| next.fetch_add(1, Ordering::Relaxed)));
+            let own = numbers.take_while(|&case| case < cases.end);
+            own.map(counted).collect::<Vec<_>>()
+        };
+        let threads = thread::available_parallelism().map_or(1, usize::from);
+        let mut done: Vec<(usize, T)> = thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+            let done = workers.into_iter();
+            done.flat_map(|worker| worker.join().expect("a case without a panic"))
+                .collect()
+        });
+        done.sort_by_key(|(case, _)| *case);
+        done.into_iter().map(|(_, result)| result).collect()
     }
 
     /// Keeps an input of a case that did not hold in `target/verification/soak`; returns its name
@@ -71,34 +108,8 @@ const WORDS: usize = 20;
 /// Fewest cases between two of them.
 const FEWEST: usize = 25;
 
-/// Runs cases on as many threads as the machine has cores; what they return, in their order. Tells
-/// how many are done on standard error.
-///
-/// # Panics
-/// If a case does.
-pub fn each<T: Send>(cases: Range<usize>, run: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(cases.start);
-    let ended = AtomicUsize::new(0);
-    let counted = |case| {
-        let result = run(case);
-        let count = 1 + ended.fetch_add(1, Ordering::Relaxed);
-        if count.is_multiple_of((cases.len() / WORDS).max(FEWEST)) {
-            let _ = writeln!(std::io::stderr().lock(), "{count} of {} cases", cases.len());
-        }
-        (case, result)
-    };
-    let work = || {
-        let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
-        let own = numbers.take_while(|&case| case < cases.end);
-        own.map(counted).collect::<Vec<_>>()
-    };
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let mut done: Vec<(usize, T)> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let done = workers.into_iter();
-        done.flat_map(|worker| worker.join().expect("a case without a panic"))
-            .collect()
-    });
-    done.sort_by_key(|(case, _)| *case);
-    done.into_iter().map(|(_, result)| result).collect()
+fn tell_progress(count: usize, cases: usize) {
+    if count.is_multiple_of((cases / WORDS).max(FEWEST)) {
+        let _ = writeln!(std::io::stderr().lock(), "{count} of {cases} cases");
+    }
 }

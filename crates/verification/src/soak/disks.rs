@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::asked::{Asked, each};
+use super::asked::Asked;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results, visible};
 use super::program::{End, left_behind, run as run_program};
 use super::random_stream::RandomStream;
@@ -59,7 +59,7 @@ pub fn run(asked: &Asked) -> Finding {
         workshop.undisturbed(scene);
         workshop.path(&format!("{scene}-undisturbed"))
     });
-    let verdicts = each(asked.cases(6, 50), |number| {
+    let verdicts = asked.each(6, 50, |number| {
         let case = Case {
             workshop: &workshop,
             program: &asked.program,

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use kluft_solver::LinearMethod;
 
-use super::asked::{Asked, each};
+use super::asked::Asked;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results};
 use super::program::left_behind;
 use super::random_stream::RandomStream;
@@ -49,7 +49,7 @@ impl Whole {
 pub fn run(asked: &Asked) -> Finding {
     let workshop = Workshop::new(&asked.program);
     let wholes = LinearMethod::ALL.map(|linear| Whole::of(&workshop, linear));
-    let verdicts = each(asked.cases(6, 100), |number| {
+    let verdicts = asked.each(6, 100, |number| {
         let whole = &wholes[number % wholes.len()];
         let mut random = RandomStream::new(asked.seed, number);
         let verdict = killed(&workshop, whole, number, &mut random);

@@ -3,13 +3,13 @@
 use kluft_solver::{LinearMethod, NewtonSettings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::asked::{Asked, each};
+use super::asked::Asked;
 use super::material;
 use super::meshes::{Fineness, JUNCTIONS, Meshes};
 use super::random_stream::RandomStream;
 use super::solve::{End, Fields, longest, solve};
 use super::tally::{Miss, Verdict, finding};
-use crate::report::{Effort, Finding, Study};
+use crate::report::{Finding, Study};
 
 /// The suite.
 pub const STUDY: Study = Study {
@@ -20,6 +20,8 @@ pub const STUDY: Study = Study {
     run: |effort| run(&Asked::of(effort)),
 };
 
+/// Iterations of Newton's method that a run may take.
+const MOST_ITERATIONS: usize = 2000;
 /// Jumps below this share of the largest displacement are rounding.
 const ROUNDING: f64 = 1e-9;
 /// Differences between numbers of load steps below so many path accuracies have a class of their
@@ -34,7 +36,8 @@ const TEXT: &str = "Each case draws Young's modulus (1e9 to 1e11 Pa, at times 1e
     a small block at a corner, and three planes; every fourth round has cells of order 2. Each \
     case runs with the direct, condensed and iterative solver in 1, 2 and 10 equal load steps; \
     every 25th is meshed so finely that the iterative solver is the program's own choice, and \
-    compares that choice with the direct solver in 1 and 2 steps.
+    compares that choice with the direct solver in 1 and 2 steps. A run may take 2000 iterations of \
+    Newton's method.
 
 Runs *agree* if the largest difference of a jump anywhere on the fractures between any two is at \
     most the path accuracy (1e-3, the default of `path_accuracy`) of the largest jump in either, or \
@@ -105,15 +108,11 @@ impl Case {
 /// Runs the suite.
 pub fn run(asked: &Asked) -> Finding {
     let meshes = Meshes::none();
-    let most = match asked.effort {
-        Effort::Quick => 2000,
-        Effort::Full => 5000,
-    };
-    let verdicts = each(asked.cases(3, 1000), |number| {
+    let verdicts = asked.each(3, 1000, |number| {
         let case = Case::of(number, asked.seed);
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.expect("a thread");
-        let ends = ends(&case, &meshes, &pool, most);
+        let ends = ends(&case, &meshes, &pool);
         let mut verdict = judged(&case, &ends);
         if let Some(miss) = &mut verdict.miss {
             let name = format!("materials-{}-{number}.toml", asked.seed);
@@ -135,11 +134,11 @@ fn with_words(case: &Case, miss: &str) -> String {
 }
 
 /// How the runs of a case end; the first that is out of iterations is the last.
-fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool, most: usize) -> Vec<(Way, End)> {
+fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool) -> Vec<(Way, End)> {
     let mut ends = Vec::new();
     for way in case.ways() {
         let draft = meshes.of(case.junction, case.fineness);
-        let end = solve(&case.scene(way), draft, pool, most);
+        let end = solve(&case.scene(way), draft, pool, MOST_ITERATIONS);
         let is_last = matches!(end, End::OutOfIterations);
         ends.push((way, end));
         if is_last {

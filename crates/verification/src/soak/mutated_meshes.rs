@@ -10,7 +10,7 @@ use kluft_io::parse_msh;
 use kluft_mesh::{Defect, Draft, TaggedElements};
 use kluft_scene::Scene;
 
-use super::asked::{Asked, bytes_of, each};
+use super::asked::{Asked, bytes_of};
 use super::damage::{flip_bits, move_stretch};
 use super::random_stream::RandomStream;
 use super::tally::{Verdict, finding, words_of};
@@ -205,7 +205,7 @@ pub fn run(asked: &Asked) -> Finding {
     let seeds = SEEDS.map(|name| bytes_of(&folder.join(format!("{name}.msh"))));
     let scene = Scene::parse(SCENE, "scene.toml", Path::new(".")).expect("a sound scene");
     let before = peak_address_space();
-    let mut verdicts = each(asked.cases(2_000, 1_000_000), |number| {
+    let mut verdicts = asked.each(2_000, 1_000_000, |number| {
         let bytes = mutated(&seeds, &mut RandomStream::new(asked.seed, number));
         let panicked = |panic: Box<dyn Any + Send>| Verdict::missed("panic", words_of(&*panic));
         let mut verdict = catch_unwind(|| judged(&bytes, &scene)).unwrap_or_else(panicked);

@@ -10,7 +10,7 @@ use kluft_mesh::structured::{Patch, tetrahedra};
 use kluft_mesh::{Defect, Draft};
 use kluft_scene::{Scene, Timetable};
 
-use super::asked::{Asked, bytes_of, each};
+use super::asked::{Asked, bytes_of};
 use super::damage::{flip_bits, move_stretch};
 use super::random_stream::RandomStream;
 use super::tally::{Verdict, finding, words_of};
@@ -249,7 +249,7 @@ fn judged(text: &str, draft: &Draft) -> Verdict {
 /// Runs the suite.
 pub fn run(asked: &Asked) -> Finding {
     let seeds = Seed::all();
-    let verdicts = each(asked.cases(2_000, 1_000_000), |number| {
+    let verdicts = asked.each(2_000, 1_000_000, |number| {
         let mut random = RandomStream::new(asked.seed, number);
         let seed = &seeds[random.below(seeds.len())];
         let text = mutated(&seed.text, &mut random);

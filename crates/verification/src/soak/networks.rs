@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use super::asked::{Asked, each};
+use super::asked::Asked;
 use super::program::{End, left_behind, run as run_program};
 use super::random_stream::{RandomStream, rounded};
 use super::solve::kind_of;
@@ -34,7 +34,7 @@ pub fn run(asked: &Asked) -> Finding {
         Effort::Quick => 120,
         Effort::Full => 600,
     });
-    let verdicts = each(asked.cases(4, 1000), |number| {
+    let verdicts = asked.each(4, 1000, |number| {
         let text = description(&mut RandomStream::new(asked.seed, number), number % 2 == 1);
         let mut verdict = solved(&asked.program, &text, limit);
         if let Some(miss) = &mut verdict.miss {

@@ -4,7 +4,7 @@ use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::asked::{Asked, each};
+use super::asked::Asked;
 use super::folder::{Files, LIMIT, Workshop, broken, difference, results};
 use super::program::{End, left_behind};
 use super::random_stream::RandomStream;
@@ -36,7 +36,7 @@ pub fn run(asked: &Asked) -> Finding {
         workshop.write_scene(scene, size, "direct");
         workshop.undisturbed(scene)
     });
-    let verdicts = each(asked.cases(6, 100), |number| {
+    let verdicts = asked.each(6, 100, |number| {
         let mut random = RandomStream::new(asked.seed, number);
         let scenes = random.pick(&[[0, 1], [1, 0], [0, 0]]);
         let race = Race {
