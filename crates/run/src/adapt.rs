@@ -62,7 +62,8 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
             aim *= adapt.tolerance / error;
         }
         let budget = adapt.max_unknowns / unknowns as f64;
-        let sizes = next_sizes(&problem.mesh, &accuracy, aim, budget);
+        let sizes = next_sizes(&problem.mesh, &accuracy, aim);
+        let sizes = scaled(&problem.mesh, sizes, adapt.by, budget);
         match adapt.by {
             AdaptBy::Meshing => {
                 let write = |path: &Path| write_size_field(path, &problem.mesh, &sizes);
@@ -83,6 +84,10 @@ const FULL: f64 = 0.7;
 /// Least growth of the number of cells that a mesh is asked for after one that is not good enough
 /// (gmsh makes fewer where they are large): on ever coarser meshes estimates mean nothing.
 const LEAST_GROWTH: f64 = 1.6;
+/// The same of bisection, which divides just the cells that are too large.
+const LEAST_GROWTH_BY_BISECTION: f64 = 1.1;
+/// Factor on sizes by which those of bisection are sought.
+const SCALE_STEP: f64 = 1.05;
 
 fn stopped(adapt: &Adapt, is_met: bool, error: f64) -> String {
     let (error, tolerance) = (100.0 * error, 100.0 * adapt.tolerance);
@@ -95,20 +100,50 @@ fn stopped(adapt: &Adapt, is_met: bool, error: f64) -> String {
     )
 }
 
-/// Sizes with which the error should fall to `aim`; the number of cells grows at most by `budget`.
-fn next_sizes(mesh: &Mesh, accuracy: &Accuracy, aim: f64, budget: f64) -> Vec<f64> {
-    let mut sizes = match &accuracy.jumps {
+/// Sizes with which the error should fall to `aim`.
+fn next_sizes(mesh: &Mesh, accuracy: &Accuracy, aim: f64) -> Vec<f64> {
+    match &accuracy.jumps {
         Some(jumps) => target_sizes(mesh, &jumps.of_cell, &jumps.nearest_fracture, aim),
         None => {
             // The energy of the error is the square of what the tolerance speaks of.
             let groups = vec![0; mesh.cells.len()];
             target_sizes(mesh, &accuracy.energy_shares, &groups, aim * aim)
         }
+    }
+}
+
+/// Sizes scaled so that the number of cells grows enough for the error to fall, and at most by
+/// `budget`.
+fn scaled(mesh: &Mesh, mut sizes: Vec<f64>, by: AdaptBy, budget: f64) -> Vec<f64> {
+    let parts = parts(mesh, &sizes);
+    let scale = match by {
+        AdaptBy::Meshing => {
+            let growth = parts.iter().sum::<f64>() / parts.len() as f64;
+            (growth / growth.max(LEAST_GROWTH).min(budget)).cbrt()
+        }
+        AdaptBy::Bisection => bisection_scale(&parts, budget),
     };
-    let growth = cells(mesh, &sizes) / mesh.cells.len() as f64;
-    let scale = (growth / growth.max(LEAST_GROWTH).min(budget)).cbrt();
     sizes.iter_mut().for_each(|size| *size *= scale);
     sizes
+}
+
+/// Factor on sizes with which bisection divides at least a few of the cells and no more than the
+/// budget allows.
+fn bisection_scale(parts: &[f64], budget: f64) -> f64 {
+    // A cell stays whole or is divided into a power of two.
+    let count = |parts: f64| parts.log2().round().max(0.0).exp2();
+    let growth = |scale: f64| {
+        let counts = parts.iter().map(|parts| count(parts / scale.powi(3)));
+        counts.sum::<f64>() / parts.len() as f64
+    };
+    let mut scale = 1.0;
+    while growth(scale) < LEAST_GROWTH_BY_BISECTION {
+        scale /= SCALE_STEP;
+    }
+    while growth(scale) > budget.max(LEAST_GROWTH_BY_BISECTION) {
+        scale *= SCALE_STEP;
+    }
+    scale
 }
 
 impl Run<'_> {
@@ -144,13 +179,13 @@ fn size(mesh: &Mesh, sizes: &[f64], cell: usize) -> f64 {
     (logarithms.sum::<f64>() / corners.len() as f64).exp()
 }
 
-/// Number of cells that a mesh with these sizes will have, going by regular tetrahedra.
-fn cells(mesh: &Mesh, sizes: &[f64]) -> f64 {
+/// Number of cells with these sizes in the place of each cell, going by regular tetrahedra.
+fn parts(mesh: &Mesh, sizes: &[f64]) -> Vec<f64> {
     let of_cell = |cell: usize| {
         let size = size(mesh, sizes, cell);
         let volume =
             kluft_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
         72.0_f64.sqrt() * volume / (size * size * size)
     };
-    (0..mesh.cells.len()).map(of_cell).sum()
+    (0..mesh.cells.len()).map(of_cell).collect()
 }
