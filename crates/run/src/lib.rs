@@ -70,6 +70,7 @@ mod permeability_summary;
 mod pieces;
 mod prepare;
 mod probes;
+mod progress;
 mod provenance;
 mod rank_plan;
 mod ranks;

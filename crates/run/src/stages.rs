@@ -397,6 +397,9 @@ impl<'a> Run<'a> {
         self.write_summary()?;
         self.write_page()?;
         self.output.sync()?;
+        if *ending == Ending::Solved {
+            self.write_last_checkpoint()?;
+        }
         self.output.close()
     }
 

@@ -1,14 +1,12 @@
 //! The load steps of a run: each is solved, estimated, written, and can be resumed from.
 
-use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
-use std::time::Instant;
 
 use kluft_io::{Grid, write_atomically};
 use kluft_scene::Binding;
 use kluft_solver::{
-    Determinacy, Estimator, FacetResult, Flow, Newton, Plan, Problem, Solution, StageEnd, State,
+    Determinacy, Estimator, FacetResult, Flow, Newton, Plan, Solution, StageEnd, State,
     StepOutcome, System, determinacy, solution,
 };
 
@@ -35,7 +33,7 @@ use crate::unresolved;
 
 /// A run that has a system and a solver.
 pub(crate) struct Prepared<'s, 'p> {
-    system: &'s System<'p>,
+    pub(crate) system: &'s System<'p>,
     flow: Option<&'s RunFlow<'p>>,
     /// What could flow, if there is a fluid.
     fluid: Option<&'p Flow>,
@@ -138,7 +136,7 @@ impl Run<'_> {
             self.finished.push(measures);
             self.take_results(prepared)?;
             self.write_summary()?;
-            self.write_checkpoint(prepared.system.problem(), prepared)?;
+            self.write_checkpoint(prepared)?;
         }
         Ok(())
     }
@@ -442,52 +440,5 @@ impl Run<'_> {
         };
         self.observer.step_ends(&result);
         self.kept.push(result);
-    }
-
-    /// Lets the run be resumed from here.
-    fn write_checkpoint(
-        &mut self,
-        problem: &Problem,
-        prepared: &Prepared<'_, '_>,
-    ) -> Result<(), Interruption> {
-        if !self.output.is_kept() || self.request.origin.is_none() || self.has_own_mesh {
-            return Ok(());
-        }
-        let start = Instant::now();
-        let is_left = self.finished.len() < problem.schedule.steps.len()
-            || self.request.scene.strength_reduction.is_some();
-        let Prepared {
-            newton,
-            state,
-            stage,
-            ..
-        } = prepared;
-        let progress = Progress {
-            choice: self.choice.clone(),
-            steps: self.finished.clone(),
-            flows: self
-                .summary
-                .steps
-                .iter()
-                .map(|step| step.flow.clone())
-                .collect(),
-            files: self.output.sums().to_vec(),
-            fractures: self.summary.fractures.clone(),
-            history: self.history.text().to_owned(),
-            probes: self.probes.text.clone(),
-            measures: self.summary.measures.clone(),
-            stress_error: self.summary.stress_error,
-            seconds: self.summary.seconds.clone(),
-            peak_memory_bytes: self.summary.peak_memory_bytes,
-            stage: stage.filter(|_| is_left).map(Cow::Borrowed),
-            restart: is_left.then(|| newton.restart_state(state)),
-        };
-        // What a checkpoint speaks of lasts before it does.
-        self.output.sync()?;
-        let write = |path: &Path| checkpoint::write(path, &self.identity, &progress);
-        let written = self.output.write(checkpoint::NAME, write);
-        let written = written.and_then(|()| self.output.sync());
-        self.summary.seconds.write += start.elapsed().as_secs_f64();
-        Ok(written?)
     }
 }

@@ -1,7 +1,7 @@
 //! Folders of results: the scene that fills them, what must be equal in them, and what must be
 //! whole.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -134,9 +134,32 @@ pub fn difference(found: &Files, expected: &Files) -> Option<String> {
     }
     let differs = |(name, bytes): (&String, &Vec<u8>)| match expected.get(name) {
         None => Some(format!("{name} is too much")),
-        Some(other) => (other != bytes).then(|| format!("{name} differs")),
+        Some(other) if other == bytes => None,
+        Some(other) => Some(format!("{name} differs{}", differing_keys(bytes, other))),
     };
     found.iter().find_map(differs)
+}
+
+/// The keys of two JSON objects that differ, with what they say; empty for files of another kind.
+fn differing_keys(found: &[u8], expected: &[u8]) -> String {
+    let objects = [found, expected].map(serde_json::from_slice::<serde_json::Map<String, Value>>);
+    let [Ok(found), Ok(expected)] = objects else {
+        return String::new();
+    };
+    let keys: BTreeSet<&String> = found.keys().chain(expected.keys()).collect();
+    let differ = keys
+        .into_iter()
+        .filter(|key| found.get(*key) != expected.get(*key));
+    let said = |value: Option<&Value>| value.map_or("nothing".to_owned(), Value::to_string);
+    differ
+        .map(|key| {
+            format!(
+                "; {key}: {} instead of {}",
+                said(found.get(key)),
+                said(expected.get(key))
+            )
+        })
+        .collect()
 }
 
 /// What is not whole in a folder: grids and collections that end early, collections that list what
@@ -188,6 +211,13 @@ mod tests {
         assert_eq!(whole.len(), 3);
         write("summary.json", "{\"seconds\": 8, \"steps\": [1]}").expect("written");
         assert_eq!(difference(&results(folder.path()), &whole), None);
+        write("summary.json", "{\"steps\": [2]}").expect("written");
+        let said = difference(&results(folder.path()), &whole);
+        assert_eq!(
+            said.as_deref(),
+            Some("summary.json differs; steps: [2] instead of [1]")
+        );
+        write("summary.json", "{\"steps\": [1]}").expect("written");
         write("rock_0002.vtu", "<VTKFile>").expect("written");
         assert!(broken(folder.path()).is_some_and(|what| what.contains("ends early")));
         assert!(difference(&results(folder.path()), &whole).is_some());

@@ -1,0 +1,73 @@
+//! When a run writes its checkpoint, and what it says there.
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::Instant;
+
+use kluft_mesh::Defect;
+
+use crate::checkpoint::{self, Progress};
+use crate::stages::Run;
+use crate::steps::Prepared;
+
+impl Run<'_> {
+    /// Lets the run be resumed after the load step that was solved last, if anything is left to
+    /// solve.
+    pub(crate) fn write_checkpoint(&mut self, prepared: &Prepared<'_, '_>) -> Result<(), Defect> {
+        let steps = prepared.system.problem().schedule.steps.len();
+        let is_left =
+            self.finished.len() < steps || self.request.scene.strength_reduction.is_some();
+        if !is_left {
+            return Ok(());
+        }
+        self.write_progress(|progress| {
+            progress.stage = prepared.stage.map(Cow::Borrowed);
+            progress.restart = Some(prepared.newton.restart_state(&prepared.state));
+        })
+    }
+
+    /// Tells later runs that nothing is left. Only the end of a run does, once its results are
+    /// whole: a run that dies before solves the last load step again.
+    pub(crate) fn write_last_checkpoint(&mut self) -> Result<(), Defect> {
+        if self.finished.is_empty() {
+            return Ok(());
+        }
+        self.write_progress(|_| ())
+    }
+
+    fn write_progress<'a>(&mut self, add: impl FnOnce(&mut Progress<'a>)) -> Result<(), Defect> {
+        if !self.output.is_kept() || self.request.origin.is_none() || self.has_own_mesh {
+            return Ok(());
+        }
+        let start = Instant::now();
+        let mut progress = self.progress();
+        add(&mut progress);
+        // What a checkpoint speaks of lasts before it does.
+        self.output.sync()?;
+        let write = |path: &Path| checkpoint::write(path, &self.identity, &progress);
+        let written = self.output.write(checkpoint::NAME, write);
+        let written = written.and_then(|()| self.output.sync());
+        self.summary.seconds.write += start.elapsed().as_secs_f64();
+        written
+    }
+
+    /// What is finished, without how to go on.
+    fn progress<'a>(&self) -> Progress<'a> {
+        let summary = &self.summary;
+        Progress {
+            choice: self.choice.clone(),
+            steps: self.finished.clone(),
+            flows: summary.steps.iter().map(|step| step.flow.clone()).collect(),
+            files: self.output.sums().to_vec(),
+            fractures: summary.fractures.clone(),
+            history: self.history.text().to_owned(),
+            probes: self.probes.text.clone(),
+            measures: summary.measures.clone(),
+            stress_error: summary.stress_error,
+            seconds: summary.seconds.clone(),
+            peak_memory_bytes: summary.peak_memory_bytes,
+            stage: None,
+            restart: None,
+        }
+    }
+}
