@@ -1,6 +1,6 @@
 //! Wrong ways to call the program.
 
-use crate::harness::{Run, kluft};
+use crate::harness::{Run, kluft, root};
 
 fn refused(arguments: &[&str]) -> Run {
     let run = kluft(arguments);
@@ -89,4 +89,40 @@ fn an_unknown_key_is_explained_by_the_nearest() {
     );
     let run = refused(&["explain", "qqqqqq"]);
     assert!(run.err.contains("lists all keys"), "{}", run.err);
+}
+
+/// The help of the program and of each of its commands, as a page.
+fn help_as_a_page() -> String {
+    let whole = kluft(&["--help"]).out;
+    let commands = whole.split("Commands:\n").nth(1).expect("a list");
+    let commands = commands.split("\n\n").next().expect("its end");
+    // Names stand two columns in, what goes on from the line before further.
+    let named = commands.lines().filter(|line| !line.starts_with("   "));
+    let names = named.filter_map(|line| line.split_whitespace().next());
+    let mut page = "# Commands and options\n\nWhat `kluft --help` and `kluft COMMAND --help` say; \
+                    see also the [command line](command-line.md).\n\n```text\n"
+        .to_owned();
+    page += &(whole.trim_end().to_owned() + "\n```\n");
+    for name in names.filter(|name| *name != "help") {
+        let help = kluft(&[name, "--help"]).out;
+        page += &format!("\n## {name}\n\n```text\n{}\n```\n", help.trim_end());
+    }
+    let lines = page.lines().map(str::trim_end);
+    lines.map(|line| line.to_owned() + "\n").collect()
+}
+
+/// With `KLUFT_BLESS=1` the page is written again.
+#[test]
+fn the_page_of_the_command_line_is_what_the_help_says() {
+    let file = root().join("docs/reference/options.md");
+    let made = help_as_a_page();
+    for command in ["## run", "## inspect", "## study", "--resume", "## man"] {
+        assert!(made.contains(command), "{made}");
+    }
+    if std::env::var_os("KLUFT_BLESS").is_some_and(|value| value == "1") {
+        std::fs::write(&file, &made).expect("written");
+    }
+    let committed = std::fs::read_to_string(&file).unwrap_or_default();
+    let remedy = "docs/reference/options.md is stale: run this test with KLUFT_BLESS=1";
+    assert!(committed == made, "{remedy}");
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use kluft::Invocation;
 use kluft_mesh::Defect;
 use kluft_run::{Caller, Ending, MeshInput, Outcome, Request, run};
 use pyo3::prelude::*;
@@ -33,13 +34,15 @@ pub fn solve(
         MeshInput::Draft(Box::new(mesh.get().draft.clone()))
     });
     let (mut told, mut follower) = sides(callback.is_some());
+    // The script, or whatever else Python was started with.
+    let command = Invocation::of_process().command_line();
     let solving = |told: &mut Told| -> Result<Outcome, Vec<Defect>> {
         let pool = threads(count).map_err(|defect| vec![defect])?;
         let request = Request {
             folder: folder.as_deref(),
             keep_results: keeps,
             caller: Caller {
-                command: None,
+                command: Some(&command),
                 commit: option_env!("KLUFT_COMMIT"),
             },
             gmsh: gmsh_options(own, told.stop()),

@@ -52,6 +52,18 @@ def test_the_command_runs_a_scene_and_says_how_it_was_called(tmp_path):
     assert run.fractures["joint"].aperture == pytest.approx(1.98791504e-6, rel=1e-5)
 
 
+def test_a_run_in_python_says_what_python_was_started_with(tmp_path):
+    script = tmp_path / "a study.py"
+    scene = GEOMETRIES / "inclined-joint" / "scene.toml"
+    script.write_text(
+        f"import kluft\nrun = kluft.Scene.read({str(scene)!r}).solve()\n"
+        "print(run.summary['provenance']['command'])\n"
+    )
+    words = [sys.executable, str(script), "--fast"]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == f"{sys.executable} '{script}' --fast"
+
+
 PERSONALITY = """#!/bin/sh
 test "$1" != --version || exit 1
 read flags < /proc/self/personality
