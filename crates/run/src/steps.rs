@@ -290,6 +290,11 @@ impl Run<'_> {
             let estimator = estimator.get_or_insert_with(|| Estimator::of(system));
             accuracy::of(system, newton, estimator, &solution, is_last)
         });
+        if is_last && self.request.scene.strength_reduction.is_none() {
+            // Nothing is solved any more, and to write takes memory too.
+            newton.release();
+            *estimator = None;
+        }
         let interface = system.discretisation().interface();
         let nodes = solution.facet_nodes(system.problem(), interface);
         let mut fractures = fractures(system.problem(), interface, &solution, &nodes);

@@ -11,6 +11,7 @@ mod iterative;
 #[cfg(test)]
 mod multigrid_tests;
 mod nonsymmetric;
+mod released;
 mod split_aggregates;
 mod tangent_solver;
 
@@ -21,4 +22,5 @@ pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
 pub use iterative::{Iterative, first_coarsening, first_guess, serves};
 pub use nonsymmetric::NonsymmetricSolver;
+pub(crate) use released::Released;
 pub use tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};

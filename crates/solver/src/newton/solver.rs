@@ -6,7 +6,9 @@ use kluft_algebra::LinearFailure;
 use super::extrapolation::Path;
 use super::recycling::RecycledSpace;
 use super::settings::NewtonSettings;
-use crate::linear::{LinearMethod, NonsymmetricSolver, Plan, TangentSolver, Unknowns, Workload};
+use crate::linear::{
+    LinearMethod, NonsymmetricSolver, Plan, Released, TangentSolver, Unknowns, Workload,
+};
 use crate::system::System;
 
 /// The nonlinear solver of a system; it keeps what the linear solver prepared.
@@ -76,5 +78,13 @@ impl Newton {
     ) -> Result<Vec<DVec3>, LinearFailure> {
         let solution = self.linear.solve_positive(system, forces, tolerance)?;
         Ok(solution.unknowns)
+    }
+
+    /// Gives back the memory of the linear solver and of what it learnt from former steps, for what
+    /// is done after the last solve. Solves are refused from then on.
+    pub fn release(&mut self) {
+        self.linear = NonsymmetricSolver::new(Box::new(Released));
+        self.recycled = None;
+        self.path = Path::default();
     }
 }
