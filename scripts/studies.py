@@ -10,7 +10,8 @@ it. Tables of that page are written again below comments that say what they show
     <!-- table NAME: MEASURE... -->             a row for each setting
     <!-- worst NAME by DIMENSION: MEASURE... --> the largest of all settings with the same choice
 
-A measure is a column of `study.csv` without the name of its fracture.
+A measure is a column of `study.csv` without the name of its fracture. NAME-nested is a study of the
+scene in geometries/NAME on meshes that follow from one by dividing its cells.
 """
 
 import argparse
@@ -24,17 +25,39 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/verification/studies.md"
 FOLDER = PAGE.with_suffix("")
 ROUNDING = 1e-9  # shares below it are written as powers of ten
+NESTED = {
+    "penny": (
+        "h = 0.2, h_disc = 0.6, grow = 0.5",
+        "refinements = [0, 1, 2]\nquarter_points = [true, false]",
+    ),
+    "sphere": ("h = 0.7", "refinements = [0, 1, 2, 3]\norders = [1, 2]"),
+}
+"""Parameters of the mesh whose cells are divided, and the study, by the folder of the scene."""
 
 
-def studies():
-    """Scenes of geometries/ with a section [study], by the names of their folders."""
+def nested(name, folder):
+    """Writes the scene of a study on nested meshes, and returns its path."""
+    parameters, study = NESTED[name]
+    scene = ROOT / "geometries" / name / "scene.toml"
+    text, _ = scene.read_text().split("\n[study]\n")
+    text = text.replace('geometry = "', f'geometry = "{scene.parent}/')
+    text = re.sub(r"parameters = \{[^}]*\}", f"parameters = {{ {parameters} }}", text)
+    file = folder / f"{name}-nested.toml"
+    folder.mkdir(parents=True, exist_ok=True)
+    file.write_text(f"{text}\n[study]\n{study}\n")
+    return file
+
+
+def studies(folder):
+    """Scenes of geometries/ with a section [study] by the names of their folders, and those with
+    nested meshes."""
     scenes = sorted((ROOT / "geometries").glob("*/scene.toml"))
-    return {scene.parent.name: scene for scene in scenes if "\n[study]\n" in scene.read_text()}
+    scenes = {scene.parent.name: scene for scene in scenes if "\n[study]\n" in scene.read_text()}
+    return scenes | {f"{name}-nested": nested(name, folder) for name in NESTED}
 
 
-def run(program, scene, out):
+def run(program, name, scene, out):
     """Runs a study, or what is left of it."""
-    name = scene.parent.name
     subprocess.run([program, "study", scene, "--out", out, "--verbose"], check=True)
     shutil.copy(out / "study.csv", FOLDER / f"{name}.csv")
     if f"(studies/{name}.svg)" in PAGE.read_text():
@@ -123,9 +146,9 @@ def main():
     parser.add_argument("names", nargs="*", help="the studies to run [default: all]")
     asked = parser.parse_args()
     FOLDER.mkdir(exist_ok=True)
-    known = studies()
+    known = studies(asked.folder)
     for name in asked.names or known:
-        run(asked.kluft, known[name], asked.folder / name)
+        run(asked.kluft, name, known[name], asked.folder / name)
     rewrite()
 
 

@@ -7,6 +7,28 @@ use toml::{Table, Value};
 
 use crate::harness::{files, root};
 
+/// Studies of scenes on nested meshes, as `scripts/studies.py` makes them.
+const NESTED: [(&str, &str); 2] = [
+    (
+        "penny-nested",
+        "refinements = [0, 1, 2]\nquarter_points = [true, false]",
+    ),
+    (
+        "sphere-nested",
+        "refinements = [0, 1, 2, 3]\norders = [1, 2]",
+    ),
+];
+
+/// The studies on nested meshes, by name; the script has the same words.
+fn nested() -> Vec<(String, Table)> {
+    let script = fs::read_to_string(root().join("scripts/studies.py")).expect("the script");
+    let studies = NESTED.map(|(name, study)| {
+        assert!(script.contains(&study.replace('\n', "\\n")), "{name}");
+        (name.to_owned(), study.parse().expect("a study"))
+    });
+    studies.into()
+}
+
 /// Scenes of `geometries/` with a section `[study]`, by name.
 fn studies() -> Vec<(String, Table)> {
     let folders = fs::read_dir(root().join("geometries")).expect("the geometries");
@@ -34,7 +56,7 @@ fn every_study_of_a_scene_is_run_and_shown() {
     let folder = root().join("docs/verification");
     let page = fs::read_to_string(folder.join("studies.md")).expect("the page");
     let mut known = BTreeSet::new();
-    for (name, study) in studies() {
+    for (name, study) in studies().into_iter().chain(nested()) {
         let csv = format!("{name}.csv");
         let table = fs::read_to_string(folder.join("studies").join(&csv)).expect(&csv);
         let mut lines = table.lines();
