@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -44,12 +45,8 @@ def advance(count):
     """Times one run, meshed and with its mesh kept, then steps under pressure fields on rock that is
     prepared once."""
     scene = kluft.Scene.read(SCENE)
-    folder = os.environ.get("KLUFT_CACHE")
-    os.environ["KLUFT_CACHE"] = ""
-    _, meshed = timed_run(scene)
-    os.environ.pop("KLUFT_CACHE")
-    if folder is not None:
-        os.environ["KLUFT_CACHE"] = folder
+    with mock.patch.dict(os.environ, KLUFT_CACHE=""):
+        _, meshed = timed_run(scene)
     scene.solve()
     fresh, one = timed_run(scene)
     start = time.perf_counter()

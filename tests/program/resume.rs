@@ -4,14 +4,18 @@
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
+use kluft_mesh::Defect;
+use kluft_run::{Ending, MeshInput, Observer, Origin, Outcome, Request, Stage};
+use kluft_scene::Scene;
 use serde_json::Value;
 
 use crate::harness::{
-    KLUFT, Run, Workshop, command, files, kluft_with, summary, without_times, write_gmsh,
+    KLUFT, Run, Workshop, command, files, kluft_with, root, scratch, summary, without_times,
+    write_gmsh,
 };
 
 /// Loading, unloading and loading again, so that a step depends on several before it.
@@ -343,4 +347,65 @@ fn results_of_another_run_are_not_taken_for_its_own() {
     fs::copy(strange, workshop.path("out/rock_0002.vtu")).expect("copied");
     let says = ["rock_0002.vtu: the results of a finished load step are not those of this run"];
     assert_refused(&workshop, &says);
+}
+
+/// Spoils the page of a run once the grids of its last load step are written, so that the run
+/// fails before its end.
+struct Spoiler {
+    page: PathBuf,
+    grids: PathBuf,
+}
+
+impl Observer for Spoiler {
+    fn stage_ends(&mut self, stage: Stage, _took: Duration) {
+        if stage == Stage::Write && self.grids.exists() {
+            fs::create_dir(&self.page).expect("a folder in its place");
+        }
+    }
+}
+
+fn solve_in_two_steps(
+    folder: &Path,
+    resume: bool,
+    observer: &mut dyn Observer,
+) -> Result<Outcome, Vec<Defect>> {
+    let place = root().join("geometries/inclined-joint");
+    let file = place.join("scene.toml");
+    let text = fs::read_to_string(&file).expect("a scene");
+    let text = format!("{text}\n[load]\nsteps = [0.5, 1.0]\n");
+    let scene = Scene::parse(&text, "scene.toml", &place).expect("a sound scene");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    let pool = pool.expect("threads");
+    let request = Request {
+        folder: Some(folder),
+        origin: Some(Origin {
+            file: &file,
+            text: &text,
+        }),
+        resume,
+        ..Request::in_memory(&scene, MeshInput::OfScene, &pool)
+    };
+    kluft_run::run(request, observer)
+}
+
+/// A run that fails between its last load step and its end.
+#[test]
+fn a_run_that_dies_after_its_last_step_ends_when_it_is_resumed() {
+    let folder = scratch();
+    let [whole, died] = ["whole", "died"].map(|name| folder.path().join(name));
+    solve_in_two_steps(&whole, false, &mut ()).expect("no defects");
+    let page = died.join("report.html");
+    let grids = died.join("fractures_0002.vtu");
+    let mut spoiler = Spoiler {
+        page: page.clone(),
+        grids,
+    };
+    solve_in_two_steps(&died, false, &mut spoiler).expect_err("no place for the page");
+    fs::remove_dir(&page).expect("removed");
+    let resumed = solve_in_two_steps(&died, true, &mut ()).expect("no defects");
+    assert_eq!(resumed.ending, Ending::Solved);
+    assert_eq!(outcome(&died), outcome(&whole));
+    assert!(page.is_file());
+    let again = solve_in_two_steps(&died, true, &mut ()).expect("no defects");
+    assert_eq!(again.ending, Ending::NothingLeft);
 }

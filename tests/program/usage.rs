@@ -1,4 +1,4 @@
-//! Wrong ways to call the program.
+//! Wrong ways to call the program, and the help that it gives.
 
 use crate::harness::{Run, kluft, root};
 

@@ -11,37 +11,40 @@ use crate::stages::Run;
 use crate::steps::Prepared;
 
 impl Run<'_> {
+    /// Whether something is solved after the load steps that are finished, of so many in all.
+    pub(crate) fn has_more_to_solve(&self, steps: usize) -> bool {
+        self.finished.len() < steps || self.request.scene.strength_reduction.is_some()
+    }
+
     /// Lets the run be resumed after the load step that was solved last, if anything is left to
     /// solve.
     pub(crate) fn write_checkpoint(&mut self, prepared: &Prepared<'_, '_>) -> Result<(), Defect> {
         let steps = prepared.system.problem().schedule.steps.len();
-        let is_left =
-            self.finished.len() < steps || self.request.scene.strength_reduction.is_some();
-        if !is_left {
+        if !self.keeps_checkpoints() || !self.has_more_to_solve(steps) {
             return Ok(());
         }
-        self.write_progress(|progress| {
-            progress.stage = prepared.stage.map(Cow::Borrowed);
-            progress.restart = Some(prepared.newton.restart_state(&prepared.state));
+        self.write_progress(Progress {
+            stage: prepared.stage.map(Cow::Borrowed),
+            restart: Some(prepared.newton.restart_state(&prepared.state)),
+            ..self.progress()
         })
     }
 
     /// Tells later runs that nothing is left. Only the end of a run does, once its results are
     /// whole: a run that dies before solves the last load step again.
     pub(crate) fn write_last_checkpoint(&mut self) -> Result<(), Defect> {
-        if self.finished.is_empty() {
+        if !self.keeps_checkpoints() || self.finished.is_empty() {
             return Ok(());
         }
-        self.write_progress(|_| ())
+        self.write_progress(self.progress())
     }
 
-    fn write_progress<'a>(&mut self, add: impl FnOnce(&mut Progress<'a>)) -> Result<(), Defect> {
-        if !self.output.is_kept() || self.request.origin.is_none() || self.has_own_mesh {
-            return Ok(());
-        }
+    fn keeps_checkpoints(&self) -> bool {
+        self.output.is_kept() && self.request.origin.is_some() && !self.has_own_mesh
+    }
+
+    fn write_progress(&mut self, progress: Progress<'_>) -> Result<(), Defect> {
         let start = Instant::now();
-        let mut progress = self.progress();
-        add(&mut progress);
         // What a checkpoint speaks of lasts before it does.
         self.output.sync()?;
         let write = |path: &Path| checkpoint::write(path, &self.identity, &progress);

@@ -290,7 +290,7 @@ impl Run<'_> {
             let estimator = estimator.get_or_insert_with(|| Estimator::of(system));
             accuracy::of(system, newton, estimator, &solution, is_last)
         });
-        if is_last && self.request.scene.strength_reduction.is_none() {
+        if !self.has_more_to_solve(system.problem().schedule.steps.len()) {
             // Nothing is solved any more, and to write takes memory too.
             newton.release();
             *estimator = None;
