@@ -54,7 +54,8 @@ pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
         run.keep_mesh();
         let is_met = error <= adapt.tolerance;
         if is_met || number == adapt.max_rounds || unknowns as f64 >= FULL * adapt.max_unknowns {
-            run.summary.decisions.push(stopped(&adapt, is_met, error));
+            // The others are taken again with the mesh that stays.
+            run.summary.decisions = vec![stopped(&adapt, is_met, error)];
             break;
         }
         if number > 1 && error < NEAR * adapt.tolerance {
@@ -119,7 +120,11 @@ fn scaled(mesh: &Mesh, mut sizes: Vec<f64>, by: AdaptBy, budget: f64) -> Vec<f64
     let scale = match by {
         AdaptBy::Meshing => {
             let growth = parts.iter().sum::<f64>() / parts.len() as f64;
-            (growth / growth.max(LEAST_GROWTH).min(budget)).cbrt()
+            let excess = growth / growth.max(LEAST_GROWTH).min(budget);
+            match mesh.is_plane() {
+                true => excess.sqrt(),
+                false => excess.cbrt(),
+            }
         }
         AdaptBy::Bisection => bisection_scale(&parts, budget),
     };
@@ -179,13 +184,17 @@ fn size(mesh: &Mesh, sizes: &[f64], cell: usize) -> f64 {
     (logarithms.sum::<f64>() / corners.len() as f64).exp()
 }
 
-/// Number of cells with these sizes in the place of each cell, going by regular tetrahedra.
+/// Number of cells with these sizes in the place of each cell, going by regular tetrahedra, in a
+/// mesh of the plane by regular triangles; its cells are one metre thick.
 fn parts(mesh: &Mesh, sizes: &[f64]) -> Vec<f64> {
     let of_cell = |cell: usize| {
         let size = size(mesh, sizes, cell);
         let volume =
             kluft_mesh::cell_volume(mesh.cells.shapes[cell], &mesh.corners(&mesh.cells, cell));
-        72.0_f64.sqrt() * volume / (size * size * size)
+        match mesh.is_plane() {
+            true => 4.0 / 3.0_f64.sqrt() * volume / (size * size),
+            false => 72.0_f64.sqrt() * volume / (size * size * size),
+        }
     };
     (0..mesh.cells.len()).map(of_cell).collect()
 }

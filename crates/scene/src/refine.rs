@@ -3,7 +3,7 @@
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Shape, SurfaceRole};
 
 use crate::join::JoinedDraft;
-use crate::scene::{MeshSource, Scene};
+use crate::scene::{AdaptBy, MeshSource, Scene};
 
 /// Divides what has been joined. The mesh as given is checked before, so that defects name its own
 /// cells and not their parts.
@@ -15,15 +15,11 @@ pub fn refine(
     joined: JoinedDraft,
     roles: &[SurfaceRole],
 ) -> Result<JoinedDraft, Vec<Defect>> {
-    let adapts = matches!(scene.mesh, MeshSource::Geometry { adapt: Some(_), .. });
-    if adapts && joined.draft.is_extruded {
-        return Err(vec![of_plane(&joined.draft, "adapt")]);
+    if joined.draft.is_extruded && bisects(scene) {
+        return Err(vec![bisects_plane(&joined.draft)]);
     }
     if scene.refine == 0 {
         return Ok(joined);
-    }
-    if joined.draft.is_extruded {
-        return Err(vec![of_plane(&joined.draft, "refine")]);
     }
     let JoinedDraft {
         mut draft,
@@ -36,8 +32,7 @@ pub fn refine(
     let shapes = draft.cells.elements.shapes.iter();
     let has_pyramids = shapes.clone().any(|shape| is_pyramid(*shape));
     draft.refine(scene.refine)?;
-    let after = draft.cells.elements.len();
-    decisions.push(divided(scene.refine, has_pyramids, [before, after]));
+    decisions.push(divided(scene.refine, &draft, has_pyramids, before));
     Ok(JoinedDraft {
         faces: Faces::of(&draft),
         draft,
@@ -45,14 +40,18 @@ pub fn refine(
     })
 }
 
-/// Why a key has no use for a mesh of the plane.
-fn of_plane(draft: &Draft, key: &str) -> Defect {
+fn bisects(scene: &Scene) -> bool {
+    let MeshSource::Geometry { adapt, .. } = scene.mesh else {
+        return false;
+    };
+    adapt.is_some_and(|adapt| adapt.by == AdaptBy::Bisection)
+}
+
+fn bisects_plane(draft: &Draft) -> Defect {
     Defect::new(
         &draft.source,
-        format!(
-            "`{key}` is for meshes in space, and this one is of the plane, one cell through its thickness"
-        ),
-        "mesh it finer: parameters = { h = ... } with a geometry",
+        "`by = \"bisection\"` is for tetrahedra, and this mesh is of the plane",
+        "remove it: a plane is meshed anew in a moment",
     )
 }
 
@@ -60,10 +59,13 @@ fn is_pyramid(shape: Shape) -> bool {
     shape.corner_count() == 5
 }
 
-fn divided(times: u32, has_pyramids: bool, [before, after]: [usize; 2]) -> String {
-    let parts = match has_pyramids {
-        true => "8 (a pyramid into 10)",
-        false => "8",
+fn divided(times: u32, draft: &Draft, has_pyramids: bool, before: usize) -> String {
+    let after = draft.cells.elements.len();
+    let is_plane = draft.is_extruded;
+    let parts = match (is_plane, has_pyramids) {
+        (true, _) => "4",
+        (false, true) => "8 (a pyramid into 10)",
+        (false, false) => "8",
     };
     let times = match times {
         1 => "once".to_owned(),

@@ -70,7 +70,7 @@ pub static MESH: KeySection = KeySection {
             kind: Kind::Whole(Range::Within(0.0, 5.0)),
             need: Need::Default("0"),
             example: "2",
-            says: "How many times each cell is divided into eight, fractures and groups with it; not with `adapt`",
+            says: "How many times each cell is divided into eight, in a mesh of the plane into four, fractures and groups with it; not with `adapt`",
         },
         Key {
             name: "adapt",

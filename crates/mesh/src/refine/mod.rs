@@ -5,12 +5,14 @@
 //! along its shortest diagonal, so that the inner four keep at least three quarters of the mean
 //! ratio of the tetrahedron (docs/design/refinement.md). Hexahedra and prisms become eight of their
 //! kind, pyramids six pyramids and four tetrahedra. Every triangle and every quadrangle is divided
-//! into four, the same from both sides.
+//! into four, the same from both sides. Cells of a mesh of the plane become four: they stay one
+//! cell thick.
 
 mod bisect;
 mod curved;
 mod divide;
 mod division;
+mod layer;
 mod map;
 mod numbering;
 mod size;
@@ -23,8 +25,9 @@ use size::Counts;
 
 impl Draft {
     /// Divides every cell into eight (a pyramid into six pyramids and four tetrahedra) and every
-    /// facet into four, so many times. New nodes of elements of second order lie where the map of
-    /// their parent has them: curved edges stay curved, and straight ones straight.
+    /// facet into four, so many times; in a mesh of the plane every cell into four and every facet
+    /// into two. New nodes of elements of second order lie where the map of their parent has them:
+    /// curved edges stay curved, and straight ones straight.
     ///
     /// Nodes keep their tags, and those of new ones follow the highest. The tag of a child is that
     /// of its parent with its number, from 0 to 9, as another digit. Children stand in the same
@@ -40,6 +43,9 @@ impl Draft {
         self.check_size(times)?;
         for _ in 0..times {
             divide(self).map_err(|nodes| vec![self.too_many(nodes, "nodes")])?;
+            if self.is_extruded {
+                self.keep_lower_layer();
+            }
         }
         self.arrange();
         Ok(())
@@ -47,7 +53,11 @@ impl Draft {
 
     /// How many cells there are after so many divisions.
     pub fn refined_cells(&self, times: u32) -> u64 {
-        self.counts(times)[0].elements()
+        let counted = self.counts(times)[0].elements();
+        match self.is_extruded {
+            true => counted >> times,
+            false => counted,
+        }
     }
 
     /// Counts of cells and facets after so many divisions.

@@ -887,8 +887,8 @@ class MeshSource(Section):
             distance. Without it true.
         weld: Whether nodes at one place become one node; without it rock that touches without
             sharing nodes is refused. Without it false.
-        refine: How many times each cell is divided into eight, fractures and groups with it; not
-            with `adapt`; 0 to 5. Without it 0.
+        refine: How many times each cell is divided into eight, in a mesh of the plane into four,
+            fractures and groups with it; not with `adapt`; 0 to 5. Without it 0.
         adapt: Meshes until the estimated error is below a tolerance; with `geometry` only. Without
             it: one mesh, as the geometry says.
     """

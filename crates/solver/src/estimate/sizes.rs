@@ -11,6 +11,10 @@
 //! to the power of `-1 / (2 p + d)` (R. Becker and R. Rannacher, Acta Numerica 10, 2001, who have
 //! `-1/4` for `p = 1` in the plane).
 //!
+//! In the plane `d` is 2 in the place of 3. A front is a point there, with as many cells around it
+//! whatever their size, but each ring between them and larger cells takes as many: `-N_f ln s` of
+//! them, so that `s = N_f / (m E_f)`.
+//!
 //! Cells one layer away from a front count as smooth: with the stress `r^(-1/2)` their errors fall
 //! as `s^4 r^-5`, of which the optimal sizes, as `r^(5/7)`, leave little near the front.
 
@@ -29,7 +33,10 @@ const AIM: f64 = 0.8;
 /// Sizes (m) at all nodes, from errors of cells that should add up to `tolerance` for each group of
 /// cells (`groups` numbers them; cells in none may grow).
 pub fn target_sizes(mesh: &Mesh, errors: &[f64], groups: &[u32], tolerance: f64) -> Vec<f64> {
-    let rate = if mesh.cells.has_quadratic() { 4.0 } else { 2.0 };
+    let rates = Rates {
+        error: if mesh.cells.has_quadratic() { 4.0 } else { 2.0 },
+        count: if mesh.is_plane() { 2.0 } else { 3.0 },
+    };
     let at_front = mesh.front_cells();
     let last = groups.iter().filter(|&&group| group != u32::MAX).max();
     let mut sums = vec![Sums::default(); last.map_or(0, |&last| last as usize + 1)];
@@ -41,25 +48,34 @@ pub fn target_sizes(mesh: &Mesh, errors: &[f64], groups: &[u32], tolerance: f64)
             sums.at_fronts += errors[cell];
             sums.front_cells += 1.0;
         } else {
-            sums.powers += errors[cell].powf(3.0 / (rate + 3.0));
+            sums.powers += errors[cell].powf(rates.count / (rates.error + rates.count));
             sums.elsewhere += errors[cell];
         }
     }
-    let multipliers = sums.iter().map(|sums| sums.multiplier(rate, tolerance));
+    let multipliers = sums.iter().map(|sums| sums.multiplier(rates, tolerance));
     let multipliers: Vec<f64> = multipliers.collect();
     let size = |cell: usize| {
         let group = groups[cell] as usize;
         let factor = multipliers.get(group).map_or(GROW, |&multiplier| {
             if at_front[cell] {
-                sums[group].front_factor(multiplier)
+                sums[group].front_factor(multiplier, rates)
             } else {
-                smooth_factor(errors[cell], multiplier, rate)
+                smooth_factor(errors[cell], multiplier, rates)
             }
         });
         (cell_size(mesh, cell) * factor.clamp(SHRINK, GROW)).ln()
     };
     let logarithms: Vec<f64> = (0..mesh.cells.len()).map(size).collect();
     at_nodes(mesh, &logarithms)
+}
+
+/// Powers of the factor on sizes.
+#[derive(Clone, Copy)]
+struct Rates {
+    /// With which errors fall away from fronts, `2 p`.
+    error: f64,
+    /// With which cells become fewer there, `d`.
+    count: f64,
 }
 
 /// Errors of the cells of a group.
@@ -69,33 +85,35 @@ struct Sums {
     /// Number of cells at fronts.
     front_cells: f64,
     elsewhere: f64,
-    /// `sum e_K^(3 / (2 p + 3))` away from fronts.
+    /// `sum e_K^(d / (2 p + d))` away from fronts.
     powers: f64,
 }
 
 impl Sums {
     /// `s` of the cells at fronts.
-    fn front_factor(&self, multiplier: f64) -> f64 {
-        (self.front_cells / (multiplier * self.at_fronts)).sqrt()
+    fn front_factor(&self, multiplier: f64, rates: Rates) -> f64 {
+        let ratio = self.front_cells / (multiplier * self.at_fronts);
+        ratio.powf(1.0 / (rates.count - 1.0))
     }
 
     /// Error that a multiplier leaves.
-    fn error(&self, multiplier: f64, rate: f64) -> f64 {
+    fn error(&self, multiplier: f64, rates: Rates) -> f64 {
         let at_fronts = match self.at_fronts > 0.0 {
-            true => self.at_fronts * self.front_factor(multiplier),
+            true => self.at_fronts * self.front_factor(multiplier, rates),
             false => 0.0,
         };
-        // e_K s_K^(2 p) = e_K^(3 / (2 p + 3)) (3 / (2 p m))^(2 p / (2 p + 3))
-        at_fronts + self.powers * (3.0 / (rate * multiplier)).powf(rate / (rate + 3.0))
+        let Rates { error, count } = rates;
+        // e_K s_K^(2 p) = e_K^(d / (2 p + d)) (d / (2 p m))^(2 p / (2 p + d))
+        at_fronts + self.powers * (count / (error * multiplier)).powf(error / (error + count))
     }
 
     /// `m`, by bisection: the error falls as it grows.
-    fn multiplier(&self, rate: f64, tolerance: f64) -> f64 {
+    fn multiplier(&self, rates: Rates, tolerance: f64) -> f64 {
         let aim = (AIM * tolerance).max(AT_ONCE * (self.at_fronts + self.elsewhere));
         let (mut low, mut high) = (-100.0_f64, 100.0_f64);
         for _ in 0..100 {
             let middle = 0.5 * (low + high);
-            if self.error(10.0_f64.powf(middle), rate) > aim {
+            if self.error(10.0_f64.powf(middle), rates) > aim {
                 low = middle;
             } else {
                 high = middle;
@@ -106,15 +124,17 @@ impl Sums {
 }
 
 /// `s_K` of a cell away from fronts.
-fn smooth_factor(error: f64, multiplier: f64, rate: f64) -> f64 {
-    (3.0 / (rate * multiplier * error)).powf(1.0 / (rate + 3.0))
+fn smooth_factor(error: f64, multiplier: f64, rates: Rates) -> f64 {
+    let sum = rates.error + rates.count;
+    (rates.count / (rates.error * multiplier * error)).powf(1.0 / sum)
 }
 
 /// Median distance of the corners of a cell (m): in a layer of flat or slender cells the size in
-/// its plane.
+/// its plane. Of a mesh of the plane those of one layer count.
 fn cell_size(mesh: &Mesh, cell: usize) -> f64 {
     let corners = mesh.cells.shapes[cell].corner_count();
-    let nodes = &mesh.cells.nodes_of(cell)[..corners];
+    let nodes = mesh.cells.nodes_of(cell)[..corners].iter();
+    let nodes: Vec<u32> = nodes.copied().filter(|&node| mesh.is_own(node)).collect();
     let place = |node: &u32| -> DVec3 { mesh.nodes[*node as usize] };
     let pairs = nodes.iter().enumerate();
     let pairs = pairs.flat_map(|(i, a)| nodes[..i].iter().map(move |b| (a, b)));
