@@ -70,6 +70,25 @@ fn a_lining_takes_what_the_walls_let_go_after_it() {
     assert_near(probe(&later, "crown", 2), crown, MESH);
 }
 
+/// The numbers are in the head of the scene.
+#[test]
+fn a_joint_that_is_grouted_under_load_stays_closed() {
+    let workshop = Workshop::new("grouted-joint", &[]);
+    let last = probe(&workshop.solve("out", &[]), "top", 2);
+    assert_near(last, -1.5e-4, 1e-9);
+    let both = (
+        "remove = [\"joint\"]",
+        "remove = [\"joint\"]\nadd = [\"joint\"]",
+    );
+    let run = Workshop::new("grouted-joint", &[both]).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(
+        run.err.contains("removes the fracture `joint` and adds it"),
+        "{}",
+        run.err
+    );
+}
+
 /// Everything that must not depend on interruptions, without the decisions, which are told again
 /// for each body that is assembled again.
 fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {

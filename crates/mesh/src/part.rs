@@ -58,15 +58,23 @@ impl Whole {
         &self.draft
     }
 
+    /// The groups that are fractures.
+    pub fn fractures(&self) -> Vec<usize> {
+        let roles = self.roles.iter().enumerate();
+        let fractures = roles.filter(|(_, role)| **role == SurfaceRole::Fracture);
+        fractures.map(|(group, _)| group).collect()
+    }
+
     /// The mesh of the cells that are there. A facet of a fracture is where cells are on both its
-    /// sides, one of a boundary where a cell is on one; a surface without any has no role.
+    /// sides, one of a boundary where a cell is on one; a surface without any has no role. The
+    /// walls of fractures that are welded, groups of the draft, are one.
     ///
     /// # Errors
     /// As [`Mesh::build`].
     ///
     /// # Panics
     /// If there is not one entry for each cell of the whole.
-    pub fn part(&self, is_there: &[bool]) -> Result<Part, Vec<Defect>> {
+    pub fn part(&self, is_there: &[bool], welded: &[usize]) -> Result<Part, Vec<Defect>> {
         let cells: Vec<u32> = (0..self.draft.cells.elements.len() as u32)
             .filter(|&cell| is_there[cell as usize])
             .collect();
@@ -75,7 +83,7 @@ impl Whole {
             nodes: self.draft.nodes.clone(),
             node_tags: self.draft.node_tags.clone(),
             groups: self.draft.groups.clone(),
-            group_sets: self.group_sets(),
+            group_sets: self.group_sets(welded),
             cells: chosen(&self.draft.cells, &cells),
             facets: self.facets(is_there),
             lines: TaggedElements::new(),
@@ -95,18 +103,15 @@ impl Whole {
         Ok(Part { mesh, cells })
     }
 
-    /// The sets of groups, then each without boundaries, then each without fractures.
-    fn group_sets(&self) -> Vec<Vec<usize>> {
+    /// The sets of groups, then each without boundaries and what is welded, then each without
+    /// fractures.
+    fn group_sets(&self, welded: &[usize]) -> Vec<Vec<usize>> {
         let sets = &self.draft.group_sets;
-        let without = |role: SurfaceRole| {
-            let kept = move |set: &Vec<usize>| {
-                let groups = set.iter().copied();
-                groups.filter(|&group| self.roles[group] != role).collect()
-            };
-            sets.iter().map(kept)
-        };
-        let inner = without(SurfaceRole::Boundary);
-        let outer = without(SurfaceRole::Fracture);
+        let is_inner =
+            |&group: &usize| self.roles[group] != SurfaceRole::Boundary && !welded.contains(&group);
+        let is_outer = |&group: &usize| self.roles[group] != SurfaceRole::Fracture;
+        let inner = sets.iter().map(|set| chosen_of(set, is_inner));
+        let outer = sets.iter().map(|set| chosen_of(set, is_outer));
         sets.iter().cloned().chain(inner).chain(outer).collect()
     }
 
@@ -161,6 +166,10 @@ impl Whole {
         }
         found
     }
+}
+
+fn chosen_of(set: &[usize], is_chosen: impl Fn(&usize) -> bool) -> Vec<usize> {
+    set.iter().copied().filter(is_chosen).collect()
 }
 
 /// What a surface is where all cells are there.

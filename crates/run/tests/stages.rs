@@ -354,6 +354,68 @@ fn opening_of(step: &StepResult) -> Vec<f64> {
     field(&step.fracture_grid, "opening").to_vec()
 }
 
+/// A column with a joint across it, 1 m high, under 3 MPa; `phases` say what becomes of the joint.
+fn jointed_column(phases: &str) -> Outcome {
+    let planes = [
+        plane("joint", 2, 0.5),
+        plane("bottom", 2, 0.0),
+        plane("top", 2, 1.0),
+    ];
+    let text = format!(
+        "{ROCK}[fracture.joint]\naperture = 1e-3\nnormal_stiffness = 1e10\nshear_stiffness = 1e10\n\
+         closure = \"linear\"\n\
+         [boundary.bottom]\ndisplacement = {{ x = 0.0, y = 0.0, z = 0.0 }}\n\
+         [boundary.top]\npressure = 3e6\nhistory = [[0, 0], [1, 1], [2, 1], [3, 0]]\n{phases}"
+    );
+    outcome(&text, draft([2, 2, 4], |_| "rock", &planes))
+}
+
+fn top(step: &StepResult) -> Vec<f64> {
+    moved(step, 2, |x| x[2] == 1.0)
+}
+
+const SHORTENED: f64 = -3e6 / YOUNG;
+const CLOSED: f64 = -3e6 / 1e10;
+
+/// A joint that is grouted while it is closed stays closed when the load goes.
+#[test]
+fn a_joint_that_is_removed_stays_as_it_is() {
+    let done = jointed_column(
+        "[[load.phase]]\nname = \"loaded\"\nuntil = 1\n\
+         [[load.phase]]\nname = \"grouted\"\nuntil = 2\nremove = [\"joint\"]\n\
+         [[load.phase]]\nname = \"let go\"\nuntil = 3\n",
+    );
+    assert_all(&opening_of(&done.steps[0]), CLOSED, 1e-9);
+    for (step, height) in done
+        .steps
+        .iter()
+        .zip([CLOSED + SHORTENED, CLOSED + SHORTENED, CLOSED])
+    {
+        assert_all(&top(step), height, 1e-9);
+    }
+    assert!(done.steps[2].fracture_grid.shapes.is_empty());
+}
+
+/// A joint that comes while its rock is loaded closes as one that had been there, as far as the
+/// phase lets go of what held its walls.
+#[test]
+fn a_joint_that_is_added_closes_under_the_load_that_is_there() {
+    let done = jointed_column(
+        "[[load.phase]]\nname = \"loaded\"\nuntil = 1\n\
+         [[load.phase]]\nname = \"cut\"\nuntil = 2\nsteps = 2\nadd = [\"joint\"]\n\
+         [[load.phase]]\nname = \"let go\"\nuntil = 3\n",
+    );
+    assert!(done.steps[0].fracture_grid.shapes.is_empty());
+    assert_all(&top(&done.steps[0]), SHORTENED, 1e-9);
+    for (step, share) in done.steps[1..].iter().zip([0.5, 1.0]) {
+        assert_all(&opening_of(step), share * CLOSED, 1e-9);
+        assert_all(&top(step), SHORTENED + share * CLOSED, 1e-9);
+    }
+    for left in [opening_of(&done.steps[3]), top(&done.steps[3])].concat() {
+        assert!(left.abs() < 1e-9 * SHORTENED.abs(), "{left:e}");
+    }
+}
+
 /// A block leans on a wall by friction, pressed against it, and loses what it stands on. By statics
 /// the joint carries its weight then, if friction can; else it falls, and is named.
 #[test]

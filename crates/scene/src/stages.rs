@@ -1,5 +1,5 @@
-//! Phases that remove and add volumes: which cells are there when, of what rock, and what holds the
-//! walls that were cut.
+//! Phases that remove and add volumes and fractures: which cells are there when, of what rock,
+//! which walls are welded, and what holds those that were cut.
 
 use std::ops::Range;
 
@@ -43,6 +43,8 @@ struct Plan {
     is_new: Vec<bool>,
     /// Rock of sets that were added as another than their volume.
     rock: Vec<Option<u32>>,
+    /// Groups of fractures whose walls are one.
+    welded: Vec<usize>,
     /// Share of what holds the walls at its beginning that still does at the end of its steps.
     held: Vec<f64>,
     /// What it changes, in words.
@@ -53,8 +55,9 @@ impl Scene {
     /// The stages of this scene on a mesh as read.
     ///
     /// # Errors
-    /// Every defect of the mesh with all its volumes, names that are no volumes, volumes that are
-    /// removed or added twice, and surfaces with conditions that are inside the rock in all stages.
+    /// Every defect of the mesh with all its volumes, names that are neither volumes nor fractures,
+    /// what is removed or added twice, and surfaces with conditions that are inside the rock in all
+    /// stages.
     pub fn staged(&self, draft: Draft) -> Result<Staged<'_>, Vec<Defect>> {
         let faces = Faces::of(&draft);
         let joined = join(self, draft, faces)?;
@@ -88,7 +91,7 @@ impl Scene {
         let refined = refine(self, joined, &of_whole).map_err(in_terms_of_scene)?;
         let (whole, mesh) =
             Whole::of(refined.draft, refined.faces, roles).map_err(in_terms_of_scene)?;
-        let plans = Planner::of(self, whole.draft()).plan()?;
+        let plans = Planner::of(self, &whole).plan()?;
         let mut defects = never_outside(self, &whole, &plans);
         defects.extend(probe_defects(self, &mesh));
         if !defects.is_empty() {
@@ -189,7 +192,10 @@ impl Staged<'_> {
         let sets = &self.whole.draft().cells.group_set;
         let is_there: Vec<bool> = sets.iter().map(|&s| plan.is_there[s as usize]).collect();
         let named = |defects| self.in_stage(stage, defects);
-        let part = self.whole.part(&is_there).map_err(in_terms_of_scene);
+        let part = self
+            .whole
+            .part(&is_there, &plan.welded)
+            .map_err(in_terms_of_scene);
         let Part { mesh, cells } = part.map_err(named)?;
         let rock_of = |cell: usize| plan.rock[sets[cells[cell] as usize] as usize];
         let mut binding = bind_with(self.scene, mesh, rock_of).map_err(named)?;
@@ -226,6 +232,8 @@ impl Plan {
 struct Planner<'a> {
     scene: &'a Scene,
     draft: &'a Draft,
+    /// Groups of fractures.
+    fractures: Vec<usize>,
     /// Whether each group is there, as far as phases say.
     groups: Vec<Option<bool>>,
     is_there: Vec<bool>,
@@ -235,10 +243,12 @@ struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    fn of(scene: &'a Scene, draft: &'a Draft) -> Self {
+    fn of(scene: &'a Scene, whole: &'a Whole) -> Self {
+        let draft = whole.draft();
         Self {
             scene,
             draft,
+            fractures: whole.fractures(),
             groups: vec![None; draft.groups.len()],
             is_there: vec![true; draft.group_sets.len()],
             is_new: vec![false; draft.group_sets.len()],
@@ -278,6 +288,7 @@ impl<'a> Planner<'a> {
             is_there: self.is_there.clone(),
             is_new: std::mem::replace(&mut self.is_new, vec![false; self.draft.group_sets.len()]),
             rock: self.rock.clone(),
+            welded: self.welded(),
             held: Vec::new(),
             says,
         }
@@ -294,7 +305,7 @@ impl<'a> Planner<'a> {
                     continue;
                 }
                 seen.push(name);
-                match find_group(&self.draft.groups, name, 3, &phase.place) {
+                match self.group(phase, name) {
                     Ok(group) => self.set(group, is_there, None),
                     Err(defect) => self.defects.push(defect),
                 }
@@ -303,6 +314,17 @@ impl<'a> Planner<'a> {
     }
 
     fn change(&mut self, phase: &PhaseEntry) {
+        let both = phase.remove.iter().filter(|name| phase.add.contains(name));
+        let both: Vec<&String> = both.filter(|name| self.is_fracture(name)).collect();
+        for name in both {
+            let problem = format!(
+                "phase \"{}\" removes the fracture `{name}` and adds it",
+                phase.name
+            );
+            let remedy = "let one phase remove it and a later one add it";
+            self.defects
+                .push(Defect::new(&phase.place, problem, remedy));
+        }
         for name in &phase.remove {
             self.turn(phase, name, false, None);
         }
@@ -329,9 +351,8 @@ impl<'a> Planner<'a> {
     }
 
     fn turn(&mut self, phase: &PhaseEntry, name: &str, is_there: bool, rock: Option<u32>) {
-        let found = find_group(&self.draft.groups, name, 3, &phase.place);
-        // Names that are no volumes have been reported.
-        let Ok(group) = found else {
+        // Names that are neither volumes nor fractures have been reported.
+        let Ok(group) = self.group(phase, name) else {
             return;
         };
         if self.groups[group] == Some(is_there) {
@@ -357,8 +378,40 @@ impl<'a> Planner<'a> {
         self.set(group, is_there, rock);
     }
 
+    /// The volume or the fracture of a name.
+    fn group(&self, phase: &PhaseEntry, name: &str) -> Result<usize, Defect> {
+        let groups = &self.draft.groups;
+        let is_fracture = self.is_fracture(name);
+        if is_fracture
+            && groups
+                .iter()
+                .any(|group| group.dimension == 3 && group.name == name)
+        {
+            let problem = format!("`{name}` is the name of a fracture and of a volume");
+            let remedy = "give one of them another name in the mesh";
+            return Err(Defect::new(&phase.place, problem, remedy));
+        }
+        find_group(groups, name, if is_fracture { 2 } else { 3 }, &phase.place)
+    }
+
+    fn is_fracture(&self, name: &str) -> bool {
+        let mut fractures = self.fractures.iter();
+        fractures.any(|&group| self.draft.groups[group].name == name)
+    }
+
+    /// The fractures that are not there now.
+    fn welded(&self) -> Vec<usize> {
+        let fractures = self.fractures.iter().copied();
+        fractures
+            .filter(|&group| self.groups[group] == Some(false))
+            .collect()
+    }
+
     fn set(&mut self, group: usize, is_there: bool, rock: Option<u32>) {
         self.groups[group] = Some(is_there);
+        if self.fractures.contains(&group) {
+            return;
+        }
         for (index, set) in self.draft.group_sets.iter().enumerate() {
             if set.contains(&group) {
                 self.is_there[index] = is_there;

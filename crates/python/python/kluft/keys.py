@@ -208,12 +208,13 @@ class Phase(Section):
         until: End of the phase; the first begins at 0 (time); > 0. Required.
         steps: Number of equal load steps in the phase; 1 to 100000. Without it 1.
         remove: Physical volumes that are not there from its beginning on, with the fractures in
-            them. Without it: nothing.
-        add: Physical volumes that are there from its beginning on, free of stress; one that none
-            has removed before is not there until then. Without it: nothing.
+            them; and fractures whose walls are one from then on, as far apart as they are. Without
+            it: nothing.
+        add: Physical volumes and fractures that are there from its beginning on, free of stress;
+            one that none has removed before is not there until then. Without it: nothing.
         added_as: Rock of what it adds, a section `[rock.NAME]`. Without it: the rock of the volume.
-        release: Share, of the forces that hold the walls of what was removed at its beginning, that
-            it lets go step by step; 0 to 1. Without it 1.
+        release: Share, of the forces that hold the walls of what was removed or cut at its
+            beginning, that it lets go step by step; 0 to 1. Without it 1.
     """
 
     def __init__(
