@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use crate::flow::sources;
 use crate::harness::{Workshop, root};
 
 /// The rows of a history; each maps columns to texts.
@@ -279,4 +280,62 @@ fn a_column_whose_modulus_grows_with_elevation_shortens_by_a_logarithm() {
     let moved = |face: &str| numbers(&rows, ["boundary", face], "displacement_z")[0];
     let exact = -1e6 * (2.0 / 25e9 * 2_f64.ln() + 1.0 / 20e9);
     assert_near(moved("top") - moved("bottom"), exact, 3e-3);
+}
+
+/// In the west joint the transmissivity is `T0 (1 + x)`, so that `T0 / ln 2` conducts between its
+/// ends; the other three have one each.
+#[test]
+fn a_hydraulic_aperture_that_varies_conducts_as_the_integral_has_it() {
+    let field = |b: &str| format!("{b} = {{ expression = \"1e-4 * (1 + x)^(1/3)\" }}");
+    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
+    for key in ["hydraulic_aperture", "aperture"] {
+        let varying = format!("[fracture.west]\n{}", field(key));
+        let edits = [
+            (own, &varying[..]),
+            (
+                "parameters = { h = 0.2 }",
+                "parameters = { h = 0.05 }\ndimension = 2",
+            ),
+        ];
+        let workshop = Workshop::new("flow-star", &edits);
+        let rows = sources(&workshop.solve("out", &[]));
+        let pairs = [
+            (1.0 / 2_f64.ln(), 3e5),
+            (8.0, 1e5),
+            (0.125, 0.0),
+            (3.375, 2e5),
+        ];
+        let conducted: f64 = pairs.iter().map(|(t, p)| t * p).sum();
+        let line = conducted / pairs.iter().map(|(t, _)| t).sum::<f64>();
+        let rate = 1e-12 / 12e-3 / 2_f64.ln() * (3e5 - line);
+        let left = rows.iter().find(|row| row.0 == "[boundary.left]");
+        assert_near(left.expect("a row").2, rate, 2e-4);
+    }
+}
+
+/// What is the same everywhere is what a number says, to the last bit, also where the flow follows
+/// the walls.
+#[test]
+fn hydraulic_values_that_do_not_vary_are_numbers() {
+    let solve = |keys: &str| {
+        let more = format!("closure = \"linear\"\n{keys}");
+        let edits = [
+            ("closure = \"linear\"", &more[..]),
+            (
+                "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]",
+                "times = [10, 20]",
+            ),
+        ];
+        let workshop = Workshop::new("filling-joint", &edits);
+        let out = workshop.solve("out", &[]);
+        fs::read(out.join("history.csv")).expect("a history")
+    };
+    let plain = solve("roughness = 1.5\nresidual_hydraulic_aperture = 2e-6");
+    let varying = solve(
+        "roughness = { expression = \"1.5\" }\n\
+         residual_hydraulic_aperture = { table = [[0, 2], [1, 2]], over = \"x\", unit = \"um\", \
+         beyond = \"nearest\" }",
+    );
+    assert_eq!(plain, varying);
+    assert_ne!(plain, solve("roughness = { expression = \"1.5 + x\" }"));
 }

@@ -9,7 +9,7 @@ use crate::harness::{Workshop, files, kluft, summary, without_times};
 use crate::read_back::read_back;
 
 /// What stands in `sources.csv` behind its head: source, pressure and rate.
-fn sources(folder: &Path) -> Vec<(String, f64, f64)> {
+pub fn sources(folder: &Path) -> Vec<(String, f64, f64)> {
     let text = fs::read_to_string(folder.join("sources.csv")).expect("sources.csv");
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("step,time,source,pressure,rate,volume"));

@@ -161,11 +161,11 @@ pub(crate) fn bind_with(
         facet_quadrature: scene.solver.facets,
         mesh,
     };
+    let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
+    let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
     if let Some(flow) = &mut flow {
         treat(scene, &problem, flow, &mut decisions)?;
     }
-    let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
-    let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
     Ok(Binding {
         warnings: doubts(scene, &problem, flow.as_ref(), [odd, idle]),
         problem,
@@ -298,8 +298,7 @@ fn bind_oracles(
     let of = |name: &String| scene.oracles.iter().find(|entry| entry.name == *name);
     for (name, fracture) in mesh.fractures.iter().zip(fractures) {
         let refused = of(name).and_then(|entry| {
-            let varies =
-                !fracture.value.fields.is_empty() || fracture.value.varying_pressure.is_some();
+            let varies = fracture.value.varying().next().is_some();
             let refusal = match varies {
                 true => Some([
                     "a closed form has one law and one pressure all over its fracture",

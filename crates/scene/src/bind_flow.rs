@@ -4,6 +4,7 @@ use kluft_keys::section_head;
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
 
+use crate::bind_conduits::Conduits;
 use crate::cases::Bound;
 use crate::history::Timetable;
 use crate::scene::{Isolated, Scene};
@@ -30,17 +31,10 @@ pub(crate) fn bind_flow(
             "isolated = \"inactive\" leaves them out; a young_modulus lets their walls move",
         )]);
     }
-    let conduits = bound.fractures.iter();
-    let conduits: Vec<Conduit> = conduits
-        .map(|entry| entry.value.conduit.unwrap_or(Conduit::Sealed))
-        .collect();
-    if conduits.iter().all(|conduit| *conduit == Conduit::Sealed) {
-        return Err(vec![Defect::new(
-            &fluid.place,
-            "there is a fluid, but no fracture that conducts it",
-            "add a [fracture.NAME] that is not sealed, or remove [fluid]",
-        )]);
-    }
+    let Conduits {
+        of_fractures: conduits,
+        of_facets,
+    } = Conduits::of(scene, mesh, (bound, &fluid.place), decisions)?;
     let weight = fluid.value.fluid.density * scene.body.gravity.z;
     let mut lines = Vec::new();
     let fractures = (mesh, &conduits[..]);
@@ -64,6 +58,7 @@ pub(crate) fn bind_flow(
         fluid: fluid.value.fluid,
         initial_pressure: fluid.value.initial_pressure,
         conduits,
+        of_facets,
         inactive: Vec::new(),
         conditions,
         lines,

@@ -6,6 +6,7 @@ use kluft_solver::{
     Support, SurfaceLoad,
 };
 
+use crate::conduit::HydraulicParameter;
 use crate::field::{self, FieldEntry, InTime, Value, read_value};
 use crate::fluid::read_boundary_fluid;
 use crate::history::LoadHistory;
@@ -98,14 +99,25 @@ pub struct FractureEntry {
     pub fields: Vec<(LawParameter, FieldEntry)>,
     /// The fluid pressure, if it varies.
     pub varying_pressure: Option<Box<FieldEntry>>,
-    /// How it conducts; none if nothing flows in the scene.
+    /// How it conducts; none if nothing flows in the scene. Parameters that vary are not numbers.
     pub conduit: Option<Conduit>,
+    /// Parameters of its hydraulic aperture that vary.
+    pub hydraulic_fields: Vec<(HydraulicParameter, FieldEntry)>,
     /// What leaks off from it into the rock; none if nothing does.
     pub leakoff: Option<Leakoff>,
     /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
     pub given_pressure: Option<f64>,
     /// How the fluid pressure changes with time.
     pub history: Option<LoadHistory>,
+}
+
+impl FractureEntry {
+    /// All of its values that vary.
+    pub(crate) fn varying(&self) -> impl Iterator<Item = &FieldEntry> {
+        let law = self.fields.iter().map(|(_, field)| field);
+        let hydraulic = self.hydraulic_fields.iter().map(|(_, field)| field);
+        law.chain(hydraulic).chain(self.varying_pressure.as_deref())
+    }
 }
 
 /// What acts in all of the rock.

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use kluft_solver::{Conduit, FlowDrive, Fluid, Leakoff, Profile};
-use lie_core::{HydraulicAperture, Roughness};
 
 use crate::history::LoadHistory;
 use crate::load::{Scaled, read_history};
@@ -49,7 +48,7 @@ pub struct SourceEntry {
 }
 
 /// Keys of a fracture that speak of the fluid.
-const OF_FRACTURES: [&str; 7] = [
+pub(crate) const OF_FRACTURES: [&str; 7] = [
     "hydraulic_aperture",
     "residual_hydraulic_aperture",
     "roughness",
@@ -226,28 +225,6 @@ fn read_drive(section: &Section<'_, '_>, [pressure, rate]: [&'static str; 2]) ->
     Some(FlowDrive::Pressure(given))
 }
 
-/// Reads how a fracture conducts; none if nothing flows in the scene.
-pub(crate) fn read_conduit(section: &Section<'_, '_>, setting: Setting) -> Option<Conduit> {
-    refuse_without_fluid(section, setting, &OF_FRACTURES);
-    if setting.fluid == FluidUse::None {
-        return None;
-    }
-    if section.flag("sealed") == Some(true) {
-        refuse_beside(section, "sealed = true", &OF_FRACTURES[..6]);
-        return Some(Conduit::Sealed);
-    }
-    if section.has("hydraulic_aperture") {
-        refuse_beside(section, "hydraulic_aperture", &OF_FRACTURES[1..4]);
-        let constant = section.number("hydraulic_aperture");
-        return constant.map(|constant| Conduit::Open(HydraulicAperture::Constant(constant)));
-    }
-    let residual = section.number("residual_hydraulic_aperture");
-    Some(Conduit::Open(HydraulicAperture::OfWalls {
-        roughness: read_roughness(section),
-        residual: residual.unwrap_or(0.0),
-    }))
-}
-
 /// Reads what leaks off from a fracture; none if nothing does.
 pub(crate) fn read_leakoff(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option<Leakoff> {
     let coefficient = section.number("leakoff");
@@ -264,31 +241,19 @@ pub(crate) fn read_leakoff(section: &Section<'_, '_>, conduit: Option<Conduit>) 
     (is_open && leakoff.coefficient > 0.0).then_some(leakoff)
 }
 
-fn read_roughness(section: &Section<'_, '_>) -> Roughness {
-    let factor = section.number("roughness");
-    let coefficient = section.number("joint_roughness");
-    if section.has("roughness") && section.has("joint_roughness") {
-        section.refuse(
-            "joint_roughness",
-            "both roughness and joint_roughness are given".into(),
-            "keep one: a factor on the transmissivity, or Barton's coefficient",
-        );
-    }
-    match coefficient {
-        Some(coefficient) => Roughness::Coefficient(coefficient),
-        None => Roughness::Factor(factor.unwrap_or(1.0)),
-    }
-}
-
 /// Refuses keys that another one leaves without effect.
-fn refuse_beside(section: &Section<'_, '_>, other: &str, keys: &[&'static str]) {
+pub(crate) fn refuse_beside(section: &Section<'_, '_>, other: &str, keys: &[&'static str]) {
     for &key in keys.iter().filter(|key| section.has(key)) {
         let problem = format!("`{key}` has no effect beside {other}");
         section.refuse(key, problem, "keep one of them");
     }
 }
 
-fn refuse_without_fluid(section: &Section<'_, '_>, setting: Setting, keys: &[&'static str]) {
+pub(crate) fn refuse_without_fluid(
+    section: &Section<'_, '_>,
+    setting: Setting,
+    keys: &[&'static str],
+) {
     for &key in keys.iter().filter(|key| section.has(key)) {
         if setting.fluid == FluidUse::None {
             section.refuse(

@@ -5,8 +5,9 @@ use kluft_solver::{Conduit, Fracture, LawParameter};
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, HydraulicAperture, Tension};
 
 use crate::conditions::FractureEntry;
+use crate::conduit::{HydraulicFields, HydraulicParameter, read_conduit};
 use crate::field::{FieldEntry, InTime, Value, read_value};
-use crate::fluid::{read_conduit, read_leakoff};
+use crate::fluid::read_leakoff;
 use crate::load::{Scaled, read_history};
 use crate::reader::Section;
 use crate::roles::DEFAULT;
@@ -32,10 +33,11 @@ pub(crate) fn read_placed_fracture(
 
 /// Reads what a section says of a fracture, wherever it is.
 pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<FractureEntry> {
-    let conduit = read_conduit(section, setting);
+    let mut hydraulic_fields = Vec::new();
+    let conduit = read_conduit(section, setting, &mut hydraulic_fields);
     let mut fields = Fields::default();
     let law = match setting.is_rigid() {
-        true => read_rigid_law(section, conduit),
+        true => read_rigid_law(section, (conduit, &hydraulic_fields), &mut fields),
         false => read_law(section, &mut fields),
     };
     let is_open = matches!(conduit, Some(Conduit::Open(_)));
@@ -70,13 +72,18 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
         varying_pressure,
         leakoff: read_leakoff(section, conduit),
         conduit,
+        hydraulic_fields,
         given_pressure: fluid_pressure.filter(|_| is_open),
         history,
     })
 }
 
 /// The law of walls in rigid rock, of which the aperture is all that counts.
-fn read_rigid_law(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option<FractureLaw> {
+fn read_rigid_law(
+    section: &Section<'_, '_>,
+    (conduit, hydraulic_fields): (Option<Conduit>, &HydraulicFields),
+    fields: &mut Fields,
+) -> Option<FractureLaw> {
     let hydraulic = match conduit {
         Some(Conduit::Open(HydraulicAperture::Constant(constant))) => Some(constant),
         _ => None,
@@ -85,7 +92,10 @@ fn read_rigid_law(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option
     if hydraulic.is_none() && !is_sealed {
         section.require("aperture");
     }
-    let aperture = section.number("aperture");
+    let aperture = fields.read(section, "aperture", LawParameter::Aperture);
+    if aperture.is_none() {
+        fields.follow_hydraulic_aperture(hydraulic_fields);
+    }
     let aperture = aperture.or(hydraulic).or(is_sealed.then_some(0.0));
     aperture.map(FractureLaw::rigid)
 }
@@ -129,6 +139,16 @@ impl Fields {
         let mut own = self.0.iter();
         let aperture = own.find(|(parameter, _)| *parameter == LawParameter::Aperture);
         let followed = aperture.map(|(_, entry)| (LawParameter::MaxClosure, entry.clone()));
+        self.0.extend(followed);
+    }
+}
+
+impl Fields {
+    /// Lets walls be as far apart as the fluid sees them.
+    fn follow_hydraulic_aperture(&mut self, hydraulic: &HydraulicFields) {
+        let constant = hydraulic.iter();
+        let constant = constant.filter(|(own, _)| *own == HydraulicParameter::Constant);
+        let followed = constant.map(|(_, entry)| (LawParameter::Aperture, entry.clone()));
         self.0.extend(followed);
     }
 }

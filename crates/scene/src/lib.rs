@@ -6,11 +6,13 @@
 
 mod anisotropy;
 mod bind;
+mod bind_conduits;
 mod bind_fields;
 mod bind_flow;
 mod bind_probes;
 mod cases;
 mod conditions;
+mod conduit;
 mod doubts;
 mod field;
 mod fluid;
@@ -22,6 +24,7 @@ mod isolated;
 mod join;
 mod lines;
 mod load;
+mod look;
 mod oracle;
 mod place;
 mod placed;

@@ -172,11 +172,8 @@ impl Scene {
 
     /// The files that values come from, each once, in the order of the scene.
     pub fn value_files(&self) -> Vec<&Path> {
-        let fractures = self.fractures.iter().flat_map(|entry| {
-            let value = &entry.value;
-            let laws = value.fields.iter().map(|(_, field)| field);
-            laws.chain(value.varying_pressure.as_deref())
-        });
+        let fractures = self.fractures.iter();
+        let fractures = fractures.flat_map(|entry| entry.value.varying());
         let loads = self
             .boundaries
             .iter()

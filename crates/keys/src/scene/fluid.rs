@@ -1,5 +1,6 @@
 //! What flows in fractures, and where it is driven.
 
+use super::field::varied;
 use super::shared::{GROWS_ONCE, INITIAL, INITIAL_GRADIENT};
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
@@ -237,7 +238,7 @@ pub(super) const BOUNDARY_INFLOW: Key = Key {
 /// How a fracture conducts.
 pub(super) const HYDRAULIC_APERTURE: Key = Key {
     name: "hydraulic_aperture",
-    kind: number(Dimension::Length, Range::Positive),
+    kind: varied(Dimension::Length, Range::Positive),
     need: Need::Without("follows the walls; in rigid rock they stay at `aperture`"),
     example: "1e-4",
     says: "Aperture b_h that the fluid sees, whatever the walls do; needs `[fluid]`",
@@ -246,7 +247,7 @@ pub(super) const HYDRAULIC_APERTURE: Key = Key {
 /// What closed walls leave open.
 pub(super) const RESIDUAL_HYDRAULIC_APERTURE: Key = Key {
     name: "residual_hydraulic_aperture",
-    kind: number(Dimension::Length, Range::NotNegative),
+    kind: varied(Dimension::Length, Range::NotNegative),
     need: Need::Default("0"),
     example: "1e-6",
     says: "Hydraulic aperture r that closed walls leave, b_h^3 = e^3 + r^3; where there is no `hydraulic_aperture`",
@@ -255,7 +256,7 @@ pub(super) const RESIDUAL_HYDRAULIC_APERTURE: Key = Key {
 /// How rough walls are, by a factor.
 pub(super) const ROUGHNESS: Key = Key {
     name: "roughness",
-    kind: number(Dimension::One, Range::Within(1.0, 1e6)),
+    kind: varied(Dimension::One, Range::Within(1.0, 1e6)),
     need: Need::Default("1"),
     example: "1.5",
     says: "Factor f by which rough walls lower the transmissivity, e^3 = b^3 / f",
@@ -264,7 +265,7 @@ pub(super) const ROUGHNESS: Key = Key {
 /// How rough walls are, by Barton's coefficient.
 pub(super) const JOINT_ROUGHNESS: Key = Key {
     name: "joint_roughness",
-    kind: number(Dimension::One, Range::Within(0.0, 20.0)),
+    kind: varied(Dimension::One, Range::Within(0.0, 20.0)),
     need: Need::Without("`roughness`"),
     example: "8",
     says: "Barton's coefficient JRC instead: e = b^2 / JRC^2.5 in micrometres, at most b",

@@ -102,7 +102,7 @@ pub(super) fn transmissivities(
 ) -> Vec<f64> {
     let elements = &mesh.facets.elements;
     let of = |facet: usize| {
-        let Conduit::Open(hydraulic) = flow.conduits[mesh.facets.fracture[facet] as usize] else {
+        let Conduit::Open(hydraulic) = flow.conduit(mesh, facet) else {
             return 0.0;
         };
         let corners = elements.shapes[facet].corner_count();

@@ -142,18 +142,18 @@ impl<'a> Coupling<'a> {
             }
         }
         let points = WallPoints::of(&topology, interface);
-        let conduit = |(index, fracture): (usize, u32)| match flow.conduits[fracture as usize] {
+        let conduit = |(index, facet): (usize, u32)| match flow.conduit(mesh, facet as usize) {
             Conduit::Open(hydraulic) if points.conducts(index) => Some(hydraulic),
             _ => None,
         };
-        let fractures = interface.points().iter().map(|point| point.fracture);
+        let facets = interface.points().iter().map(|point| point.facet);
         let areas = points.at_rows(&vec![1.0; apertures.len()]);
         let undrained = match is_transient {
             true => Vec::new(),
             false => undrained::find(&topology, &areas),
         };
         Ok(Self {
-            hydraulic: fractures.enumerate().map(conduit).collect(),
+            hydraulic: facets.enumerate().map(conduit).collect(),
             areas,
             undrained,
             initial_volumes: points.at_rows(apertures),

@@ -68,7 +68,6 @@ impl FlowSystem<'_> {
 }
 
 fn hydraulic_apertures(mesh: &Mesh, flow: &Flow, apertures: &[f64]) -> Vec<f64> {
-    let facets = mesh.facets.fracture.iter().enumerate();
     let of = |aperture: &f64, conduit: Conduit| match conduit {
         Conduit::Sealed => 0.0,
         Conduit::Open(hydraulic) => {
@@ -78,8 +77,9 @@ fn hydraulic_apertures(mesh: &Mesh, flow: &Flow, apertures: &[f64]) -> Vec<f64> 
             hydraulic_aperture
         }
     };
-    let fields = facets.flat_map(|(facet, &fracture)| {
-        let conduit = flow.conduits[fracture as usize];
+    let facets = 0..mesh.facets.elements.len();
+    let fields = facets.flat_map(|facet| {
+        let conduit = flow.conduit(mesh, facet);
         let own = apertures[mesh.facets.elements.range(facet)].iter();
         own.map(move |aperture| of(aperture, conduit))
     });

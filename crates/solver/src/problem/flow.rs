@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use kluft_field::Profile;
+use kluft_mesh::Mesh;
 use lie_core::HydraulicAperture;
 
 /// A fluid that fills fractures.
@@ -111,6 +112,10 @@ pub struct Flow {
     pub fluid: Fluid,
     /// One entry for each of [`kluft_mesh::MeshData::fractures`].
     pub conduits: Vec<Conduit>,
+    /// One entry for each of [`kluft_mesh::MeshData::facets`] where fractures conduct otherwise in
+    /// one place than in another; then those of fractures are what is usual in them. Empty if none
+    /// does.
+    pub of_facets: Vec<Conduit>,
     /// Facets, ascending, in which nothing flows although their fractures conduct: indices into
     /// [`kluft_mesh::MeshData::facets`].
     pub inactive: Vec<u32>,
@@ -130,6 +135,15 @@ pub struct Flow {
 }
 
 impl Flow {
+    /// How a facet of the mesh conducts.
+    pub fn conduit(&self, mesh: &Mesh, facet: usize) -> Conduit {
+        let of_fracture = || self.conduits[mesh.facets.fracture[facet] as usize];
+        self.of_facets
+            .get(facet)
+            .copied()
+            .unwrap_or_else(of_fracture)
+    }
+
     /// Whether the flow depends on how the walls move in rock that deforms: by their apertures, or,
     /// where it takes time or networks keep what they hold, by what they store.
     pub fn follows_walls(&self, takes_time: bool) -> bool {

@@ -91,8 +91,14 @@ impl Problem {
         let facets = &self.mesh.facets;
         let all = facets.fracture.iter().enumerate();
         let apertures = all.flat_map(|(facet, &fracture)| {
-            let aperture = self.fractures[fracture as usize].law.closure.aperture;
-            std::iter::repeat_n(aperture, facets.elements.range(facet).len())
+            let law = self.fractures[fracture as usize].law;
+            let mut varying = self.varying.laws.iter();
+            let varying = varying.find(|varying| varying.fracture == fracture as usize);
+            let nodes = facets.elements.nodes_of(facet).iter();
+            nodes.map(move |&node| {
+                let own = varying.map(|own| own.at_position(&law, self.mesh.nodes[node as usize]));
+                own.unwrap_or(law).closure.aperture
+            })
         });
         apertures.collect()
     }

@@ -46,6 +46,7 @@ pub fn water(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
             compressibility: 0.0,
         },
         conduits: vec![smooth; mesh.fractures.len()],
+        of_facets: Vec::new(),
         inactive: Vec::new(),
         conditions,
         gravity: DVec3::ZERO,

@@ -65,6 +65,7 @@ fn flow(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
         },
         initial_pressure: Profile::default(),
         conduits: vec![smooth(); mesh.fractures.len()],
+        of_facets: Vec::new(),
         inactive: Vec::new(),
         conditions,
         gravity: DVec3::ZERO,

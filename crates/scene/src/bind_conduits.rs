@@ -1,0 +1,99 @@
+//! How the fractures of a mesh conduct.
+
+use glam::DVec3;
+use kluft_mesh::{Defect, Mesh};
+use kluft_solver::Conduit;
+
+use crate::cases::Bound;
+use crate::conduit::HydraulicParameter;
+use crate::field::FieldEntry;
+use crate::look::Look;
+use crate::scene::Scene;
+
+/// How fractures conduct, and facets, if that varies in any.
+pub(crate) struct Conduits {
+    pub(crate) of_fractures: Vec<Conduit>,
+    pub(crate) of_facets: Vec<Conduit>,
+}
+
+impl Conduits {
+    /// Those of a mesh: facets have the values in their middle, fractures the mean.
+    ///
+    /// # Errors
+    /// Values that are out of their range, or that a table or samples do not reach, and a fluid that
+    /// no fracture conducts; `place` is where the scene speaks of it.
+    pub(crate) fn of(
+        scene: &Scene,
+        mesh: &Mesh,
+        (bound, place): (&Bound<'_>, &str),
+        decisions: &mut Vec<String>,
+    ) -> Result<Self, Vec<Defect>> {
+        let mut look = Look::of(scene, decisions);
+        let conduits = Self::looked_at(mesh, bound, &mut look);
+        let mut defects = look.defects;
+        let is_sealed = |conduit: &Conduit| *conduit == Conduit::Sealed;
+        if conduits.of_fractures.iter().all(is_sealed) {
+            defects.push(Defect::new(
+                place,
+                "there is a fluid, but no fracture that conducts it",
+                "add a [fracture.NAME] that is not sealed, or remove [fluid]",
+            ));
+        }
+        match defects.is_empty() {
+            true => Ok(conduits),
+            false => Err(defects),
+        }
+    }
+
+    fn looked_at(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) -> Self {
+        let fractures = bound.fractures.iter();
+        let of_fractures = fractures.map(|entry| entry.value.conduit.unwrap_or(Conduit::Sealed));
+        let mut conduits = Self {
+            of_fractures: of_fractures.collect(),
+            of_facets: Vec::new(),
+        };
+        let mut fractures = bound.fractures.iter();
+        if fractures.all(|entry| entry.value.hydraulic_fields.is_empty()) {
+            return conduits;
+        }
+        let numbers = mesh.facets.fracture.iter();
+        let of_facets = numbers.map(|&number| conduits.of_fractures[number as usize]);
+        conduits.of_facets = of_facets.collect();
+        for (index, entry) in bound.fractures.iter().enumerate() {
+            for (parameter, field) in &entry.value.hydraulic_fields {
+                conduits.vary(mesh, index, (*parameter, field), look);
+            }
+        }
+        conduits
+    }
+
+    fn vary(
+        &mut self,
+        mesh: &Mesh,
+        fracture: usize,
+        (parameter, entry): (HydraulicParameter, &FieldEntry),
+        look: &mut Look<'_>,
+    ) {
+        let facets = 0..mesh.facets.elements.len();
+        let own: Vec<usize> = facets
+            .filter(|&facet| mesh.facets.fracture[facet] as usize == fracture)
+            .collect();
+        let middle = |&facet: &usize| {
+            let corners = mesh.corners(&mesh.facets.elements, facet);
+            corners.iter().sum::<DVec3>() / corners.len() as f64
+        };
+        let places: Vec<DVec3> = own.iter().map(middle).collect();
+        let Some(seen) = look.at(entry, &places, &[0.0]) else {
+            return;
+        };
+        let set = |conduit: &mut Conduit, value: f64| {
+            if let Conduit::Open(hydraulic) = conduit {
+                parameter.set(hydraulic, value);
+            }
+        };
+        set(&mut self.of_fractures[fracture], seen.mean);
+        for (&facet, &place) in own.iter().zip(&places) {
+            set(&mut self.of_facets[facet], entry.field.at(place, 0.0));
+        }
+    }
+}
