@@ -20,8 +20,8 @@ impl Conduits {
     /// Those of a mesh: facets have the values in their middle, fractures the mean.
     ///
     /// # Errors
-    /// Values that are out of their range, or that a table or samples do not reach, and a fluid that
-    /// no fracture conducts; `place` is where the scene speaks of it.
+    /// Values that are out of their range, or that a table or samples do not reach, and a fluid
+    /// that no fracture conducts; `place` is where the scene speaks of it.
     pub(crate) fn of(
         scene: &Scene,
         mesh: &Mesh,
