@@ -1,6 +1,6 @@
 //! Reads what a network is to be made of.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use kluft_keys::Document;
@@ -28,6 +28,8 @@ pub(super) struct Overrides {
 pub(super) struct Input {
     pub(super) title: String,
     pub(super) domain: Domain,
+    /// The geometry of the rock, if it is not all of the box.
+    pub(super) body: Option<PathBuf>,
     pub(super) sizes: CellSizes,
     pub(super) sets: Vec<Set>,
     pub(super) given: Vec<InputFracture>,
@@ -102,6 +104,7 @@ impl Input {
         Ok(Self {
             title: "Fracture network".into(),
             domain,
+            body: None,
             sizes: sizes(h, None, None, overrides),
             sets,
             given,
@@ -194,7 +197,7 @@ fn read_description(
     defects: &mut Vec<Defect>,
 ) -> Option<Input> {
     let setting = check_conditions(source, root);
-    let domain = read_domain(root, overrides.domain);
+    let (domain, body) = read_domain(root, folder, overrides.domain);
     let sizes = read_sizes(root, overrides);
     let seed = read_seed(root).unwrap_or(0);
     root.require("fracture_set");
@@ -223,6 +226,7 @@ fn read_description(
     Some(Input {
         title: root.text("title").unwrap_or("Fracture network").to_owned(),
         domain: domain?,
+        body,
         sizes: sizes?,
         sets,
         given,
@@ -232,13 +236,18 @@ fn read_description(
     })
 }
 
-/// The domain of the description, or that of the command line in its place.
-fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain> {
+/// The domain of the description, or that of the command line in its place, and the geometry of
+/// the rock in it.
+fn read_domain(
+    root: &Section<'_, '_>,
+    folder: &Path,
+    wished: Option<Domain>,
+) -> (Option<Domain>, Option<PathBuf>) {
     if wished.is_none() {
         root.require("domain");
     }
     let Some(section) = root.section("domain") else {
-        return wished;
+        return (wished, None);
     };
     section.require("low");
     section.require("high");
@@ -249,8 +258,14 @@ fn read_domain(root: &Section<'_, '_>, wished: Option<Domain>) -> Option<Domain>
         let remedy = "high must be above low in every coordinate";
         section.refuse("high", "the domain has no volume".into(), remedy);
     }
+    let body = section.text("geometry").map(|name| folder.join(name));
+    if let Some(missing) = body.as_ref().filter(|body| !body.is_file()) {
+        let problem = format!("there is no file {}", missing.display());
+        let remedy = "give the path of a gmsh geometry (.geo), relative to this description";
+        section.refuse("geometry", problem, remedy);
+    }
     section.finish();
-    wished.or(domain.filter(|_| is_box))
+    (wished.or(domain.filter(|_| is_box)), body)
 }
 
 fn read_sizes(root: &Section<'_, '_>, overrides: &Overrides) -> Option<CellSizes> {

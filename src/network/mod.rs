@@ -1,6 +1,7 @@
 //! From a list of fractures or a description of random sets to a geometry and a scene.
 
 mod apertures;
+mod body;
 mod input;
 mod keys;
 mod passages;
@@ -18,6 +19,7 @@ use kluft_network::{Domain, Grouping, Network, write_geo};
 use crate::failure::Failure;
 use crate::report::{Report, Verbosity};
 use crate::run::{RunOptions, run};
+use body::included;
 use input::{Input, Overrides};
 use record::NetworkRecord;
 use scene::MADE;
@@ -119,7 +121,10 @@ fn write(
             write_atomically(path, |out| out.write_all(text.as_bytes()))
         })
     };
-    write_text(&geometry, &write_geo(network, options.grouping, &title))?;
+    let body = input.body.as_ref();
+    let body = body.map(|body| included(body, folder.path())).transpose()?;
+    let text = write_geo(network, options.grouping, &title, body.as_deref());
+    write_text(&geometry, &text)?;
     let scene = scene::text(input, network, options.grouping, &geometry);
     write_text(SCENE, &scene)?;
     let record = serde_json::to_string_pretty(record).unwrap_or_default();

@@ -60,9 +60,9 @@ pub(super) fn text(input: &Input, network: &Network, grouping: Grouping, geometr
         sizes.h_intersection
     );
     let is_rigid = input.fluid == FluidUse::InRigidRock;
-    if is_rigid {
+    if is_rigid && input.body.is_none() {
         out.push_str(SURFACES);
-    } else if !input.passages.has("rock") {
+    } else if !is_rigid && !input.passages.has("rock") {
         out.push_str(ROCK);
     }
     for (head, passage) in &input.passages.0 {

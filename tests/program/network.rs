@@ -267,6 +267,83 @@ fn every_form_of_a_geometry_has_the_same_fractures() {
 }
 
 /// gmsh looks for the end of a block that it skips in names, too.
+/// A hillside with a tunnel through it, a box of 10 m before.
+const HILLSIDE: &str = r#"
+SetFactory("OpenCASCADE");
+Point(1) = {0, 0, 0}; Point(2) = {10, 0, 0}; Point(3) = {10, 0, 6}; Point(4) = {0, 0, 10};
+For i In {1 : 4}
+  Line(i) = {i, (i % 4) + 1};
+EndFor
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Extrude {0, 10, 0} { Surface{1}; }
+Cylinder(2) = {5, -1, 3, 0, 12, 0, 1.5};
+BooleanDifference{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+Physical Volume("hill") = Volume{:};
+"#;
+
+const IN_A_HILLSIDE: &str = r#"
+[domain]
+low = [0, 0, 0]
+high = [10, 10, 10]
+geometry = "hillside.geo"
+[mesh]
+h = 1.5
+h_fracture = 0.7
+[fracture_set.given]
+list = "given.csv"
+aperture = 1e-3
+normal_stiffness = 2e10
+shear_stiffness = 1e10
+[boundary.bottom]
+symmetry = true
+[boundary.left]
+symmetry = true
+[boundary.right]
+symmetry = true
+[boundary.front]
+symmetry = true
+[boundary.slope]
+where = "z > 5.9"
+pressure = 1e6
+"#;
+
+/// The level fracture loses the strip in the tunnel, the upright one what is above the slope and in
+/// the tunnel's way; they cross.
+#[test]
+fn fractures_are_cut_to_a_geometry_with_a_cavity_and_a_slope() {
+    let folder = scratch();
+    let given = "name, shape, x, y, z, dip, dip_direction, length, width\n\
+                 level, rectangle, 5, 5, 3.5, 0, 90, 30, 30\n\
+                 upright, rectangle, 5, 7, 5, 90, 180, 30, 30\n";
+    fs::create_dir(folder.path().join("made")).expect("a folder");
+    for (name, text) in [
+        ("given.csv", given),
+        ("hillside.geo", HILLSIDE),
+        ("hill.toml", IN_A_HILLSIDE),
+    ] {
+        fs::write(folder.path().join(name), text).expect("the input is written");
+    }
+    let run = make(folder.path(), "hill.toml", &["--run"]);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let found = summary(&folder.path().join("made/out"));
+    let area = |name: &str| found["fractures"][name]["area"].as_f64().expect("an area");
+    let chord = 2.0 * (1.5_f64.powi(2) - 0.5_f64.powi(2)).sqrt();
+    let tunnel = std::f64::consts::PI * 1.5_f64.powi(2);
+    assert!((area("level") - 10.0 * (10.0 - chord)).abs() < 1e-6);
+    // Edges along the tunnel are straight in the mesh.
+    let upright = area("upright");
+    assert!(
+        (0.0..0.03 * tunnel).contains(&(upright - (80.0 - tunnel))),
+        "{upright}"
+    );
+    let missing = IN_A_HILLSIDE.replace("hillside", "hill");
+    fs::write(folder.path().join("hill.toml"), missing).expect("the input is written");
+    let run = make(folder.path(), "hill.toml", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(run.err.contains("there is no file"), "{}", run.err);
+}
+
 #[test]
 fn names_may_be_words_of_gmsh() {
     let list = LIST.replace("wall", "EndIf").replace("oval", "Else");

@@ -91,6 +91,13 @@ pub static DOMAIN: KeySection = KeySection {
             example: "[10, 10, 10]",
             says: "Its highest corner",
         },
+        Key {
+            name: "geometry",
+            kind: Kind::Path,
+            need: Need::Without("the box"),
+            example: "\"tunnel.geo\"",
+            says: "A gmsh geometry by OpenCASCADE, relative to the description, whose volumes are the rock inside the box: cavities, slopes, topography",
+        },
     ],
     also: None,
 };

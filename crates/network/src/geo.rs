@@ -30,11 +30,17 @@ pub enum Grouping {
 /// within less finds nothing (m).
 const SMALLEST_BOX: f64 = 1e-6;
 
-/// The geometry of a network, with `title` in its first line.
-pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
+/// The geometry of a network, with `title` in its first line. The rock is the box of the domain, or
+/// the volumes of another geometry, a path as gmsh reads it; there OpenCASCADE cuts the polygons.
+pub fn write_geo(network: &Network, grouping: Grouping, title: &str, body: Option<&str>) -> String {
     let shared = long_intersections(network);
+    let has_fractures = !network.fractures.is_empty();
     let holds = |condition: &str| match condition {
-        "fractures" => !network.fractures.is_empty(),
+        "fractures" => has_fractures,
+        "box" => body.is_none(),
+        "body" => body.is_some(),
+        "fractures in box" => has_fractures && body.is_none(),
+        "fractures in body" => has_fractures && body.is_some(),
         "intersections" => !shared.is_empty(),
         _ => true,
     };
@@ -43,6 +49,7 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
     let arranged =
         |out: &mut String, is_split: bool| surfaces(out, &network.arrangement, &lines, is_split);
     let value = |name: &str| match name {
+        "body" => body.unwrap_or_default().to_owned(),
         "title" => title.replace(char::is_control, " "),
         "h" => format!("{:?}", sizes.h),
         "h_fracture" => format!("{:?}", sizes.h_fracture),
@@ -82,7 +89,7 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str) -> String {
             let all = shared.iter();
             text_of(|out| rows(out, all.map(|shared| along(shared, sizes.h_intersection))))
         }
-        "groups" => text_of(|out| groups(out, network, grouping)),
+        "groups" => text_of(|out| groups(out, network, grouping, body.is_none())),
         _ => String::new(),
     };
     fill(include_str!("network.geo"), holds, value)
@@ -145,9 +152,14 @@ fn rows(out: &mut String, rows: impl Iterator<Item = Row>) -> fmt::Result {
 }
 
 /// The physical surfaces.
-fn groups(out: &mut String, network: &Network, grouping: Grouping) -> fmt::Result {
+fn groups(out: &mut String, network: &Network, grouping: Grouping, is_box: bool) -> fmt::Result {
     for (face, ..) in FACES {
-        writeln!(out, "Physical Surface(\"{face}\") = {face}();")?;
+        let group = format!("Physical Surface(\"{face}\") = {face}();");
+        match is_box {
+            true => writeln!(out, "{group}")?,
+            // The faces of a body need not lie on those of the box around it.
+            false => writeln!(out, "If (#{face}() > 0)\n  {group}\nEndIf")?,
+        }
     }
     if grouping == Grouping::Fracture {
         for (index, fracture) in network.fractures.iter().enumerate() {
@@ -237,7 +249,7 @@ mod tests {
 
     #[test]
     fn every_fracture_has_its_group_and_its_check() {
-        let geo = write_geo(&network(), Grouping::Fracture, "three");
+        let geo = write_geo(&network(), Grouping::Fracture, "three", None);
         for name in ["a", "b", "c", "top", "left"] {
             assert_eq!(
                 geo.matches(&format!("Physical Surface(\"{name}\")"))
@@ -253,7 +265,7 @@ mod tests {
 
     #[test]
     fn sets_gather_their_fractures() {
-        let geo = write_geo(&network(), Grouping::Set, "three");
+        let geo = write_geo(&network(), Grouping::Set, "three", None);
         assert!(geo.contains("Physical Surface(\"east\") = {piece_0(), piece_1()};"));
         assert!(geo.contains("Physical Surface(\"steep\") = {piece_2()};"));
     }

@@ -3,11 +3,24 @@ DefineConstant[
   h = {<<h>>, Name "h"},  // cell size away from fractures, m
   h_fracture = {<<h_fracture>>, Name "h_fracture"},  // cell size on fractures, m
   h_intersection = {<<h_intersection>>, Name "h_intersection"},  // cell size where fractures meet, m
+//: box
   growth = {<<growth>>, Name "growth"},  // of the cell size, per metre away from them
   // How fractures are given to gmsh: 0, whole, with the lines where others meet them; 1, split along
   // closed loops of these lines; 2, as polygons that OpenCASCADE is to cut.
   form = {0, Name "form"}
+//: body
+  growth = {<<growth>>, Name "growth"}  // of the cell size, per metre away from them
+//: always
 ];
+//: body
+
+// The rock: all volumes of a geometry.
+SetFactory("OpenCASCADE");
+Include "<<body>>";
+Delete Physicals;
+x() = {}; y() = {}; z() = {}; found() = {}; fractures() = {};
+rock() = Volume{:};
+//: always
 
 low() = <<low>>;
 high() = <<high>>;
@@ -17,9 +30,12 @@ area() = <<areas>>;
 names() = Str(<<names>>);
 //: always
 
+//: box
 If (form == 2)
 SetFactory("OpenCASCADE");
+//: always
 eps = <<eps>>;
+//: box
 Box(1) = {low(0), low(1), low(2), high(0) - low(0), high(1) - low(1), high(2) - low(2)};
 //: fractures
 
@@ -43,11 +59,26 @@ For i In {0 : count - 1}
   Curve Loop(l) = edges();
   s = news;
   Plane Surface(s) = {l};
+//: fractures in box
   fractures() += s;
+//: fractures in body
+  // What is left of it in the rock.
+  cut() = BooleanIntersection{ Surface{s}; Delete; }{ Volume{rock()}; };
+  area(i) = 0;
+  For k In {0 : #cut() - 1}
+    m = Mass Surface{cut(k)};
+    area(i) += m;
+  EndFor
+  fractures() += cut();
+//: fractures
 EndFor
 
 // Make the mesh conform to all fractures, and to the lines and points where they meet.
+//: fractures in box
 BooleanFragments{ Volume{1}; Delete; }{ Surface{fractures()}; Delete; }
+//: fractures in body
+BooleanFragments{ Volume{rock()}; Delete; }{ Surface{fractures()}; Delete; }
+//: fractures
 
 // The pieces of fracture i are the surfaces with all corners in its plane and their centre within
 // its outline.
@@ -104,6 +135,7 @@ front() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y0 + e
 back() = Surface In BoundingBox {x0 - eps, y1 - eps, z0 - eps, x1 + eps, y1 + eps, z1 + eps};
 bottom() = Surface In BoundingBox {x0 - eps, y0 - eps, z0 - eps, x1 + eps, y1 + eps, z0 + eps};
 top() = Surface In BoundingBox {x0 - eps, y0 - eps, z1 - eps, x1 + eps, y1 + eps, z1 + eps};
+//: box
 Else
 Geometry.AutoCoherence = 0;
 <<points>>
@@ -113,6 +145,7 @@ Else
 <<split>>
 EndIf
 EndIf
+//: always
 
 Physical Volume("rock") = Volume{:};
 <<groups>>

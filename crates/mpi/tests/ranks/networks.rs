@@ -40,7 +40,7 @@ fn made(seed: u64, folder: &Path) -> bool {
     let Ok(network) = Network::build(domain, sizes, given) else {
         return false;
     };
-    let geometry = write_geo(&network, Grouping::Fracture, "a random network");
+    let geometry = write_geo(&network, Grouping::Fracture, "a random network", None);
     fs::write(folder.join("network.geo"), geometry).expect("written");
     let laws = ["logarithmic", "hyperbolic", "contact"];
     let mut scene = String::from(
