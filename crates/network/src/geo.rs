@@ -59,17 +59,8 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str, body: Optio
         "high" => List(&domain.high.to_array()).to_string(),
         "eps" => format!("{:?}", (1e3 * domain.tolerance()).max(SMALLEST_BOX)),
         "count" => network.fractures.len().to_string(),
-        "areas" => {
-            let areas = network.fractures.iter().map(|one| one.polygon.area());
-            List(&areas.collect::<Vec<f64>>()).to_string()
-        }
-        "names" => {
-            let names = network
-                .fractures
-                .iter()
-                .map(|one| format!("\"{}\"", one.name));
-            names.collect::<Vec<String>>().join(", ")
-        }
+        "areas" => areas(network),
+        "names" => names(network),
         "corners" => text_of(|out| corners(out, network)),
         "points" => text_of(|out| points(out, &network.arrangement, &lines)),
         "whole" => text_of(|out| arranged(out, false)),
@@ -93,6 +84,17 @@ pub fn write_geo(network: &Network, grouping: Grouping, title: &str, body: Optio
         _ => String::new(),
     };
     fill(include_str!("network.geo"), holds, value)
+}
+
+fn areas(network: &Network) -> String {
+    let areas = network.fractures.iter().map(|one| one.polygon.area());
+    List(&areas.collect::<Vec<f64>>()).to_string()
+}
+
+fn names(network: &Network) -> String {
+    let fractures = network.fractures.iter();
+    let names = fractures.map(|one| format!("\"{}\"", one.name));
+    names.collect::<Vec<String>>().join(", ")
 }
 
 /// What is written, without the end of its last line.
