@@ -1,5 +1,7 @@
 //! How the fractures of a mesh conduct.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::Conduit;
@@ -30,6 +32,7 @@ impl Conduits {
     ) -> Result<Self, Vec<Defect>> {
         let mut look = Look::of(scene, decisions);
         let conduits = Self::looked_at(mesh, bound, &mut look);
+        look_at_pressures(mesh, bound, &mut look);
         let mut defects = look.defects;
         let is_sealed = |conduit: &Conduit| *conduit == Conduit::Sealed;
         if conduits.of_fractures.iter().all(is_sealed) {
@@ -96,4 +99,40 @@ impl Conduits {
             set(&mut self.of_facets[facet], entry.field.at(place, 0.0));
         }
     }
+}
+
+/// Looks at pressures that drive the fluid and vary, at the nodes where they may act.
+fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
+    let facets = 0..mesh.facets.elements.len();
+    let mut is_fractured = vec![false; mesh.nodes.len()];
+    for &node in &mesh.facets.elements.nodes {
+        is_fractured[node as usize] = true;
+    }
+    for (index, entry) in bound.fractures.iter().enumerate() {
+        let Some(field) = entry.value.given_field.as_deref() else {
+            continue;
+        };
+        let own = facets.clone();
+        let own = own.filter(|&facet| mesh.facets.fracture[facet] as usize == index);
+        let nodes = own.flat_map(|facet| mesh.facets.elements.nodes_of(facet));
+        look.at(field, &places(mesh, nodes), &[0.0]);
+    }
+    for entry in &bound.boundaries {
+        let Some(field) = &entry.value.fluid_field else {
+            continue;
+        };
+        let boundary = mesh.boundaries.iter().find(|own| own.name == entry.name);
+        let nodes = boundary.iter().flat_map(|own| &own.elements.nodes);
+        let nodes = nodes.filter(|&&node| is_fractured[node as usize]);
+        let places = places(mesh, nodes);
+        if !places.is_empty() {
+            look.at(field, &places, &[0.0]);
+        }
+    }
+}
+
+fn places<'a>(mesh: &Mesh, nodes: impl Iterator<Item = &'a u32>) -> Vec<DVec3> {
+    let nodes: BTreeSet<u32> = nodes.copied().collect();
+    let places = nodes.into_iter().map(|node| mesh.nodes[node as usize]);
+    places.collect()
 }

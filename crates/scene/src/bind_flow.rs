@@ -2,7 +2,7 @@
 
 use kluft_keys::section_head;
 use kluft_mesh::{Defect, Mesh};
-use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
+use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, LineShare};
 
 use crate::bind_conduits::Conduits;
 use crate::cases::Bound;
@@ -106,7 +106,7 @@ fn on_boundaries(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondi
         Some(FlowCondition {
             name: section_head("boundary", &entry.name),
             place: FlowPlace::Boundary(boundary),
-            drive: entry.value.fluid?,
+            drive: entry.value.fluid.clone()?,
             case: cases.of_condition(index),
         })
     });
@@ -117,14 +117,11 @@ fn on_boundaries(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondi
 fn in_fractures(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> {
     let entries = bound.fractures.iter().zip(&mesh.fractures).enumerate();
     let conditions = entries.filter_map(|(index, (entry, name))| {
-        let pressure = entry.value.given_pressure?;
+        let pressure = entry.value.given_pressure.clone()?;
         Some(FlowCondition {
             name: section_head("fracture", name),
             place: FlowPlace::Fracture(index),
-            drive: FlowDrive::Pressure(Profile {
-                value: pressure,
-                ..Profile::default()
-            }),
+            drive: FlowDrive::Pressure(pressure),
             case: cases.of_fracture(index),
         })
     });

@@ -28,6 +28,8 @@ pub struct BoundaryEntry {
     pub springs: Option<SpringEntry>,
     /// What drives the fluid there.
     pub fluid: Option<FlowDrive>,
+    /// Its fluid pressure, if it varies.
+    pub fluid_field: Option<FieldEntry>,
     /// How all change with time.
     pub history: Option<LoadHistory>,
 }
@@ -79,7 +81,9 @@ impl BoundaryEntry {
     /// Values of its load and its springs that vary.
     pub(crate) fn fields(&self) -> impl Iterator<Item = &FieldEntry> {
         let load = self.varying_load().map_or(&[][..], |load| &load.fields);
-        load.iter().chain(self.spring_fields())
+        load.iter()
+            .chain(self.spring_fields())
+            .chain(&self.fluid_field)
     }
 
     /// Values of its springs that vary.
@@ -106,7 +110,9 @@ pub struct FractureEntry {
     /// What leaks off from it into the rock; none if nothing does.
     pub leakoff: Option<Leakoff>,
     /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
-    pub given_pressure: Option<f64>,
+    pub given_pressure: Option<Field>,
+    /// The same, if it varies.
+    pub given_field: Option<Box<FieldEntry>>,
     /// How the fluid pressure changes with time.
     pub history: Option<LoadHistory>,
 }
@@ -116,7 +122,9 @@ impl FractureEntry {
     pub(crate) fn varying(&self) -> impl Iterator<Item = &FieldEntry> {
         let law = self.fields.iter().map(|(_, field)| field);
         let hydraulic = self.hydraulic_fields.iter().map(|(_, field)| field);
-        law.chain(hydraulic).chain(self.varying_pressure.as_deref())
+        law.chain(hydraulic)
+            .chain(self.varying_pressure.as_deref())
+            .chain(self.given_field.as_deref())
     }
 }
 
@@ -142,7 +150,7 @@ pub struct FixedPointEntry {
 
 /// Reads what acts on a part of the outer surface; rigid rock has no use for loads and supports.
 pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Option<BoundaryEntry> {
-    let fluid = read_boundary_fluid(section, setting);
+    let (fluid, fluid_field) = read_boundary_fluid(section, setting);
     let (load, support, springs) = match setting.is_rigid() {
         true => (None, None, None),
         false => (
@@ -185,6 +193,7 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
         support,
         springs,
         fluid,
+        fluid_field,
         history: read_history(section, setting.clock, scaled),
     })
 }

@@ -1,11 +1,12 @@
 //! What a scene says of a fluid: what it is, how fractures conduct it, what drives it.
 
 use glam::DVec3;
-use kluft_solver::{Conduit, FlowDrive, Fluid, Leakoff, Profile};
+use kluft_solver::{Conduit, Field, FlowDrive, Fluid, Leakoff, Profile};
 
+use crate::field::FieldEntry;
 use crate::history::LoadHistory;
 use crate::load::{Scaled, read_history};
-use crate::profile::read_profile;
+use crate::profile::{read_profile, read_profile_or_field};
 use crate::reader::Section;
 use crate::setting::{FluidUse, Setting};
 
@@ -179,7 +180,9 @@ fn read_points(section: &Section<'_, '_>) -> Option<SourcePlace> {
 pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option<SourceEntry> {
     refuse_without_fluid(section, setting, &["rate", "pressure"]);
     let place = read_place(section);
-    let drive = read_drive(section, ["pressure", "rate"]);
+    let drive = read_drive(section, ["pressure", "rate"], |section, key| {
+        Field::constant(section.number(key).unwrap_or(0.0))
+    });
     if drive.is_none() {
         section.require("rate");
     }
@@ -199,13 +202,27 @@ pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option
 pub(crate) fn read_boundary_fluid(
     section: &Section<'_, '_>,
     setting: Setting,
-) -> Option<FlowDrive> {
+) -> (Option<FlowDrive>, Option<FieldEntry>) {
     refuse_without_fluid(section, setting, &["fluid_pressure", "fluid_inflow"]);
-    read_drive(section, ["fluid_pressure", "fluid_inflow"])
+    let mut field = None;
+    let drive = read_drive(
+        section,
+        ["fluid_pressure", "fluid_inflow"],
+        |section, key| {
+            let (pressure, entry) = read_profile_or_field(section, key);
+            field = entry;
+            pressure
+        },
+    );
+    (drive, field)
 }
 
 /// A pressure or a rate.
-fn read_drive(section: &Section<'_, '_>, [pressure, rate]: [&'static str; 2]) -> Option<FlowDrive> {
+fn read_drive(
+    section: &Section<'_, '_>,
+    [pressure, rate]: [&'static str; 2],
+    read_pressure: impl FnOnce(&Section<'_, '_>, &'static str) -> Field,
+) -> Option<FlowDrive> {
     if section.has(pressure) && section.has(rate) {
         let problem = format!("both {pressure} and {rate} are given");
         let remedy = "keep one: where the pressure is given the rate follows from it";
@@ -215,14 +232,7 @@ fn read_drive(section: &Section<'_, '_>, [pressure, rate]: [&'static str; 2]) ->
         return section.number(rate).map(FlowDrive::Rate);
     }
     section.number(rate);
-    let given: Profile = match pressure {
-        "fluid_pressure" => read_profile(section, pressure),
-        constant => Profile {
-            value: section.number(constant).unwrap_or(0.0),
-            ..Profile::default()
-        },
-    };
-    Some(FlowDrive::Pressure(given))
+    Some(FlowDrive::Pressure(read_pressure(section, pressure)))
 }
 
 /// Reads what leaks off from a fracture; none if nothing does.

@@ -1,7 +1,7 @@
 //! What a scene may say of a fracture.
 
 use kluft_keys::Range;
-use kluft_solver::{Conduit, Fracture, LawParameter};
+use kluft_solver::{Conduit, Field, Fracture, LawParameter};
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, HydraulicAperture, Tension};
 
 use crate::conditions::FractureEntry;
@@ -45,8 +45,7 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
     let has_use = is_open || !setting.is_rigid();
     let given = match (has_use, is_open) {
         (false, _) => None,
-        // The flow has it, which takes one pressure for all of a fracture.
-        (true, true) => section.number("fluid_pressure").map(Value::Number),
+        (true, true) => read_value(section, "fluid_pressure", InTime::Never),
         (true, false) => read_value(section, "fluid_pressure", InTime::By(setting.clock)),
     };
     let (fluid_pressure, varying_pressure) = match given {
@@ -69,11 +68,16 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
             },
         },
         fields: fields.0,
-        varying_pressure,
+        given_pressure: match (&varying_pressure, fluid_pressure) {
+            _ if !is_open => None,
+            (Some(entry), _) => Some(entry.field.clone()),
+            (None, pressure) => pressure.map(Field::constant),
+        },
+        given_field: varying_pressure.clone().filter(|_| is_open),
+        varying_pressure: varying_pressure.filter(|_| !is_open),
         leakoff: read_leakoff(section, conduit),
         conduit,
         hydraulic_fields,
-        given_pressure: fluid_pressure.filter(|_| is_open),
         history,
     })
 }

@@ -1,9 +1,9 @@
 //! Reads the stress before any load.
 
-use kluft_solver::{Field, InitialStress};
+use kluft_solver::InitialStress;
 
-use crate::field::{FieldEntry, InTime, Value, read_field};
-use crate::profile::read_profile;
+use crate::field::FieldEntry;
+use crate::profile::read_profile_or_field;
 use crate::reader::Section;
 
 /// Stress before any load.
@@ -18,24 +18,9 @@ pub struct InitialStressEntry {
 pub(crate) fn read_initial_stress(section: Section<'_, '_>) -> InitialStressEntry {
     let mut fields = Vec::new();
     let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| {
-        let varies = section.is_table(name)
-            && section.section(name).is_some_and(|component| {
-                let forms = ["table", "expression", "file"];
-                forms.into_iter().any(|form| component.has(form))
-            });
-        if !varies {
-            return Field::from(read_profile(&section, name));
-        }
-        let quantity = section.quantity(name);
-        let value = section
-            .section(name)
-            .and_then(|component| read_field(component, (name, quantity), InTime::Never));
-        let Some(Value::Varying(entry)) = value else {
-            return Field::default();
-        };
-        let field = entry.field.clone();
-        fields.push(*entry);
-        field
+        let (component, entry) = read_profile_or_field(&section, name);
+        fields.extend(entry);
+        component
     });
     section.finish();
     InitialStressEntry {

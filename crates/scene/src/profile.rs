@@ -1,7 +1,8 @@
 //! Values that are constant, or linear in the elevation.
 
-use kluft_solver::Profile;
+use kluft_solver::{Field, Profile};
 
+use crate::field::{FieldEntry, InTime, Value, read_field};
 use crate::reader::Section;
 
 /// Reads a value; 0 if the key is not there.
@@ -24,4 +25,27 @@ pub(crate) fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Pro
     };
     profile.finish();
     read
+}
+
+/// Reads a number, a profile, or a value that varies otherwise but not with time, which is kept
+/// beside.
+pub(crate) fn read_profile_or_field(
+    section: &Section<'_, '_>,
+    name: &'static str,
+) -> (Field, Option<FieldEntry>) {
+    let varies = section.is_table(name)
+        && section.section(name).is_some_and(|value| {
+            let forms = ["table", "expression", "file"];
+            forms.into_iter().any(|form| value.has(form))
+        });
+    if !varies {
+        return (Field::from(read_profile(section, name)), None);
+    }
+    let quantity = section.quantity(name);
+    let value = section.section(name);
+    let value = value.and_then(|value| read_field(value, (name, quantity), InTime::Never));
+    match value {
+        Some(Value::Varying(entry)) => (entry.field.clone(), Some(*entry)),
+        Some(Value::Number(_)) | None => (Field::default(), None),
+    }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use kluft_mesh::{Defect, Mesh, nearest};
-use kluft_solver::{Conduit, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
+use kluft_solver::{Conduit, Field, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
 use lie_core::{Conduction, HydraulicAperture};
 
 use crate::cases::Bound;
@@ -54,7 +54,7 @@ impl Drilling<'_> {
         let condition = |place: FlowPlace| FlowCondition {
             name: entry.name.clone(),
             place,
-            drive: entry.value.drive,
+            drive: entry.value.drive.clone(),
             case: self.case,
         };
         match &entry.value.place {
@@ -202,14 +202,14 @@ impl Drilling<'_> {
                 node: crossing.node,
                 radius,
             },
-            drive: match entry.value.drive {
+            drive: match &entry.value.drive {
                 FlowDrive::Rate(rate) => FlowDrive::Rate(rate * weight / whole),
-                leakoff @ FlowDrive::Leakoff(_) => leakoff,
-                FlowDrive::Pressure(given) => FlowDrive::Pressure(Profile {
+                leakoff @ FlowDrive::Leakoff(_) => leakoff.clone(),
+                FlowDrive::Pressure(given) => FlowDrive::Pressure(Field::from(Profile {
                     per_metre: self.weight,
                     at: ends[0].z,
-                    ..given
-                }),
+                    value: given.at(ends[0], 0.0),
+                })),
             },
             case: self.case,
         };

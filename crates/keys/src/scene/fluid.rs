@@ -1,6 +1,6 @@
 //! What flows in fractures, and where it is driven.
 
-use super::field::varied;
+use super::field::{FIELD, varied};
 use super::shared::{GROWS_ONCE, INITIAL, INITIAL_GRADIENT};
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
@@ -178,9 +178,9 @@ pub static SOURCE: KeySection = KeySection {
 /// A pressure on a boundary that is linear in the elevation.
 pub static FLUID_PROFILE: KeySection = KeySection {
     pattern: "[boundary.NAME.fluid_pressure]",
-    says: LINEAR_PRESSURE,
+    says: "A pressure `value + per_metre (z - at)` at the elevation z, or one that varies otherwise",
     keys: &PROFILE_KEYS,
-    also: None,
+    also: Some(&FIELD),
 };
 
 /// A pressure before any load that is linear in the elevation.
@@ -223,7 +223,7 @@ pub(super) const BOUNDARY_PRESSURE: Key = Key {
     kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &FLUID_PROFILE),
     need: Need::Without("closed to the fluid"),
     example: "1e6",
-    says: "Pressure of the fluid where fractures meet the surface: constant, or linear in the elevation",
+    says: "Pressure of the fluid where fractures meet the surface: constant, linear in the elevation, or any value that varies but not with time",
 };
 
 /// What enters the fractures through a part of the outer surface.

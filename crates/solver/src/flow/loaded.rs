@@ -149,8 +149,7 @@ impl<'s, 'a> Loaded<'s, 'a> {
     /// The potential that a condition gives at a row (Pa).
     pub(super) fn driven(&self, condition: &FlowCondition, row: usize) -> f64 {
         let node = self.topology.nodes.node[row] as usize;
-        let elevation = self.topology.mesh.nodes[node].z;
-        let pressure = places::profile(condition).at_elevation(elevation);
+        let pressure = places::given_pressure(condition, self.topology.mesh.nodes[node]);
         self.load.factor(condition.case) * pressure - self.weight(row)
     }
 

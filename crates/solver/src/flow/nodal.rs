@@ -38,12 +38,12 @@ pub(super) fn conditions(
     let pairs = places.iter().zip(conditions).enumerate();
     let of = |(index, (place, condition)): (usize, (&Place, &FlowCondition))| NodalCondition {
         condition: index,
-        nodal: nodal(place, condition.drive, &conductance.transmissivity),
+        nodal: nodal(place, &condition.drive, &conductance.transmissivity),
     };
     pairs.map(of).collect()
 }
 
-fn nodal(place: &Place, drive: FlowDrive, transmissivity: &[f64]) -> Nodal {
+fn nodal(place: &Place, drive: &FlowDrive, transmissivity: &[f64]) -> Nodal {
     match (place, drive.is_pressure()) {
         (Place::Rows(shares), false) if matches!(drive, FlowDrive::Leakoff(_)) => {
             let runs = shares.chunk_by(|a, b| a.row == b.row);
@@ -73,7 +73,7 @@ fn nodal(place: &Place, drive: FlowDrive, transmissivity: &[f64]) -> Nodal {
 /// The rate that a condition drives under a load at the end of an increment of some duration (s;
 /// none in steady flow), in m^3/s, or in m/s if it is one per area; 0 if it gives a pressure.
 pub(super) fn rate(entry: &FlowCondition, load: &Load, duration: Option<f64>) -> f64 {
-    match (entry.drive, duration) {
+    match (&entry.drive, duration) {
         (FlowDrive::Rate(rate), _) => load.factor(entry.case) * rate,
         (FlowDrive::Leakoff(leakoff), Some(duration)) => {
             leakoff.mean_rate(load.time - duration, load.time)

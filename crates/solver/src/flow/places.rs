@@ -1,5 +1,6 @@
 //! Where conditions act, whatever the apertures.
 
+use glam::DVec3;
 use kluft_mesh::{Defect, Mesh};
 use lie_core::FacetFlow;
 
@@ -7,7 +8,7 @@ use super::conductance::Conductance;
 use super::edges;
 use super::numbering::FlowNodes;
 use super::wells::{self, Borehole};
-use crate::problem::{Flow, FlowCondition, FlowDrive, FlowPlace, LineShare, Profile};
+use crate::problem::{Flow, FlowCondition, FlowDrive, FlowPlace, LineShare};
 
 /// Where a condition acts.
 #[derive(Debug, Clone)]
@@ -171,9 +172,9 @@ fn contradictions(
                 giver[row] = Some(*condition);
                 continue;
             };
-            let x = mesh.nodes[nodes.node[row] as usize];
+            let x = &mesh.nodes[nodes.node[row] as usize];
             let [a, b] = [first, *condition].map(|index| &flow.conditions[index]);
-            let pressures = [a, b].map(|entry| profile(entry).at_elevation(x.z));
+            let pressures = [a, b].map(|entry| given_pressure(entry, *x));
             let agree = pressures[0] == pressures[1] && (a.case == b.case || pressures[0] == 0.0);
             if agree || told.contains(&(first, *condition)) {
                 continue;
@@ -192,10 +193,11 @@ fn contradictions(
     defects
 }
 
-/// The pressure that a condition gives; 0 for one that gives none.
-pub(super) fn profile(entry: &FlowCondition) -> Profile {
-    match entry.drive {
-        FlowDrive::Pressure(profile) => profile,
-        FlowDrive::Rate(_) | FlowDrive::Leakoff(_) => Profile::default(),
+/// The pressure that a condition gives at a position (m) at load factor 1 (Pa); 0 for one that
+/// gives none.
+pub(super) fn given_pressure(entry: &FlowCondition, position: DVec3) -> f64 {
+    match &entry.drive {
+        FlowDrive::Pressure(field) => field.at(position, 0.0),
+        FlowDrive::Rate(_) | FlowDrive::Leakoff(_) => 0.0,
     }
 }

@@ -1,7 +1,7 @@
 //! What flows in the fractures, and what drives it.
 
 use glam::DVec3;
-use kluft_field::Profile;
+use kluft_field::{Field, Profile};
 use kluft_mesh::Mesh;
 use lie_core::HydraulicAperture;
 
@@ -56,10 +56,10 @@ pub struct LineShare {
 }
 
 /// How the fluid is driven, at load factor 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum FlowDrive {
-    /// Its pressure (Pa), by elevation.
-    Pressure(Profile),
+    /// Its pressure (Pa), by position but not by time.
+    Pressure(Field),
     /// What enters in all (m^3/s); negative where it leaves.
     Rate(f64),
     /// What leaks off into the rock, whatever the load factor; nothing in steady flow.

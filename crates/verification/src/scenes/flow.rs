@@ -4,7 +4,8 @@ use glam::DVec3;
 use kluft_mesh::structured::{Patch, cells_of};
 use kluft_mesh::{Mesh, Shape, SurfaceRole};
 use kluft_solver::{
-    Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, FlowState, FlowSystem, Fluid, Load, Profile,
+    Conduit, Field, Flow, FlowCondition, FlowDrive, FlowPlace, FlowState, FlowSystem, Fluid, Load,
+    Profile,
 };
 use lie_core::{HydraulicAperture, Roughness};
 
@@ -62,10 +63,7 @@ pub fn on_side(mesh: &Mesh, name: &str, value: f64) -> FlowCondition {
     FlowCondition {
         name: name.into(),
         place: FlowPlace::Boundary(found.expect("a side")),
-        drive: FlowDrive::Pressure(Profile {
-            value,
-            ..Profile::default()
-        }),
+        drive: FlowDrive::Pressure(Field::constant(value)),
         case: 0,
     }
 }

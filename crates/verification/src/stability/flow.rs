@@ -4,7 +4,7 @@ use glam::DVec3;
 use kluft_chart::{Axis, Chart, Series};
 use kluft_mesh::structured::Patch;
 use kluft_mesh::{Mesh, Shape};
-use kluft_solver::{FlowDrive, Profile};
+use kluft_solver::{Field, FlowDrive};
 
 use crate::report::{Effort, Finding, Study, Table, largest, percent};
 use crate::scenes::flow::{ARMS, VISCOSITY, apertures, block, on_side, solved, star, water, well};
@@ -148,7 +148,7 @@ fn largest_angle(mesh: &Mesh) -> f64 {
 fn five_spot(n: usize) -> [f64; 2] {
     let surfaces = [Patch::new("joint", &|x| x[2] == 0.5)];
     let mesh = block(Shape::Hex8, ([n, n, 2], [1.0; 3]), &surfaces, |x| x);
-    let producer = FlowDrive::Pressure(Profile::default());
+    let producer = FlowDrive::Pressure(Field::constant(0.0));
     let corner = |at: [f64; 2], drive| well(&mesh, DVec3::new(at[0], at[1], 0.5), RADIUS, drive);
     let conditions = vec![
         corner([0.0, 0.0], FlowDrive::Rate(1e-6)),

@@ -16,7 +16,7 @@ use lie_core::{HydraulicAperture, Roughness};
 
 use crate::flow::{FlowState, FlowSystem};
 use crate::problem::{
-    Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Load, Profile, Schedule, Step,
+    Conduit, Field, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Load, Profile, Schedule, Step,
 };
 
 const VISCOSITY: f64 = 1e-3;
@@ -86,10 +86,7 @@ fn on_side(mesh: &Mesh, name: &str, drive: FlowDrive) -> FlowCondition {
 }
 
 fn pressure(value: f64) -> FlowDrive {
-    FlowDrive::Pressure(Profile {
-        value,
-        ..Profile::default()
-    })
+    FlowDrive::Pressure(Field::constant(value))
 }
 
 /// Time steps of equal length up to an end (s), all loads from the beginning.
