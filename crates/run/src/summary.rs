@@ -139,6 +139,9 @@ pub struct StepMeasures {
     pub converged: bool,
     /// What of the path of its loads no division of the step resolves, and where.
     pub unresolved: Option<String>,
+    /// Estimate of how far its increments lead the jumps off the path of the loads (m); 0 where the
+    /// path does not matter.
+    pub path_error: f64,
     /// Largest difference of a time step of the flow in one increment and in two, where no division
     /// of the step brings it to what is allowed.
     pub time_error: Option<f64>,
@@ -185,6 +188,7 @@ impl StepMeasures {
             closure_error: measure(|last| last.closure_error),
             converged: record.converged(),
             unresolved,
+            path_error: record.path_error,
             time_error: record.time_error,
         }
     }

@@ -104,6 +104,7 @@ pub fn add_accuracy(page: &mut Page, summary: &Summary) {
             "Estimated error of the stress in the rock: {:.2} % of it in the energy norm, for the sake of the mesh.",
             100.0 * summary.stress_error
         ));
+        add_path_error(page, &summary.steps);
     }
     if compared.is_empty() {
         return;
@@ -123,6 +124,17 @@ pub fn add_accuracy(page: &mut Page, summary: &Summary) {
         );
     }
     page.table(&table);
+}
+
+/// Adds how closely the increments follow the path of the loads, where it matters.
+fn add_path_error(page: &mut Page, steps: &[StepSummary]) {
+    let measures = steps.iter().filter_map(|step| step.measures.as_ref());
+    let error: f64 = measures.map(|measures| measures.path_error).sum();
+    if error > 0.0 {
+        page.text(&format!(
+            "Estimated error of the jumps for the sake of finite load increments, all steps added: {error:.2e} m."
+        ));
+    }
 }
 
 /// Adds the equivalent permeability of the body.

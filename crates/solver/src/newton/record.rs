@@ -82,6 +82,10 @@ pub struct StepRecord {
     pub outcome: StepOutcome,
     /// The part of it, if any, whose path is least resolved.
     pub unresolved: Option<UnresolvedPath>,
+    /// Estimate of how far its increments lead the jumps off the path of the loads (m): the sum
+    /// over its substeps of the largest difference of a jump in one increment and in two. 0 where
+    /// the path does not matter.
+    pub path_error: f64,
     /// Largest difference of a time step of its flow in one increment and in two that exceeds what
     /// is allowed, however short the step was divided; see
     /// [`NewtonSettings::time`](super::NewtonSettings::time).
@@ -104,6 +108,7 @@ impl StepRecord {
             substeps: Vec::new(),
             completed: 0.0,
             unresolved: None,
+            path_error: 0.0,
             time_error: None,
             rigid_motions: Vec::new(),
             outcome: StepOutcome::OutOfIterations,

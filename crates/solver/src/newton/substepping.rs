@@ -162,7 +162,7 @@ impl Newton {
         let apart = slides.then(|| difference(step.system, &whole, &halves, self.settings.path));
         let in_time = flows.then(|| flows_apart(step.system, &whole, &halves));
         let flow = in_time.map(|apart| apart / self.settings.time);
-        let path = apart.as_ref().map(|(apart, _)| apart / self.settings.path);
+        let path = apart.as_ref().map(|apart| apart.share() / self.settings.path);
         let error = path.into_iter().chain(flow).fold(0.0, f64::max);
         if error > 1.0 && !substep.is_smallest {
             return Solved::TooLong {
@@ -173,12 +173,14 @@ impl Newton {
         if let Some(apart) = in_time.filter(|_| flow.is_some_and(|flow| flow > 1.0)) {
             step.leave_time_error(apart);
         }
-        if let Some(apart) = apart.filter(|_| path.is_some_and(|path| path > 1.0)) {
-            let (difference, facet_point) = apart;
-            step.leave_unresolved(UnresolvedPath {
-                cause: UnresolvedCause::Differs(difference),
-                facet_point,
-            });
+        if let Some(apart) = apart {
+            step.record.path_error += apart.length;
+            if apart.share() > self.settings.path {
+                step.leave_unresolved(UnresolvedPath {
+                    cause: UnresolvedCause::Differs(apart.share()),
+                    facet_point: apart.facet_point,
+                });
+            }
         }
         Solved::Accepted {
             end: halves,
@@ -240,9 +242,26 @@ fn is_elastic(from: &State, to: &State) -> bool {
     pairs.into_iter().all(unbroken)
 }
 
-/// Largest difference of the jumps of two states, against the largest jump, and where it is; beyond
-/// a tolerance, of what the loads determine of them in the second.
-fn difference(system: &System<'_>, a: &State, b: &State, tolerance: f64) -> (f64, Option<usize>) {
+/// How far the jumps of two states are apart.
+struct Apart {
+    /// Largest difference of a jump (m).
+    length: f64,
+    /// Largest jump in the second (m).
+    size: f64,
+    /// Where the difference is.
+    facet_point: Option<usize>,
+}
+
+impl Apart {
+    /// The largest difference against the largest jump.
+    fn share(&self) -> f64 {
+        ratio(self.length, self.size)
+    }
+}
+
+/// The largest difference of the jumps of two states; beyond a tolerance, as a share of the largest
+/// jump, of what the loads determine of them in the second.
+fn difference(system: &System<'_>, a: &State, b: &State, tolerance: f64) -> Apart {
     let pairs = a.unknowns.iter().zip(&b.unknowns);
     let between: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
     let mut apart = interface(system).jumps(&between, &Load::NONE);
@@ -251,8 +270,11 @@ fn difference(system: &System<'_>, a: &State, b: &State, tolerance: f64) -> (f64
         leave_undetermined(system, b, &mut apart);
     }
     let length = |point: usize| apart[point].length();
-    let facet_point = (0..apart.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
-    (ratio(largest(&apart), size), facet_point)
+    Apart {
+        length: largest(&apart),
+        size,
+        facet_point: (0..apart.len()).max_by(|&a, &b| length(a).total_cmp(&length(b))),
+    }
 }
 
 /// Takes from jumps what the loads do not determine in a state: no shorter step would.

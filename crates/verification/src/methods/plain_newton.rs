@@ -122,6 +122,7 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
         outcome,
         substeps: Vec::new(),
         unresolved: None,
+        path_error: 0.0,
         time_error: None,
         rigid_motions: Vec::new(),
         worst_facet_point: None,

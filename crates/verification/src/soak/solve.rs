@@ -36,6 +36,8 @@ pub struct Fields {
     pub jumps: Vec<f64>,
     /// Largest displacement of the rock (m).
     pub displacement: f64,
+    /// What the run estimates of the error of its increments, all load steps added (m).
+    pub path_error: f64,
     /// Whether the run says that the state is not unique.
     pub is_declared: bool,
 }
@@ -90,10 +92,13 @@ fn fields(outcome: &Outcome) -> Fields {
         }
     };
     let displacements = values(|step| &step.rock, "displacement");
+    let measures = outcome.summary.steps.iter();
+    let measures = measures.filter_map(|step| step.measures.as_ref());
     let mut warnings = outcome.summary.warnings.iter();
     Fields {
         jumps: values(|step| &step.fracture_grid, "jump"),
         displacement: longest(&displacements),
+        path_error: measures.map(|measures| measures.path_error).sum(),
         is_declared: warnings.any(|warning| is_declaration(warning)),
     }
 }
