@@ -282,6 +282,18 @@ impl Interface {
         self.add_forces(&push, 1.0, forces);
     }
 
+    /// Forces (N/Pa) of a unit pressure at each facet point that moves with one of
+    /// [`Self::unknowns`]: `A J_i^T n`.
+    pub(crate) fn pushes(&self, row: usize) -> impl Iterator<Item = (usize, DVec3)> + '_ {
+        let terms = self.terms_of_unknown.of(row).iter();
+        terms.map(|&term| {
+            let number = self.point_of_term[term as usize] as usize;
+            let point = &self.points[number];
+            let factor = self.terms[term as usize].factor.transpose();
+            (number, point.area * (factor * point.normal))
+        })
+    }
+
     /// [`Self::stiffness`] of fractures as stiff as the rock beside them.
     pub fn springs(&self) -> Vec<DMat3> {
         let points = self.points.iter();

@@ -25,6 +25,7 @@ use super::fields::FlowFields;
 use super::loaded::{FlowState, Loaded, Stored};
 use super::numbering::FlowNodes;
 use super::operator::FlowOperator;
+use super::push::Push;
 use super::steady::FlowSystem;
 use super::topology::Topology;
 use super::undrained::{self, Undrained};
@@ -45,6 +46,8 @@ const LEAST_MOVED: f64 = 1e-6;
 pub struct Coupling<'a> {
     pub(super) topology: Arc<Topology<'a>>,
     pub(super) points: WallPoints,
+    /// How pressures push on the walls.
+    pub(super) push: Push,
     /// How each facet point conducts; none where nothing flows.
     hydraulic: Vec<Option<HydraulicAperture>>,
     /// Whether the flow takes time.
@@ -157,6 +160,7 @@ impl<'a> Coupling<'a> {
             areas,
             undrained,
             initial_volumes: points.at_rows(apertures),
+            push: Push::of(interface, &points),
             points,
             topology,
             is_transient,

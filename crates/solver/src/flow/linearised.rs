@@ -11,6 +11,7 @@
 //! How a rate is shared among nodes, and the ratio of the radii of a borehole, count as fixed. In
 //! networks that keep what they hold (see `undrained`) `s_i / tau sum dV` is added, over all rows.
 
+use glam::DVec3;
 use kluft_algebra::{LinearFailure, ScalarCholesky, ScalarMatrix};
 use rayon::prelude::*;
 
@@ -115,11 +116,17 @@ impl LinearisedFlow<'_, '_> {
         free.map(|&row| self.flow.missing[row as usize]).collect()
     }
 
-    /// Pressure at each facet point (Pa) for changes of the unknowns (Pa).
-    pub(crate) fn point_pressures(&self, change: &[f64]) -> Vec<f64> {
+    /// Adds the forces (N) by which changes of the unknowns (Pa) push, `sign` times, to those on
+    /// all unknowns of the rock.
+    pub(crate) fn add_push(&self, change: &[f64], sign: f64, forces: &mut [DVec3]) {
         let number = &self.coupling.topology.number;
         let of_row = |row: usize| change.get(number[row] as usize).copied().unwrap_or(0.0);
-        self.coupling.points.at_points(of_row)
+        self.coupling.push.add(|row| sign * of_row(row), forces);
+    }
+
+    /// Adds the forces (N/Pa) of a unit pressure everywhere.
+    pub(crate) fn add_unit_push(&self, forces: &mut [DVec3]) {
+        self.coupling.push.add(|_| 1.0, forces);
     }
 
     /// The change of the balance at the unknowns (m^3/s) for openings of the facet points (m) and
@@ -209,10 +216,5 @@ impl LinearisedFlow<'_, '_> {
         made.factorise(&matrix)?;
         *factor = Some(made);
         Ok(())
-    }
-
-    /// Whether something flows at a facet point.
-    pub(crate) fn conducts(&self, point: usize) -> bool {
-        self.coupling.points.conducts(point)
     }
 }

@@ -26,6 +26,7 @@
 //! | `permeability` | how the body conducts as a whole |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
+//! | `push` | how pressures push on the walls that follow them, as a matrix |
 //! | `walls` | the push of the fluid on the walls of fractures |
 //! | `fields` | pressure, hydraulic aperture and flux for results |
 
@@ -45,6 +46,7 @@ mod numbering;
 mod operator;
 mod permeability;
 mod places;
+mod push;
 mod solve;
 mod steady;
 mod steady_state;

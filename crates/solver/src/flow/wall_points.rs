@@ -122,6 +122,11 @@ impl WallPoints {
     pub(super) fn conducts(&self, point: usize) -> bool {
         self.rows.of(point).next().is_some()
     }
+
+    /// The rows whose pressures act at a facet point, and their shares; none where nothing flows.
+    pub(super) fn rows_at(&self, point: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.rows.of(point)
+    }
 }
 
 /// Shares of the corners in the pressure at a point of a facet, of which the shares of the nodes

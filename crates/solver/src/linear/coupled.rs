@@ -82,11 +82,8 @@ impl CoupledTangent<'_, '_> {
     /// Openings of the facet points under a unit pressure everywhere (m/Pa), if every unknown
     /// answers by itself.
     fn compliance(&self) -> Vec<f64> {
-        let points = self.interface.points.len();
-        let unit = |point: usize| f64::from(u8::from(self.flow.conducts(point)));
-        let unit: Vec<f64> = (0..points).map(unit).collect();
         let mut forces = vec![DVec3::ZERO; self.fixed.matrix.rows()];
-        self.interface.add_pressures(&unit, &mut forces);
+        self.flow.add_unit_push(&mut forces);
         self.openings(&self.alone(&forces))
     }
 
@@ -188,8 +185,7 @@ impl CoupledTangent<'_, '_> {
     ) -> (Vec<DVec3>, Vec<f64>) {
         let pressures = factor.solve(missing);
         let mut push = vec![DVec3::ZERO; self.fixed.matrix.rows()];
-        let of_points = self.flow.point_pressures(&pressures);
-        self.interface.add_pressures(&of_points, &mut push);
+        self.flow.add_push(&pressures, 1.0, &mut push);
         (self.alone(&push), pressures)
     }
 
@@ -206,8 +202,7 @@ impl CoupledTangent<'_, '_> {
         let rates = self.flow.answer(&openings, &vec![0.0; rhs.missing.len()]);
         let pressures = factor.map_or_else(Vec::new, |factor| factor.solve(rhs.missing));
         let mut push = vec![DVec3::ZERO; rhs.forces.len()];
-        let of_points = self.flow.point_pressures(&pressures);
-        self.interface.add_pressures(&of_points, &mut push);
+        self.flow.add_push(&pressures, 1.0, &mut push);
         let goals = (rhs.goals)([
             norm(rhs.forces).max(norm(&push)),
             length(rhs.missing).max(length(&rates)),
@@ -219,9 +214,7 @@ impl CoupledTangent<'_, '_> {
     fn product(&self, unknowns: &[DVec3], pressures: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
         let mut forces = vec![DVec3::ZERO; unknowns.len()];
         self.fixed.multiply(self.stiffness, unknowns, &mut forces);
-        let opposite: Vec<f64> = pressures.iter().map(|pressure| -pressure).collect();
-        let push = self.flow.point_pressures(&opposite);
-        self.interface.add_pressures(&push, &mut forces);
+        self.flow.add_push(pressures, -1.0, &mut forces);
         let rates = self.flow.answer(&self.openings(unknowns), pressures);
         (forces, rates)
     }
@@ -233,8 +226,7 @@ impl CoupledTangent<'_, '_> {
         (mut forces, missing): (Vec<DVec3>, &[f64]),
     ) -> Result<(Vec<DVec3>, Vec<f64>), LinearFailure> {
         let pressures = factor.map_or_else(Vec::new, |factor| factor.solve(missing));
-        let push = self.flow.point_pressures(&pressures);
-        self.interface.add_pressures(&push, &mut forces);
+        self.flow.add_push(&pressures, 1.0, &mut forces);
         Ok((inner.precondition(self.fixed, &forces)?, pressures))
     }
 }

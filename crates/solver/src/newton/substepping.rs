@@ -162,7 +162,9 @@ impl Newton {
         let apart = slides.then(|| difference(step.system, &whole, &halves, self.settings.path));
         let in_time = flows.then(|| flows_apart(step.system, &whole, &halves));
         let flow = in_time.map(|apart| apart / self.settings.time);
-        let path = apart.as_ref().map(|apart| apart.share() / self.settings.path);
+        let path = apart
+            .as_ref()
+            .map(|apart| apart.share() / self.settings.path);
         let error = path.into_iter().chain(flow).fold(0.0, f64::max);
         if error > 1.0 && !substep.is_smallest {
             return Solved::TooLong {

@@ -267,3 +267,34 @@ fn threads_change_no_bit_of_a_coupled_flow() {
     });
     assert!(one == three);
 }
+
+/// As the pressures of the nodes at the facet points push, point by point.
+#[test]
+fn the_matrix_of_pushes_sums_the_facet_points() {
+    for shape in SHAPES {
+        let mesh = slab(shape, 3, 1.0);
+        let flow = flow(&mesh, ends(&mesh, 1.0, 0.0));
+        let problem = problem(&mesh, linear(), Schedule::proportional(vec![1.0]));
+        let discretisation = Discretisation::of(&problem).expect("held");
+        let mut system = System::assemble(&problem, discretisation);
+        system.couple(&flow).expect("sound");
+        let coupling = system.coupling().expect("coupled");
+        let pressure = |row: usize| (1.0 + row as f64).sin();
+        let interface = &system.discretisation().interface;
+        let mut expected = vec![DVec3::ZERO; system.initial_state().unknowns.len()];
+        interface.add_pressures(&coupling.points.at_points(pressure), &mut expected);
+        let mut found = vec![DVec3::ZERO; expected.len()];
+        coupling.push.add(pressure, &mut found);
+        let largest = expected
+            .iter()
+            .fold(0.0, |most: f64, f| most.max(f.length()));
+        assert!(largest > 0.0);
+        for (found, expected) in found.iter().zip(&expected) {
+            let off = (*found - *expected).length();
+            assert!(
+                off <= 1e-14 * largest,
+                "{shape:?}: {found} is not {expected}"
+            );
+        }
+    }
+}
