@@ -6,6 +6,7 @@ use std::f64::consts::SQRT_2;
 use std::fs;
 use std::path::Path;
 
+use glam::{DMat3, DVec3};
 use serde_json::Value;
 
 use crate::harness::{Workshop, kluft, summary};
@@ -189,6 +190,65 @@ fn a_wedge_slides_at_its_factor_of_safety() {
             "{said}"
         );
         assert!(out.join("strength_rock.vtu").exists());
+    }
+}
+
+/// Upward unit normal of a plane with a dip and a dip direction (degrees); x east, y north.
+fn normal(dip: f64, direction: f64) -> DVec3 {
+    let (dip, direction) = (dip.to_radians(), direction.to_radians());
+    let level = DVec3::new(direction.sin(), direction.cos(), 0.0);
+    level * dip.sin() + DVec3::Z * dip.cos()
+}
+
+/// The point of the line where two planes through the origin meet that lies on a third one.
+fn on_plane(line: [DVec3; 2], plane: DVec3, point: DVec3) -> DVec3 {
+    let along = line[0].cross(line[1]);
+    along * (plane.dot(point) / plane.dot(along))
+}
+
+/// Limit equilibrium of the wedge in the slope, for a pressure halfway up the line where its joints
+/// meet (Pa), of which the pyramid of Hoek and Bray leaves a third in the mean.
+fn factor_of_the_wedge(pressure: f64) -> f64 {
+    let joints = [normal(45.0, 105.0), normal(70.0, 235.0)];
+    let (face, ground) = (normal(65.0, 185.0), normal(12.0, 195.0));
+    let top = on_plane(joints, DVec3::Z, DVec3::new(0.0, 0.0, 40.0));
+    let crest = joints.map(|joint| on_plane([joint, face], ground, top));
+    let areas = crest.map(|end| top.cross(end).length() / 2.0);
+    let weight = 2548.42 * 9.81 * top.cross(crest[0]).dot(crest[1]).abs() / 6.0;
+    let along = top.normalize();
+    let forces = DMat3::from_cols(joints[0], joints[1], along).inverse() * (weight * DVec3::Z);
+    let strength = |joint: usize, friction: f64, cohesion: f64| {
+        let normal = forces[joint] - areas[joint] * pressure / 3.0;
+        cohesion * areas[joint] + normal * friction.to_radians().tan()
+    };
+    (strength(0, 30.0, 24e3) + strength(1, 20.0, 48e3)) / forces.z
+}
+
+/// The wedge of the example of Hoek and Bray, dry and under their pyramid of water. Rock that
+/// deforms lets go a little apart from where rigid blocks do.
+#[test]
+fn a_wedge_between_unlike_joints_slides_at_its_factor_of_safety() {
+    for (weight_of_water, published) in [(9.81e3, 1.36), (0.0, 2.0)] {
+        let wanted = factor_of_the_wedge(weight_of_water * 40.0 / 2.0);
+        // They read their angles off a stereonet.
+        assert_near(wanted, published, 0.02);
+        let heads = ["left_joint", "right_joint"]
+            .map(|name| format!("[fracture.{name}.fluid_pressure]\nexpression = \""));
+        let dry = heads.each_ref().map(|head| format!("{head}0 * "));
+        let edits = [0, 1].map(|joint| (&heads[joint][..], &dry[joint][..]));
+        let edits = match weight_of_water {
+            0.0 => &edits[..],
+            _ => &[],
+        };
+        let out = Workshop::new("wedge-slope", edits);
+        let out = out.solve("out", &[]);
+        let found = &summary(&out)["strength_reduction"];
+        let [stable, failing] = ["stable", "failing"].map(|key| found[key].as_f64());
+        let (stable, failing) = (stable.expect("a factor"), failing.expect("a factor"));
+        assert!(
+            stable < wanted * 1.002 && wanted < failing * 1.002,
+            "{wanted}: {found}"
+        );
     }
 }
 

@@ -6,6 +6,7 @@ use exmex::prelude::*;
 use exmex::{FloatOpsFactory, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
 use glam::DVec3;
 
+use crate::calls;
 use crate::coordinate::{Coordinate, Place};
 use crate::precedence;
 
@@ -58,7 +59,7 @@ impl Expression {
             .map(|operator| operator.repr().to_owned())
             .collect();
         precedence::check(text, &functions)?;
-        let parsed = Parsed::parse(text).map_err(|error| {
+        let parsed = Parsed::parse(&calls::between(text)?).map_err(|error| {
             let problem = format!("the expression cannot be read: {}", error.msg());
             [problem, format!("write numbers, {}", known())]
         })?;
@@ -137,6 +138,7 @@ mod tests {
             ("-(x^2) + 2.5e-1", -8.75),
             ("2 - x^2", -7.0),
             ("max(0, 1 - x/(2*time))", 0.25),
+            ("max(0, min(x, y)) + min(max(x, y), max(1, min(9, y)))", 7.0),
             ("sqrt(x^2 + y^2) * step(x - 3)", 5.0),
             ("step(x - 3.1)", 0.0),
             ("depth * 2", 15.0 * 2.0),

@@ -3,6 +3,7 @@
 //! A field is checked when it is made; afterwards it has a value everywhere, which is not a number
 //! where it knows none: [`Field::at`] never fails, and whoever uses one looks at its values first.
 
+mod calls;
 mod coordinate;
 mod expression;
 mod precedence;
