@@ -339,3 +339,66 @@ fn hydraulic_values_that_do_not_vary_are_numbers() {
     assert_eq!(plain, varying);
     assert_ne!(plain, solve("roughness = { expression = \"1.5 + x\" }"));
 }
+
+/// The fault of the scene carries what is above it, whatever its stiffness. The tolerance is that
+/// of the last Newton step.
+#[test]
+fn a_fault_with_a_stiffness_from_a_file_carries_the_load() {
+    let h = ("h = {1.2, Name", "h = {2.4, Name");
+    let workshop = Workshop::new("scanned-fault", &[]);
+    let geo = workshop.path("scanned-fault.geo");
+    let text = fs::read_to_string(&geo).expect("the geometry");
+    fs::write(geo, crate::harness::edited(&text, &[h])).expect("written");
+    let scan = root().join("geometries/scanned-fault/scan.csv");
+    fs::copy(scan, workshop.path("scan.csv")).expect("the scan is copied");
+    let rows = rows(&workshop.solve("out", &[]));
+    let fault = |column: &str| numbers(&rows, ["fracture", "fault"], column)[0];
+    assert_near(fault("normal_traction_mean"), -3e6, 1e-9);
+    assert_near(fault("force_z"), -4.32e8, 1e-9);
+    // Soft parts close, stiff ones carry.
+    assert!(fault("normal_traction_min") < -6e6 && fault("normal_traction_max") > -1e6);
+}
+
+/// One fault with six samples, each the nearest in a field of its own, is six fractures of one
+/// stiffness each.
+#[test]
+fn samples_in_a_file_are_constants_on_parts_of_a_fault() {
+    const STIFFNESSES: [&str; 6] = ["2", "9", "30", "4", "15", "1.5"];
+    let sampled = "{ file = \"scan.csv\", column = \"kn\", unit = \"GPa/m\", method = \"linear\" }";
+    let mesh = (
+        "geometry = \"scanned-fault.geo\"",
+        "geometry = \"scanned-fault.geo\"\nparameters = { h = 3, h_fault = 1.5, fields = 1 }",
+    );
+    let law = |name: &str, stiffness: &str| {
+        format!(
+            "[fracture.{name}]\naperture = 2e-3\nnormal_stiffness = {stiffness}\n\
+             shear_stiffness = 5e9\nclosure = \"logarithmic\"\n"
+        )
+    };
+    let drawn = law("fault", sampled);
+    let of_file = law("default", &sampled.replace("linear", "nearest"));
+    let parts = STIFFNESSES.iter().zip(1..);
+    let plain =
+        parts.map(|(stiffness, part)| law(&format!("fault-{part}"), &format!("{stiffness}e9")));
+    let plain: String = plain.collect();
+    let places = [3, 9]
+        .into_iter()
+        .flat_map(|x| [1.5, 4.5, 7.5].map(|y| (x, y)));
+    let samples = places
+        .zip(STIFFNESSES)
+        .map(|((x, y), kn)| format!("{x},{y},{kn}\n"));
+    let samples = format!("x,y,kn\n{}", samples.collect::<String>());
+    let [of_file, plain] = [of_file, plain].map(|laws| {
+        let workshop = Workshop::new("scanned-fault", &[mesh, (&drawn, &laws)]);
+        fs::write(workshop.path("scan.csv"), &samples).expect("written");
+        rows(&workshop.solve("out", &[]))
+    });
+    for part in 1..=6 {
+        let name = format!("fault-{part}");
+        for column in ["aperture_mean", "normal_traction_min", "slip_max"] {
+            let [found, wanted] =
+                [&of_file, &plain].map(|rows| numbers(rows, ["fracture", &name], column)[0]);
+            assert_near(found, wanted, 1e-12);
+        }
+    }
+}
