@@ -118,7 +118,10 @@ fn law(model: &Element, aperture: Result<f64, String>, parameters: &Parameters, 
         }
         Err(_) => said.scene += "closure = \"logarithmic\"\n",
     }
-    if matches!(model.word("tension_cutoff"), Some("1" | "true")) {
+    let is_cohesive = model.word("type") == Some("CohesiveZoneModeI");
+    // A strength ends the tension by itself.
+    let cut = matches!(model.word("tension_cutoff"), Some("1" | "true"));
+    if cut && !is_cohesive {
         said.scene += "tension_cutoff = true\n";
     }
     match model.word("type") {

@@ -55,27 +55,7 @@ pub fn conditions(
         geometry,
         body,
     };
-    let mut all = BTreeMap::new();
-    let variables = root.get("process_variables").into_iter();
-    for variable in variables.flat_map(|list| list.all("process_variable")) {
-        variable.pass_over(&["components", "order", "initial_condition"]);
-        let is_jump = variable
-            .word("name")
-            .is_some_and(|name| name != "displacement");
-        let list = variable.get("boundary_conditions").into_iter();
-        for condition in list.flat_map(|list| list.all("boundary_condition")) {
-            let taken = match is_jump {
-                true => Err("a condition on a jump; supports of Kluft hold both walls".to_owned()),
-                false => take(condition, parameters, &mut all),
-            };
-            if let Err(why) = taken {
-                let place = place_of(condition).unwrap_or_default();
-                said.notes
-                    .push(format!("no counterpart: at `{place}`: {why}"));
-                condition.pass_over(&["type", "parameter", "component", "geometrical_set"]);
-            }
-        }
-    }
+    let all = gathered(root, parameters, said);
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for ((place, curve), condition) in &all {
         let count = counts.entry(place.clone()).or_default();
@@ -93,6 +73,52 @@ pub fn conditions(
                 "no counterpart: `{place}` is not there, or lies along no plane x, y or z"
             )),
         }
+    }
+}
+
+/// What the conditions do, by their places and curves.
+fn gathered(
+    root: &Element,
+    parameters: &Parameters,
+    said: &mut Said,
+) -> BTreeMap<(String, Option<String>), Condition> {
+    let mut all = BTreeMap::new();
+    let variables = root.get("process_variables").into_iter();
+    for variable in variables.flat_map(|list| list.all("process_variable")) {
+        variable.pass_over(&["components", "order", "initial_condition"]);
+        let is_jump = variable
+            .word("name")
+            .is_some_and(|name| name != "displacement");
+        let list = variable.get("boundary_conditions").into_iter();
+        for condition in list.flat_map(|list| list.all("boundary_condition")) {
+            let place = place_of(condition).unwrap_or_default();
+            let note = if is_jump {
+                jump(condition, &place, parameters)
+            } else {
+                match take(condition, parameters, &mut all) {
+                    Ok(()) => continue,
+                    Err(why) => format!("no counterpart: at `{place}`: {why}"),
+                }
+            };
+            said.notes.push(note);
+            condition.pass_over(&["type", "parameter", "component", "geometrical_set"]);
+        }
+    }
+    all
+}
+
+/// What becomes of a condition on a jump. One that is held needs no counterpart where the
+/// displacement is held.
+fn jump(condition: &Element, place: &str, parameters: &Parameters) -> String {
+    let parameter = condition
+        .word("parameter")
+        .map(|text| parameters.named(text));
+    let is_zero = |values: &[f64]| values.iter().all(|value| *value == 0.0);
+    let is_held = condition.word("type") == Some("Dirichlet")
+        && matches!(parameter, Some(Ok(found)) if is_zero(&found.values));
+    match is_held {
+        true => format!("the jump at `{place}` is held where supports are: they hold both walls"),
+        false => format!("no counterpart: at `{place}`: a condition on a jump that moves"),
     }
 }
 
