@@ -271,8 +271,8 @@ fn verbosity(quiet: bool, verbose: bool) -> Verbosity {
 /// Arguments of `kluft import`.
 #[derive(Args)]
 pub struct ImportArgs {
-    /// The mesh: an Abaqus input file (.inp), a grid of VTK with numbers of materials (.vtu), or a
-    /// project of OpenGeoSys with its mesh (.prj)
+    /// The mesh: an Abaqus input file (.inp), a grid of VTK with numbers of materials (.vtu), an
+    /// Exodus mesh (.e; read by a Python with VTK), or a project of OpenGeoSys with its mesh (.prj)
     pub input: PathBuf,
     /// Folder for mesh and scene
     #[arg(short, long, value_name = "DIR")]

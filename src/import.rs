@@ -1,5 +1,6 @@
 //! From a mesh of another program to a gmsh mesh and a scene.
 
+mod exodus;
 mod laws;
 mod loads;
 mod parameters;
@@ -121,9 +122,11 @@ fn read_mesh(file: &Path) -> Result<Imported, Vec<Defect>> {
             parse_abaqus(&text, &place)
         }
         Some("vtu") => read_grid(file),
+        Some(ending) if exodus::ENDINGS.contains(&ending) => exodus::read_exodus(file),
         _ => Err(vec![Defect::new(
             place,
-            "the name ends neither in .inp (Abaqus), nor in .vtu (VTK), nor in .prj (OpenGeoSys)",
+            "the name ends neither in .inp (Abaqus), nor in .vtu (VTK), nor in .e (Exodus), nor in \
+             .prj (OpenGeoSys)",
             "let meshio convert other formats to .vtu or .inp: meshio convert FILE FILE.vtu; gmsh \
              meshes (.msh) need no import",
         )]),

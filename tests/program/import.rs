@@ -105,7 +105,7 @@ fn what_is_not_taken_over_is_named_and_what_cannot_be_read_is_refused() {
     let (_, run) = imported("grid.vtu", GRID);
     assert!(run.out.contains("porosity"), "{}", run.out);
     for (name, text, says) in [
-        ("mesh.e", "", "meshio convert"),
+        ("mesh.med", "", "meshio convert"),
         ("grid.vtu", "<VTKFile", "cannot be read"),
         ("grid.vtu", &GRID.replace("9 9 3", "9 9 7"), "types 7"),
         ("a.inp", "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "not there"),
@@ -133,6 +133,66 @@ fn a_grid_with_the_attribute_of_geos_runs() {
         &geos.replace("0 1 7<", "0.0 1.0 7.0<"),
         "surface-7",
     );
+}
+
+/// Writes two cubes with a square between as the blocks 10, 20 and 7 of an Exodus file.
+const EXODUS: &str = r#"
+import sys
+from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+from vtkmodules.vtkIOExodus import vtkExodusIIWriter
+points, blocks, grid = vtkPoints(), vtkIntArray(), vtkUnstructuredGrid()
+for z in range(3):
+    for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        points.InsertNextPoint(x, y, z)
+grid.SetPoints(points)
+blocks.SetName("ObjectId")
+for kind, nodes, block in ((12, range(8), 10), (12, range(4, 12), 20), (9, range(4, 8), 7)):
+    grid.InsertNextCell(kind, len(nodes), list(nodes))
+    blocks.InsertNextValue(block)
+grid.GetCellData().AddArray(blocks)
+writer = vtkExodusIIWriter()
+writer.SetFileName(sys.argv[1])
+writer.SetInputData(grid)
+writer.Write()
+"#;
+
+#[test]
+fn an_exodus_mesh_runs() {
+    let folder = Workshop::of("");
+    let file = folder.path("cubes.e");
+    let python = crate::read_back::python();
+    let written = std::process::Command::new(python)
+        .args(["-c".as_ref(), EXODUS.as_ref(), file.as_os_str()])
+        .status();
+    assert!(written.expect("Python starts").success());
+    let mesh = fs::read(&file).expect("the mesh");
+    joint_carries_the_load("cubes.e", &mesh, "surface-7");
+}
+
+#[test]
+fn exodus_without_a_python_with_vtk_says_what_to_install() {
+    let folder = Workshop::of("");
+    let file = folder.path("cubes.e");
+    fs::write(&file, "no mesh").expect("written");
+    let with = |python: &str| {
+        let run = crate::harness::command(crate::harness::KLUFT)
+            .args(["import".as_ref(), file.as_os_str(), "-o".as_ref()])
+            .arg(folder.path("made"))
+            .env("KLUFT_PYTHON", python)
+            .output()
+            .expect("the program starts");
+        assert_eq!(run.status.code(), Some(2));
+        let said = String::from_utf8_lossy(&run.stderr);
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let nowhere = with("/nowhere/python");
+    for part in ["/nowhere/python", "sh scripts/setup", "KLUFT_PYTHON"] {
+        assert!(nowhere.contains(part), "{part}: {nowhere}");
+    }
+    let python = crate::read_back::python();
+    let broken = with(&python.to_string_lossy());
+    assert!(broken.contains("it is no Exodus file"), "{broken}");
 }
 
 /// The first fractures of the network of small features in PorePy's benchmarks, and a polygon as
