@@ -256,3 +256,81 @@ fn two_cracks_on_one_line_open_as_in_closed_form() {
         ],
     );
 }
+
+/// A quarter of a tunnel of 3 m in a plate that is held at 90 m, lengths in units of `u` metres.
+const TUNNEL: &str = r#"
+DefineConstant[ u = {1, Name "u"} ];
+h = 0.3 / u; radius = 3 / u; far = 90 / u;
+Point(1) = {0, 0, 0, h}; Point(2) = {radius, 0, 0, h}; Point(3) = {far, 0, 0, 30 * h};
+Point(4) = {0, radius, 0, h}; Point(5) = {0, far, 0, 30 * h};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {1, 4}; Line(4) = {4, 5};
+Circle(5) = {2, 1, 4}; Circle(6) = {3, 1, 5};
+Curve Loop(1) = {1, 5, -3}; Plane Surface(1) = {1};
+Curve Loop(2) = {2, 6, -4, -5}; Plane Surface(2) = {2};
+Physical Surface("core") = {1};
+Physical Surface("rock") = {2};
+Physical Curve("bottom") = {1, 2};
+Physical Curve("left") = {3, 4};
+Physical Curve("far") = {6};
+"#;
+
+const EXCAVATION: &str = r#"
+title = "A tunnel in the plane"
+[mesh]
+geometry = "plane.geo"
+dimension = 2
+order = 2
+[rock.default]
+young_modulus = 5e9
+poisson_ratio = 0.25
+[initial_stress]
+xx = -7.5e6
+yy = -5e6
+zz = -5e6
+[boundary.left]
+symmetry = true
+[boundary.bottom]
+symmetry = true
+[boundary.far]
+displacement = { x = 0.0, y = 0.0 }
+[[load.phase]]
+name = "heading"
+until = 1
+remove = ["core"]
+release = 0.4
+[[load.phase]]
+name = "open"
+until = 2
+[probe.side]
+at = [3.0, 0.0, 0.0]
+[probe.crown]
+at = [0.0, 3.0, 0.0]
+"#;
+
+/// Kirsch (1898) as in `geometries/lined-tunnel`, a mesh in metres and one in kilometres. The
+/// tolerance is that of the mesh, whose cells of second order are a tenth of the radius.
+#[test]
+fn a_tunnel_is_excavated_in_the_plane() {
+    let in_kilometres = (
+        "order = 2",
+        "order = 2\nscale = 1000\nparameters = { u = 1000 }",
+    );
+    for edits in [&[][..], &[in_kilometres]] {
+        let workshop = Workshop::of(&edited(EXCAVATION, edits));
+        fs::write(workshop.path("plane.geo"), TUNNEL).expect("the geometry is written");
+        let out = workshop.solve("out", &[]);
+        let text = fs::read_to_string(out.join("probes.csv")).expect("probes");
+        for (step, released) in [("1", 0.4), ("2", 1.0)] {
+            for (name, column, wanted) in [("side", 8, -6.536_023e-3), ("crown", 9, -2.807_796e-3)]
+            {
+                let rows = text.lines().map(|row| row.split(',').collect::<Vec<_>>());
+                let mut own = rows.filter(|row| row[0] == step && row[3] == name);
+                let found: f64 = own.next().expect("a row")[column]
+                    .parse()
+                    .expect("a number");
+                let off = found / (released * wanted) - 1.0;
+                assert!(off.abs() < 2e-4, "{name}: {found:e}, {off:e} off");
+            }
+        }
+    }
+}

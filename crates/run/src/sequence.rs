@@ -20,7 +20,7 @@ impl Run<'_> {
     pub fn solve_stages(&mut self, mut former: Option<FormerRun>) -> Result<(), Interruption> {
         let scene = self.request.scene;
         let (staged, bodies) = self.read_mesh(former.as_ref(), |_, draft| {
-            let staged = scene.staged(draft)?;
+            let staged = scene.staged(scene.taken(draft))?;
             let bodies = staged.check()?;
             Ok((staged, bodies))
         })?;

@@ -52,7 +52,7 @@ struct Plan {
 }
 
 impl Scene {
-    /// The stages of this scene on a mesh as read.
+    /// The stages of this scene on a mesh as [`Self::taken`].
     ///
     /// # Errors
     /// Every defect of the mesh with all its volumes, names that are neither volumes nor fractures,
