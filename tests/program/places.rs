@@ -6,7 +6,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::harness::{Run, Workshop, edited, kluft, summary};
+use crate::harness::{Run, Workshop, edited, kluft, root, summary};
 
 const BASE: &str = include_str!("bad_input/base.toml");
 const MESH: &str = include_str!("bad_input/base.msh");
@@ -179,4 +179,36 @@ fn springs_that_hold_nothing_or_contradict_each_other_are_refused() {
     assert!(both.contains("both spring and far_field"), "{both}");
     let alone = with("shear_spring = 1e9");
     assert!(alone.contains("without `spring`"), "{alone}");
+}
+
+/// Largest opening of the disc of `small-cube` in a cube of twice its size over that of Sneddon
+/// (1946), less one. Every side has one condition, or none.
+fn disc_in_a_cube(side: &str) -> f64 {
+    let text = fs::read_to_string(root().join("geometries/small-cube/scene.toml"));
+    let text = text.expect("the scene");
+    let disc = text.split("# Three corners").next().expect("a beginning");
+    let geometry = root().join("geometries/penny/penny.geo");
+    let edits = [
+        ("../penny/penny.geo", &geometry.display().to_string()[..]),
+        (
+            "{ h = 0.28, h_disc = 0.28, h_far = 0.28, grow = 0, half = 3 }",
+            "{ h = 0.15, h_disc = 0.3, h_far = 1.2, grow = 0.5, half = 2 }",
+        ),
+    ];
+    let names = ["left", "right", "front", "back", "bottom", "top"];
+    let sides = names.map(|name| format!("[boundary.{name}]\n{side}\n"));
+    let workshop = Workshop::of(&(edited(disc, &edits) + &sides.concat()));
+    let found = summary(&workshop.solve("out", &[]));
+    let most = found["fractures"]["penny"]["aperture"]["max"].as_f64();
+    let sneddon = 8.0 * (1.0 - 0.25 * 0.25) * 2e6 / (std::f64::consts::PI * 25e9);
+    (most.expect("an aperture") - 1e-5) / sneddon - 1.0
+}
+
+/// Springs of unbounded rock leave what the mesh does, half a per cent; held sides a tenth.
+#[test]
+fn a_far_field_takes_the_box_off_a_disc() {
+    let springs = disc_in_a_cube("far_field = [0, 0, 0]");
+    assert!(springs.abs() < 0.01, "{springs}");
+    let held = disc_in_a_cube("displacement = { x = 0.0, y = 0.0, z = 0.0 }");
+    assert!(held < -0.08, "{held}");
 }
