@@ -1,4 +1,5 @@
-//! Lists of fractures as other programs write them: PorePy's CSV and the polygons of dfnWorks.
+//! Lists of fractures as other programs write them: PorePy's CSV, the polygons of dfnWorks, and its
+//! ellipses and rectangles.
 //!
 //! PorePy: an optional first line with two opposite corners of the domain, then one line for each
 //! fracture with the coordinates of its corners, all of them plain numbers. dfnWorks: a line
@@ -8,6 +9,8 @@ use glam::DVec3;
 use kluft_defect::Defect;
 
 use crate::clip::Domain;
+use crate::foreign_line::{Corners, Line, Read};
+use crate::foreign_user::UserFile;
 use crate::fracture::InputFracture;
 use crate::polygon::Polygon;
 
@@ -40,12 +43,21 @@ pub fn read_foreign_list(
     let says_something = |line: &Line<'_>| !line.text.is_empty() && !line.text.starts_with('#');
     let lines: Vec<Line<'_>> = lines.filter(says_something).collect();
     let first = lines.first()?;
-    let counted = first.text.strip_prefix("nPolygons:");
+    let of_users = |count, is_elliptic| {
+        let file = UserFile {
+            lines: &lines,
+            count,
+            is_elliptic,
+        };
+        ("dfnWorks", file.read())
+    };
     let is_numbers = |line: &Line<'_>| line.numbers().is_some();
-    let (program, read) = match counted {
-        Some(count) => ("dfnWorks", dfnworks(&lines, count)),
-        None if is_numbers(first) => ("PorePy", porepy(&lines)),
-        None => return None,
+    let (program, read) = match first.text.split_once(':') {
+        Some(("nPolygons", count)) => ("dfnWorks", dfnworks(&lines, count)),
+        Some(("nUserEll", count)) => of_users(count, true),
+        Some(("nUserRect", count)) => of_users(count, false),
+        _ if is_numbers(first) => ("PorePy", porepy(&lines)),
+        _ => return None,
     };
     Some(read.and_then(|(domain, corners)| {
         let fractures = named(corners, set)?;
@@ -55,33 +67,6 @@ pub fn read_foreign_list(
             fractures,
         })
     }))
-}
-
-/// A line that says something.
-struct Line<'a> {
-    place: String,
-    text: &'a str,
-}
-
-/// The corners of a polygon, and where they stand.
-struct Corners {
-    place: String,
-    corners: Vec<DVec3>,
-}
-
-type Read = Result<(Option<Domain>, Vec<Corners>), Vec<Defect>>;
-
-impl Line<'_> {
-    /// All its values, if they are finite numbers.
-    fn numbers(&self) -> Option<Vec<f64>> {
-        let values = self.text.trim_end_matches(',').split(',');
-        let number = |value: &str| value.trim().parse::<f64>().ok().filter(|x| x.is_finite());
-        values.map(number).collect()
-    }
-
-    fn defect(&self, problem: String, remedy: &str) -> Defect {
-        Defect::new(&self.place, problem, remedy)
-    }
 }
 
 fn porepy(lines: &[Line<'_>]) -> Read {
@@ -254,5 +239,57 @@ mod tests {
         }
         assert!(read_foreign_list("name,shape\n", "list", "a").is_none());
         assert!(read_foreign_list("", "list", "a").is_none());
+    }
+
+    fn assert_near(found: f64, wanted: f64) {
+        assert!(
+            (found - wanted).abs() < 1e-12 * wanted.abs().max(1.0),
+            "{found} {wanted}"
+        );
+    }
+
+    /// A regular octagon, whose area is `2 sqrt(2) r^2`.
+    #[test]
+    fn ellipses_by_trend_and_plunge_are_read() {
+        let list = read(
+            "nUserEll: 1 \n \nRadii: \n100 \n\nAspect_Ratio: \n1 \n\nBeta: \n0 \n\nAngleOption: \ndegree \n\n\
+             Translation: \n[0, 0, 25] \n\nuserOrientationOption: 1 \n \nTrend_Plunge: \n[45, 35] \n\n\
+             aperture \nNone \n\nNumber_of_Vertices: \n8 \n\n",
+        );
+        let list = list.expect("a list");
+        let polygon = &list.fractures[0].polygon;
+        assert_eq!((list.program, list.fractures.len()), ("dfnWorks", 1));
+        assert_near(polygon.area(), 8_f64.sqrt() * 1e4);
+        let [trend, plunge] = [45_f64, 35.0].map(f64::to_radians);
+        let normal = DVec3::new(
+            trend.cos() * plunge.cos(),
+            trend.sin() * plunge.cos(),
+            plunge.sin(),
+        );
+        assert_near(polygon.normal().dot(normal).abs(), 1.0);
+        let middle = polygon.corners().iter().sum::<DVec3>() / 8.0;
+        assert_near(middle.distance(DVec3::new(0.0, 0.0, 25.0)), 0.0);
+    }
+
+    #[test]
+    fn rectangles_are_turned_in_their_plane_and_with_it() {
+        let text = "nUserRect: 2\nRadii:\n0.6\n1.0\nAspect_Ratio:\n1\n0.65\nBeta:\n0\n1.5707963267948966\n\
+                    AngleOption:\nradian\nradian\nTranslation:\n[-0.4, 0, 0]\n[0, 0, 0]\n\
+                    userOrientationOption: 0\nNormal:\n[0, 0, 2]\n[1, 0, 0]\n";
+        let list = read(text).expect("a list");
+        let [level, upright] = [0, 1].map(|index| &list.fractures[index].polygon);
+        assert_near(level.area(), 1.44);
+        assert_near(upright.area(), 2.6);
+        // The long half axis goes from x to y by the turn, and stays there as z goes to x.
+        let most = |of: fn(&DVec3) -> f64| upright.corners().iter().map(of).fold(0.0, f64::max);
+        assert_near(most(|corner| corner.y), 1.0);
+        assert_near(most(|corner| corner.z), 0.65);
+        assert_eq!(list.fractures[1].place, "list:4");
+        let short = read(&text.replace("0.65\n", "")).expect_err("a line is missing");
+        assert!(short[0].to_string().contains("Aspect_Ratio"), "{short:?}");
+        let many = text.replace("nUserRect: 2", "nUserRect: 99999999999999999999");
+        assert!(read(&many).is_err());
+        let wrong = read(&text.replace("[1, 0, 0]", "[0, 0, 0]")).expect_err("no normal");
+        assert!(wrong[0].to_string().starts_with("list:20"), "{wrong:?}");
     }
 }

@@ -8,6 +8,8 @@ mod arrangement;
 mod clip;
 mod fisher;
 mod foreign;
+mod foreign_line;
+mod foreign_user;
 mod fracture;
 mod geo;
 mod geo_samples;
