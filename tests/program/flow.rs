@@ -28,7 +28,7 @@ fn is_close(found: f64, expected: f64, tolerance: f64) {
 }
 
 /// The transmissivities of the star, and its rates: `q = T (p - sum T p / sum T)`.
-fn star() -> [(&'static str, f64, f64); 4] {
+pub fn star() -> [(&'static str, f64, f64); 4] {
     let ends = [
         ("left", 1e-4, 3e5),
         ("right", 2e-4, 1e5),

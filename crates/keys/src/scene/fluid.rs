@@ -178,7 +178,7 @@ pub static SOURCE: KeySection = KeySection {
 /// A pressure on a boundary that is linear in the elevation.
 pub static FLUID_PROFILE: KeySection = KeySection {
     pattern: "[boundary.NAME.fluid_pressure]",
-    says: "A pressure `value + per_metre (z - at)` at the elevation z, or one that varies otherwise",
+    says: "Pressure `value + per_metre (z - at)`, or one that varies",
     keys: &PROFILE_KEYS,
     also: Some(&FIELD),
 };

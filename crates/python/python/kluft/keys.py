@@ -524,12 +524,31 @@ class FixedPoint(Section):
 
 
 class FluidPressure(Section):
-    """A pressure `value + per_metre (z - at)` at the elevation z.
+    """Pressure `value + per_metre (z - at)`, or one that varies.
 
     Args:
         value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. Required.
         per_metre: Increase with the elevation (Pa/m); -1e9 to 1e9. Without it 0.
         at: Elevation of `value`, positive upwards (m). Without it 0.
+        table: Rows `[coordinate, value]` with linear values between, in any order. Without it:
+            `expression` or `file`.
+        over: What the rows of the table are over; the time is that of the load steps. Without it:
+            required with `table`.
+        ground: Elevation z of the ground: the depth is `ground` - z (m). Without it 0.
+        expression: Value by x, y, z, depth (m) and time, with + - * / ^, min(a, b), max(a, b),
+            sqrt, exp, ln, log10, sin, cos, tan, abs, step (0 below 0, else 1) and PI. Without it:
+            `table` or `file`.
+        file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
+            nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
+            middle of its cells. Without it: `table` or `expression`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
+        method: Between samples: the nearest one, or linear along their line, in the Delaunay
+            triangles of their plane, or on their grid. Without it "nearest".
+        reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
+            Without it: any; the run tells the largest.
+        beyond: Beyond the table or the samples between which values are linear: a defect, or the
+            nearest value. Without it "refuse".
+        unit: Unit of the values. Without it: SI units, angles in degrees.
     """
 
     def __init__(
@@ -538,11 +557,31 @@ class FluidPressure(Section):
         value: Quantity | None = None,
         per_metre: Quantity | None = None,
         at: Quantity | None = None,
+        table: Sequence[Sequence[float]] | None = None,
+        over: Literal["x", "y", "z", "depth", "time"] | None = None,
+        ground: Quantity | None = None,
+        expression: str | None = None,
+        file: str | os.PathLike[str] | None = None,
+        column: str | None = None,
+        method: Literal["nearest", "linear"] | None = None,
+        reach: Quantity | None = None,
+        beyond: Literal["refuse", "nearest"] | None = None,
+        unit: str | None = None,
     ) -> None:
         super().__init__(
             value=value,
             per_metre=per_metre,
             at=at,
+            table=table,
+            over=over,
+            ground=ground,
+            expression=expression,
+            file=file,
+            column=column,
+            method=method,
+            reach=reach,
+            beyond=beyond,
+            unit=unit,
         )
 
 
@@ -588,8 +627,9 @@ class Boundary(Section):
             then (Pa/m); >= 0. Without it: that of `spring`.
         far_field: Springs as stiff as unbounded rock outside, going by the distance from this
             centre of what happens inside; instead of `spring` (m). Without it: none.
-        fluid_pressure: Pressure of the fluid where fractures meet the surface: constant, or linear
-            in the elevation (Pa); -1e12 to 1e12. Without it: closed to the fluid.
+        fluid_pressure: Pressure of the fluid where fractures meet the surface: constant, linear in
+            the elevation, or any value that varies but not with time (Pa); -1e12 to 1e12. Without
+            it: closed to the fluid.
         fluid_inflow: What flows into the fractures that meet the surface, in all, shared by length
             times transmissivity; instead of `fluid_pressure` (m3/s). Without it: closed to the
             fluid.
