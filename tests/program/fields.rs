@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::flow::sources;
 use crate::harness::{Workshop, root};
 
 /// The rows of a history; each maps columns to texts.
-fn rows(out: &Path) -> Vec<BTreeMap<String, String>> {
+pub fn rows(out: &Path) -> Vec<BTreeMap<String, String>> {
     let text = fs::read_to_string(out.join("history.csv")).expect("a history");
     let mut table = csv::Reader::from_reader(text.as_bytes());
     let rows = table.deserialize().collect::<Result<Vec<_>, _>>();
@@ -16,7 +15,7 @@ fn rows(out: &Path) -> Vec<BTreeMap<String, String>> {
 }
 
 /// A number of each row of a kind and name, in the order of the load steps.
-fn numbers(rows: &[BTreeMap<String, String>], of: [&str; 2], column: &str) -> Vec<f64> {
+pub fn numbers(rows: &[BTreeMap<String, String>], of: [&str; 2], column: &str) -> Vec<f64> {
     let own = rows
         .iter()
         .filter(|row| [&row["kind"][..], &row["name"]] == of);
@@ -31,7 +30,7 @@ fn numbers(rows: &[BTreeMap<String, String>], of: [&str; 2], column: &str) -> Ve
     found
 }
 
-fn assert_near(found: f64, expected: f64, share: f64) {
+pub fn assert_near(found: f64, expected: f64, share: f64) {
     assert!(
         (found / expected - 1.0).abs() < share,
         "{found:e} is not {expected:e}"
@@ -282,64 +281,6 @@ fn a_column_whose_modulus_grows_with_elevation_shortens_by_a_logarithm() {
     assert_near(moved("top") - moved("bottom"), exact, 3e-3);
 }
 
-/// In the west joint the transmissivity is `T0 (1 + x)`, so that `T0 / ln 2` conducts between its
-/// ends; the other three have one each.
-#[test]
-fn a_hydraulic_aperture_that_varies_conducts_as_the_integral_has_it() {
-    let field = |b: &str| format!("{b} = {{ expression = \"1e-4 * (1 + x)^(1/3)\" }}");
-    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
-    for key in ["hydraulic_aperture", "aperture"] {
-        let varying = format!("[fracture.west]\n{}", field(key));
-        let edits = [
-            (own, &varying[..]),
-            (
-                "parameters = { h = 0.2 }",
-                "parameters = { h = 0.05 }\ndimension = 2",
-            ),
-        ];
-        let workshop = Workshop::new("flow-star", &edits);
-        let rows = sources(&workshop.solve("out", &[]));
-        let pairs = [
-            (1.0 / 2_f64.ln(), 3e5),
-            (8.0, 1e5),
-            (0.125, 0.0),
-            (3.375, 2e5),
-        ];
-        let conducted: f64 = pairs.iter().map(|(t, p)| t * p).sum();
-        let line = conducted / pairs.iter().map(|(t, _)| t).sum::<f64>();
-        let rate = 1e-12 / 12e-3 / 2_f64.ln() * (3e5 - line);
-        let left = rows.iter().find(|row| row.0 == "[boundary.left]");
-        assert_near(left.expect("a row").2, rate, 2e-4);
-    }
-}
-
-/// What is the same everywhere is what a number says, to the last bit, also where the flow follows
-/// the walls.
-#[test]
-fn hydraulic_values_that_do_not_vary_are_numbers() {
-    let solve = |keys: &str| {
-        let more = format!("closure = \"linear\"\n{keys}");
-        let edits = [
-            ("closure = \"linear\"", &more[..]),
-            (
-                "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]",
-                "times = [10, 20]",
-            ),
-        ];
-        let workshop = Workshop::new("filling-joint", &edits);
-        let out = workshop.solve("out", &[]);
-        fs::read(out.join("history.csv")).expect("a history")
-    };
-    let plain = solve("roughness = 1.5\nresidual_hydraulic_aperture = 2e-6");
-    let varying = solve(
-        "roughness = { expression = \"1.5\" }\n\
-         residual_hydraulic_aperture = { table = [[0, 2], [1, 2]], over = \"x\", unit = \"um\", \
-         beyond = \"nearest\" }",
-    );
-    assert_eq!(plain, varying);
-    assert_ne!(plain, solve("roughness = { expression = \"1.5 + x\" }"));
-}
-
 /// The fault of the scene carries what is above it, whatever its stiffness. The tolerance is that
 /// of the last Newton step.
 #[test]
@@ -401,134 +342,4 @@ fn samples_in_a_file_are_constants_on_parts_of_a_fault() {
             assert_near(found, wanted, 1e-12);
         }
     }
-}
-
-/// The pressure of each end of the flow star, in the order left, right, front, back.
-fn star_of(ends: [&str; 4], edits: &[(&str, &str)]) -> Workshop {
-    let given = ["3e5", "1e5", "0.0", "2e5"].map(|value| format!("fluid_pressure = {value}"));
-    let wanted = ends.map(|value| format!("fluid_pressure = {value}"));
-    let pairs = given.iter().zip(&wanted);
-    let pairs = pairs.map(|(given, wanted)| (&given[..], &wanted[..]));
-    let edits: Vec<(&str, &str)> = pairs.chain(edits.iter().copied()).collect();
-    Workshop::new("flow-star", &edits)
-}
-
-/// A hat over the height of the end: linear between nodes, so that the rates are those of its
-/// mean, to round-off.
-#[test]
-fn a_pressure_that_varies_along_a_boundary_drives_what_its_mean_drives() {
-    let hat = "{ table = [[0, 2], [0.5, 4], [1, 2]], over = \"z\", unit = \"bar\" }";
-    let ends = [hat, "1e5", "0.0", "2e5"];
-    let workshop = star_of(ends, &[("h = 0.2", "h = 0.25")]);
-    let rows = sources(&workshop.solve("out", &[]));
-    for (side, _, rate) in crate::flow::star() {
-        let name = format!("[boundary.{side}]");
-        let row = rows.iter().find(|row| row.0 == name);
-        assert_near(row.expect("a row").2, rate, 1e-11);
-    }
-}
-
-/// Harmonic pressures in half planes of width and height 1 m whose far end has `P cos(pi z)`: where
-/// they meet it is `T P cos(pi z) / (sum T cosh(pi))`. Triangles are off by the second order of
-/// their size.
-#[test]
-fn a_pressure_that_varies_along_a_boundary_fades_as_its_closed_form() {
-    let wave = "{ expression = \"1e5 * (1 + cos(PI*z))\" }";
-    let edits = [
-        (
-            "parameters = { h = 0.2 }",
-            "parameters = { h = 0.05 }\ndimension = 2",
-        ),
-        (
-            "[fracture.west]\nhydraulic_aperture = 1e-4",
-            "[fracture.west]\nhydraulic_aperture = 2e-4",
-        ),
-    ];
-    let workshop = star_of([wave, "1e5", "1e5", "1e5"], &edits);
-    let out = workshop.solve("out", &[]);
-    let rows = rows(&out);
-    let largest = numbers(&rows, ["fracture", "east"], "pressure_max")[0];
-    let fades = 8.0 / ((8.0 + 8.0 + 0.125 + 3.375) * std::f64::consts::PI.cosh());
-    assert_near((largest - 1e5) / 1e5, fades, 1e-2);
-    let rate = sources(&out).into_iter().map(|row| row.2);
-    // What 1 bar drives through the west joint is 6.7e-5 m3/s.
-    assert!(rate.map(f64::abs).fold(0.0, f64::max) < 1e-15);
-}
-
-/// In a joint whose pressure is given all over, linear to the value at the line, what enters is
-/// what the others take from there.
-#[test]
-fn a_pressure_given_all_over_a_fracture_may_vary_in_it() {
-    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
-    let given = format!("{own}\nfluid_pressure = {{ expression = \"3e5 - 2e5*x\" }}");
-    let edits = [
-        (own, &given[..]),
-        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
-    ];
-    let workshop = Workshop::new("flow-star", &edits);
-    let out = workshop.solve("out", &[]);
-    let found = sources(&out);
-    let rate = |name: &str| found.iter().find(|row| row.0 == name).expect("a row").2;
-    let line = 1e5;
-    let others = [
-        ("right", 2e-4_f64, 1e5),
-        ("front", 0.5e-4, 0.0),
-        ("back", 1.5e-4, 2e5),
-    ];
-    let mut taken = 0.0;
-    for (side, aperture, end) in others {
-        let expected = aperture.powi(3) / 12e-3 * (end - line);
-        let error = rate(&format!("[boundary.{side}]")) - expected;
-        assert!(error.abs() < 1e-15, "{side}: {error:e}");
-        taken -= expected;
-    }
-    assert_near(rate("[fracture.west]"), taken, 1e-11);
-    let rows = rows(&out);
-    let west = |column: &str| numbers(&rows, ["fracture", "west"], column)[0];
-    assert_near(west("pressure_max"), 3e5, 1e-12);
-    assert_near(west("pressure_mean"), 2e5, 1e-12);
-}
-
-#[test]
-fn a_pressure_that_a_table_does_not_reach_is_refused_with_its_place() {
-    let short = "{ table = [[0, 2e5], [0.7, 4e5]], over = \"z\" }";
-    let run = star_of([short, "1e5", "0.0", "2e5"], &[]).run("out", &[]);
-    assert_eq!(run.code, Some(2));
-    for said in [
-        "[boundary.left.fluid_pressure]",
-        "from a table over z from 0 to 0.7: there is no row at (0.000000, 1.000000, ",
-        "add rows that reach there",
-    ] {
-        assert!(run.err.contains(said), "{said}: {}", run.err);
-    }
-    let timed = "{ expression = \"1e5*time\" }";
-    let run = star_of([timed, "1e5", "0.0", "2e5"], &[]).run("out", &[]);
-    assert_eq!(run.code, Some(2));
-    let said = "`fluid_pressure` does not change with time";
-    assert!(run.err.contains(said), "{}", run.err);
-}
-
-/// What is the same everywhere is what a number says, to the last bit, also under a history and
-/// where the flow follows the walls.
-#[test]
-fn pressures_that_do_not_vary_are_numbers() {
-    let solve = |pressure: &str| {
-        let edits = [
-            ("fluid_pressure = 0.9e6", pressure),
-            (
-                "times = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]",
-                "times = [10, 20]",
-            ),
-        ];
-        let workshop = Workshop::new("filling-joint", &edits);
-        let out = workshop.solve("out", &[]);
-        fs::read(out.join("history.csv")).expect("a history")
-    };
-    let plain = solve("fluid_pressure = 0.9e6");
-    let varying = solve("fluid_pressure = { expression = \"0.9e6 + 0*x\" }");
-    assert_eq!(plain, varying);
-    assert_ne!(
-        plain,
-        solve("fluid_pressure = { expression = \"0.9e6 + 1e5*y\" }")
-    );
 }

@@ -12,6 +12,7 @@ mod doubts;
 mod examples;
 mod fields;
 mod flow;
+mod fluid_fields;
 mod harness;
 mod history;
 mod import;
