@@ -307,15 +307,17 @@ at = [3.0, 0.0, 0.0]
 at = [0.0, 3.0, 0.0]
 "#;
 
-/// Kirsch (1898) as in `geometries/lined-tunnel`, a mesh in metres and one in kilometres. The
-/// tolerance is that of the mesh, whose cells of second order are a tenth of the radius.
+/// Kirsch (1898) as in `geometries/lined-tunnel`, a mesh in metres and one in kilometres, supports
+/// on named lines and by place. The tolerance is that of the mesh, whose cells of second order are
+/// a tenth of the radius.
 #[test]
 fn a_tunnel_is_excavated_in_the_plane() {
     let in_kilometres = (
         "order = 2",
         "order = 2\nscale = 1000\nparameters = { u = 1000 }",
     );
-    for edits in [&[][..], &[in_kilometres]] {
+    let by_place = ("[boundary.bottom]", "[boundary.low]\nwhere = \"y = min\"");
+    for edits in [&[][..], &[in_kilometres], &[by_place]] {
         let workshop = Workshop::of(&edited(EXCAVATION, edits));
         fs::write(workshop.path("plane.geo"), TUNNEL).expect("the geometry is written");
         let out = workshop.solve("out", &[]);

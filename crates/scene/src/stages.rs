@@ -10,6 +10,7 @@ use crate::bind::{Binding, bind_with};
 use crate::bind_probes::probe_defects;
 use crate::history::PhaseEntry;
 use crate::join::{JoinedDraft, join};
+use crate::placed::name_places;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::roles::{Roles, find_group, roles};
@@ -60,7 +61,7 @@ impl Scene {
     /// stages.
     pub fn staged(&self, draft: Draft) -> Result<Staged<'_>, Vec<Defect>> {
         let faces = Faces::of(&draft);
-        let joined = join(self, draft, faces)?;
+        let joined = name_places(self, join(self, draft, faces)?)?;
         let inner = joined.faces.inner_surfaces(&joined.draft);
         let Roles {
             of_group,
