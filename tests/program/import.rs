@@ -130,7 +130,7 @@ fn a_grid_with_the_attribute_of_geos_runs() {
     );
     joint_carries_the_load(
         "grid.vtu",
-        &geos.replace("0 1 7<", "0.0 1.0 7.0<"),
+        geos.replace("0 1 7<", "0.0 1.0 7.0<"),
         "surface-7",
     );
 }
