@@ -525,6 +525,7 @@ class FixedPoint(Section):
 
 class FluidPressure(Section):
     """Pressure `value + per_metre (z - at)`, or one that varies.
+    """A pressure `value + per_metre (z - at)`, or one that varies.
 
     Args:
         value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. Required.
