@@ -302,6 +302,7 @@ impl PreparedRock<'_, '_, '_> {
             newton_iterations: record.iterations.len(),
             fractures: &fractures,
             parts: Parts::of(system, &self.state, &solution),
+            flow: None,
         });
         StepResult {
             summary,

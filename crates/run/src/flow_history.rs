@@ -1,18 +1,13 @@
-//! `history.csv` of a run in rigid rock: what flows where, load step by load step.
+//! What flows where, load step by load step: all of `history.csv` in rigid rock, and rows and
+//! columns of it in rock that deforms.
 
-use kluft_io::printable::cell;
 use kluft_solver::Step;
 
 use crate::flow_summary::{ConduitSummary, StepFlow};
-use crate::spread::Spread;
+use crate::rows::{self, HEAD, Row};
 
-/// The columns; what a row does not have is empty.
-const COLUMNS: [&str; 17] = [
-    "step",
-    "time",
-    "phase",
-    "kind",
-    "name",
+/// The columns of a flow.
+pub const OF_FLOW: [&str; 14] = [
     "pressure_min",
     "pressure_mean",
     "pressure_max",
@@ -22,10 +17,72 @@ const COLUMNS: [&str; 17] = [
     "flux_max",
     "rate",
     "pressure",
+    "volume",
     "inflow",
     "outflow",
+    "stored",
     "mass_error",
 ];
+
+/// The columns in rigid rock.
+pub fn columns() -> Vec<&'static str> {
+    [&HEAD[..], &OF_FLOW].concat()
+}
+
+/// The flow at the end of a load step.
+pub struct FlowEntry<'a> {
+    /// What flows in all.
+    pub flow: &'a StepFlow,
+    /// What flows in each fracture that conducts.
+    pub conduits: &'a [ConduitSummary],
+}
+
+impl FlowEntry<'_> {
+    /// Adds the balance to the row of the step.
+    pub fn add_balance(&self, row: &mut Row) {
+        row.number("inflow", self.flow.inflow);
+        row.number("outflow", self.flow.outflow);
+        row.number("stored", self.flow.stored);
+        row.number("mass_error", self.flow.mass_error);
+    }
+
+    /// Adds the flow in a fracture to its row, if it conducts.
+    pub fn add_conduit(&self, row: &mut Row, fracture: &str) {
+        let mut own = self.conduits.iter();
+        if let Some(conduit) = own.find(|conduit| conduit.name == fracture) {
+            row.spread("pressure", conduit.pressure);
+            row.spread("hydraulic_aperture", conduit.hydraulic_aperture);
+            row.number("flux_max", conduit.flux_max);
+        }
+    }
+
+    /// The rows of what drives the fluid in a load step, counted from 1.
+    pub fn sources(&self, step: (usize, &Step)) -> impl Iterator<Item = Row> {
+        self.flow.sources.iter().map(move |source| {
+            let mut row = Row::of(step, "source", &source.name);
+            row.number("rate", source.rate);
+            row.number("pressure", source.pressure);
+            row.number("volume", source.volume);
+            row
+        })
+    }
+
+    /// The rows of a load step in rigid rock: the step, what drives the fluid, fractures.
+    fn rows(&self, step: (usize, &Step)) -> Vec<Row> {
+        let mut whole = Row::of(step, "step", "");
+        self.add_balance(&mut whole);
+        let fractures = self.conduits.iter().map(|conduit| {
+            let mut row = Row::of(step, "fracture", &conduit.name);
+            self.add_conduit(&mut row, &conduit.name);
+            row
+        });
+        [whole]
+            .into_iter()
+            .chain(self.sources(step))
+            .chain(fractures)
+            .collect()
+    }
+}
 
 /// A table that grows by load steps.
 #[derive(Debug, Default)]
@@ -39,60 +96,8 @@ impl FlowHistory {
         &self.text
     }
 
-    /// Adds the rows of a load step, counted from 1: the step, what drives the fluid, fractures.
-    pub fn add(
-        &mut self,
-        number: usize,
-        step: &Step,
-        flow: &StepFlow,
-        conduits: &[ConduitSummary],
-    ) {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        // Writing to memory cannot fail.
-        if self.text.is_empty() {
-            let _ = table.write_record(COLUMNS);
-        }
-        let phase = step.phase.as_deref().unwrap_or_default();
-        let head = [
-            number.to_string(),
-            format!("{:e}", step.load.time),
-            cell(phase),
-        ];
-        let mut write = |kind: &str, name: &str, values: [Option<f64>; 12]| {
-            let values = values.map(|value| value.map_or_else(String::new, |v| format!("{v:e}")));
-            let row = head.iter().cloned().chain([kind.to_owned(), cell(name)]);
-            let _ = table.write_record(row.chain(values));
-        };
-        let balance = [flow.inflow, flow.outflow, flow.mass_error].map(Some);
-        write("step", "", behind([None; 9], balance));
-        for source in &flow.sources {
-            let mut values = [None; 12];
-            (values[7], values[8]) = (Some(source.rate), Some(source.pressure));
-            write("source", &source.name, values);
-        }
-        for conduit in conduits {
-            let [a, b, c] = parts(conduit.pressure);
-            let [d, e, f] = parts(conduit.hydraulic_aperture);
-            let flux = Some(conduit.flux_max);
-            write(
-                "fracture",
-                &conduit.name,
-                behind([a, b, c, d, e, f, flux, None, None], [None; 3]),
-            );
-        }
-        let bytes = table.into_inner().unwrap_or_default();
-        self.text.push_str(&String::from_utf8_lossy(&bytes));
+    /// Adds the rows of a load step, counted from 1.
+    pub fn add(&mut self, step: (usize, &Step), entry: &FlowEntry<'_>) {
+        rows::add_to(&mut self.text, &columns(), &entry.rows(step));
     }
-}
-
-/// The values of a row: those of fractures and sources, then those of the step.
-fn behind(first: [Option<f64>; 9], last: [Option<f64>; 3]) -> [Option<f64>; 12] {
-    std::array::from_fn(|place| match place {
-        0..9 => first[place],
-        _ => last[place - 9],
-    })
-}
-
-fn parts(spread: Spread) -> [Option<f64>; 3] {
-    [spread.min, spread.mean, spread.max].map(Some)
 }

@@ -1,24 +1,19 @@
 //! `history.csv`: how fractures, parts of the surface and blocks fare, load step by load step.
 
 use glam::DVec3;
-use kluft_io::printable::cell;
 use kluft_solver::{
     BlockMotion, Solution, State, Step, SurfaceResultant, System, block_motions, surface_resultants,
 };
 
-use crate::spread::Spread;
+use crate::flow_history::{self, FlowEntry, OF_FLOW};
+use crate::rows::{self, HEAD, Row};
 use crate::summary::FractureSummary;
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "history.csv";
 
-/// The columns; what a row does not have is empty.
-const COLUMNS: [&str; 34] = [
-    "step",
-    "time",
-    "phase",
-    "kind",
-    "name",
+/// The columns behind those that every row begins with.
+const COLUMNS: [&str; 29] = [
     "area",
     "volume",
     "aperture_min",
@@ -50,9 +45,23 @@ const COLUMNS: [&str; 34] = [
     "newton_iterations",
 ];
 
+/// The columns, of rock without and with a fluid.
+fn columns(has_flow: bool) -> Vec<&'static str> {
+    let mut all = [&HEAD[..], &COLUMNS].concat();
+    if has_flow {
+        // Sources share a column with blocks.
+        all.extend(OF_FLOW.iter().filter(|column| **column != "volume"));
+    }
+    all
+}
+
 /// Whether a text is a table of this kind.
 pub fn is_history(text: &str) -> bool {
-    text.lines().next() == Some(COLUMNS.join(",").as_str())
+    let kinds = [columns(false), columns(true), flow_history::columns()];
+    let head = text.lines().next();
+    kinds
+        .iter()
+        .any(|kind| head == Some(kind.join(",").as_str()))
 }
 
 /// What one load step adds.
@@ -67,6 +76,8 @@ pub struct Entry<'a> {
     pub fractures: &'a [(String, FractureSummary)],
     /// Parts of the surface, and blocks.
     pub parts: Parts<'a>,
+    /// What flows, if there is a fluid.
+    pub flow: Option<FlowEntry<'a>>,
 }
 
 /// What whole parts feel and do.
@@ -118,46 +129,8 @@ impl History {
 
     /// Adds the rows of a load step.
     pub fn add(&mut self, entry: &Entry<'_>) {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        // Writing to memory cannot fail.
-        if self.text.is_empty() {
-            let _ = table.write_record(COLUMNS);
-        }
-        for row in entry.rows() {
-            let _ = table.write_record(COLUMNS.map(|column| row.get(column)));
-        }
-        let bytes = table.into_inner().unwrap_or_default();
-        self.text.push_str(&String::from_utf8_lossy(&bytes));
-    }
-}
-
-/// Values by the names of their columns.
-struct Row(Vec<(String, String)>);
-
-impl Row {
-    fn get(&self, column: &str) -> String {
-        let found = self.0.iter().find(|(name, _)| name == column);
-        found.map_or_else(String::new, |(_, value)| value.clone())
-    }
-
-    fn number(&mut self, column: &str, value: f64) {
-        self.0.push((column.to_owned(), format!("{value:e}")));
-    }
-
-    fn spread(&mut self, column: &str, spread: Spread) {
-        for (part, value) in [
-            ("min", spread.min),
-            ("mean", spread.mean),
-            ("max", spread.max),
-        ] {
-            self.number(&format!("{column}_{part}"), value);
-        }
-    }
-
-    fn vector(&mut self, column: &str, vector: DVec3) {
-        for (axis, value) in ["x", "y", "z"].into_iter().zip(vector.to_array()) {
-            self.number(&format!("{column}_{axis}"), value);
-        }
+        let columns = columns(entry.flow.is_some());
+        rows::add_to(&mut self.text, &columns, &entry.rows());
     }
 }
 
@@ -165,49 +138,42 @@ impl Entry<'_> {
     fn rows(&self) -> Vec<Row> {
         let mut step = self.row("step", "");
         step.number("newton_iterations", self.newton_iterations as f64);
-        let fractures = self
-            .fractures
-            .iter()
-            .map(|(name, summary)| self.fracture(name, summary));
-        let surfaces = self.parts.surfaces.iter().map(|(name, resultant)| {
-            let mut row = self.row("boundary", name);
-            row.number("area", resultant.area);
-            row.vector("force", resultant.force);
-            row.vector("displacement", resultant.displacement);
-            row.number("displacement", resultant.displacement.length());
-            row
-        });
-        let blocks = self.parts.blocks.iter().enumerate().map(|(index, motion)| {
-            let mut row = self.row("block", &(index + 1).to_string());
-            row.number("volume", motion.volume);
-            row.vector("displacement", motion.displacement);
-            row.number("displacement", motion.displacement.length());
-            row.vector("rotation", motion.rotation);
-            row.number("rotation", motion.rotation.length());
-            row
-        });
+        let flow = self.flow.as_ref();
+        flow.inspect(|flow| flow.add_balance(&mut step));
+        let sources = flow.map(|flow| flow.sources((self.number, self.step)));
+        let fractures = self.fractures.iter();
+        let surfaces = self.parts.surfaces.iter();
+        let blocks = self.parts.blocks.iter().enumerate();
         [step]
             .into_iter()
-            .chain(fractures)
-            .chain(surfaces)
-            .chain(blocks)
+            .chain(fractures.map(|(name, summary)| self.fracture(name, summary)))
+            .chain(surfaces.map(|(name, resultant)| self.surface(name, resultant)))
+            .chain(blocks.map(|(index, motion)| self.block(index, motion)))
+            .chain(sources.into_iter().flatten())
             .collect()
     }
 
     fn row(&self, kind: &str, name: &str) -> Row {
-        let of_step = [
-            ("step", self.number.to_string()),
-            ("time", format!("{:e}", self.step.load.time)),
-            (
-                "phase",
-                cell(self.step.phase.as_deref().unwrap_or_default()),
-            ),
-            ("kind", kind.to_owned()),
-            ("name", cell(name)),
-        ];
-        Row(of_step
-            .map(|(column, value)| (column.to_owned(), value))
-            .to_vec())
+        Row::of((self.number, self.step), kind, name)
+    }
+
+    fn surface(&self, name: &str, resultant: &SurfaceResultant) -> Row {
+        let mut row = self.row("boundary", name);
+        row.number("area", resultant.area);
+        row.vector("force", resultant.force);
+        row.vector("displacement", resultant.displacement);
+        row.number("displacement", resultant.displacement.length());
+        row
+    }
+
+    fn block(&self, index: usize, motion: &BlockMotion) -> Row {
+        let mut row = self.row("block", &(index + 1).to_string());
+        row.number("volume", motion.volume);
+        row.vector("displacement", motion.displacement);
+        row.number("displacement", motion.displacement.length());
+        row.vector("rotation", motion.rotation);
+        row.number("rotation", motion.rotation.length());
+        row
     }
 
     fn fracture(&self, name: &str, summary: &FractureSummary) -> Row {
@@ -221,6 +187,9 @@ impl Entry<'_> {
         row.number("sliding_area", summary.sliding_area);
         row.number("closed_area", summary.closed_area);
         row.vector("force", DVec3::from(summary.force));
+        if let Some(flow) = &self.flow {
+            flow.add_conduit(&mut row, name);
+        }
         row
     }
 }

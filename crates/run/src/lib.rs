@@ -12,7 +12,7 @@
 //! | `sequence` | one body after the other, where phases remove and add volumes |
 //! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
-//! | `permeability`, `flow_history` | the equivalent permeability; the history in rigid rock |
+//! | `permeability`, `flow_history` | the equivalent permeability; the history of a flow |
 //! | `rigid`, `fluid_step` | flow alone in rigid rock; what a fluid adds in rock that deforms |
 //! | `prepare`, `adapt` | the mesh file; the search for a mesh that meets a tolerance |
 //! | `summary`, `measure`, `measures`, `accuracy` | the numbers of a run, and how accurate they are |
@@ -77,6 +77,7 @@ mod ranks;
 mod request;
 mod resume;
 mod rigid;
+mod rows;
 mod run;
 mod save;
 mod sequence;

@@ -11,6 +11,7 @@ use kluft_solver::{Flow, LinearFailure, Problem, Step, TransientFlow};
 
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
+use crate::flow_history::FlowEntry;
 use crate::flow_summary;
 use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, in_plane, integer_field, real_field};
@@ -122,8 +123,11 @@ impl Run<'_> {
         });
         let summary = made.summary(solved);
         self.summary.measures = flow_summary::measures(&solved.step, &summary.fractures);
-        let (number, conduits) = (index + 1, &summary.fractures);
-        self.flow_history.add(number, step, &solved.step, conduits);
+        let entry = FlowEntry {
+            flow: &solved.step,
+            conduits: &summary.fractures,
+        };
+        self.flow_history.add((index + 1, step), &entry);
         self.summary.flow = Some(summary);
         self.stage(Stage::Write, |run| {
             let mesh = &problem.mesh;

@@ -16,6 +16,7 @@ use crate::decisions;
 use crate::doubts;
 use crate::failures;
 use crate::flow::{RunFlow, SolvedFlow};
+use crate::flow_history::FlowEntry;
 use crate::fluid_step;
 use crate::fractures::fractures;
 use crate::grids::{fracture_grid, in_plane, rock_grid};
@@ -27,7 +28,7 @@ use crate::pieces::Piece;
 use crate::probes::{self, Solved};
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
-use crate::summary::{StepMeasures, StepSummary};
+use crate::summary::{StepMeasures, StepSummary, Summary};
 use crate::undetermined;
 use crate::unresolved;
 
@@ -423,6 +424,7 @@ impl Run<'_> {
             newton_iterations: last.map_or(0, |last| last.newton_iterations),
             fractures: &self.summary.fractures,
             parts,
+            flow: of_flow(&self.summary),
         });
         if !self.output.is_kept() {
             return Ok(());
@@ -446,4 +448,12 @@ impl Run<'_> {
         self.observer.step_ends(&result);
         self.kept.push(result);
     }
+}
+
+/// The flow after the load step that was solved last, if there is one.
+fn of_flow(summary: &Summary) -> Option<FlowEntry<'_>> {
+    Some(FlowEntry {
+        flow: summary.steps.last()?.flow.as_ref()?,
+        conduits: &summary.flow.as_ref()?.fractures,
+    })
 }
