@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::harness::Workshop;
+use serde_json::Value;
+
+use crate::harness::{Workshop, summary};
 
 /// The rows of a history; each maps columns to texts.
 fn rows(out: &Path) -> Vec<BTreeMap<String, String>> {
@@ -104,4 +106,77 @@ fn forces_on_the_surface_balance_the_weight() {
             assert_close(sum, [0.0, -weight, 9.81 * weight], 1e8);
         }
     }
+}
+
+/// What has entered a joint that fills is what it has opened, `A (b - b_0)`, and the similarity
+/// solution (Wijesinghe 1986) has 1.8683e-5 m3; the fluid is at 0.9 MPa where it enters.
+#[test]
+fn a_joint_that_fills_tells_what_enters_and_its_pressures() {
+    let workshop = Workshop::new("filling-joint", &[]);
+    let out = workshop.solve("out", &[]);
+    let all = rows(&out);
+    let of_kind = |kind: &str| -> Vec<_> { all.iter().filter(|row| row["kind"] == kind).collect() };
+    let (sources, joints) = (of_kind("source"), of_kind("fracture"));
+    assert_eq!((sources.len(), joints.len()), (10, 10));
+    for (source, joint) in sources.iter().zip(&joints) {
+        assert_eq!(
+            (&source["name"], &joint["name"]),
+            (&"[boundary.inlet]".into(), &"joint".into())
+        );
+        let opened = number(joint, "area") * (number(joint, "aperture_mean") - 1e-5);
+        let entered = number(source, "volume");
+        assert!((entered / opened - 1.0).abs() < 1e-3, "{entered} {opened}");
+        for pressure in [number(source, "pressure"), number(joint, "pressure_max")] {
+            assert!((pressure / 0.9e6 - 1.0).abs() < 1e-12, "{pressure}");
+        }
+    }
+    let entered = number(sources[9], "volume");
+    assert!((entered / 1.8683e-5 - 1.0).abs() < 3e-3, "{entered}");
+    let step = of_kind("step")[9];
+    assert!((number(step, "inflow") / number(sources[9], "rate") - 1.0).abs() < 1e-12);
+    assert!(number(step, "mass_error") < 1e-10);
+    let before = std::fs::read(out.join("history.csv")).expect("a history");
+    let run = workshop.run("out", &["--resume"]);
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    assert_eq!(
+        std::fs::read(out.join("history.csv")).expect("a history"),
+        before
+    );
+}
+
+/// The summary has the fractures of every step: the traction across `z_plane` is the load, and its
+/// aperture at the end that of the scene's closed form. Beside the history nothing differs.
+#[test]
+fn the_summary_has_the_fractures_of_every_step() {
+    let edits = [("[mesh]", "[load]\nsteps = [0.5, 1.0]\n\n[mesh]")];
+    let workshop = Workshop::new("three-planes", &edits);
+    let out = workshop.solve("out", &[]);
+    let (rows, said) = (rows(&out), summary(&out));
+    let steps = said["steps"].as_array().expect("steps");
+    assert_eq!(steps.len(), 2);
+    // Readers of numbers round their last digit.
+    let same = |found: &Value, wanted: f64| {
+        let found = found.as_f64().expect("a number");
+        assert!(
+            (found - wanted).abs() <= 1e-14 * wanted.abs(),
+            "{found} {wanted}"
+        );
+    };
+    for (step, load) in steps.iter().zip([0.5, 1.0]) {
+        let plane = &step["fractures"]["z_plane"];
+        let traction = plane["normal_traction"]["mean"].as_f64().expect("a number");
+        assert!((traction / (-10e6 * load) - 1.0).abs() < 1e-9, "{plane}");
+        let number_of_step = if load < 1.0 { "1" } else { "2" };
+        let mut own = rows.iter();
+        let row = own.find(|row| row["step"] == number_of_step && row["name"] == "z_plane");
+        let row = row.expect("a row");
+        for part in ["min", "mean", "max"] {
+            let aperture = number(row, &format!("aperture_{part}"));
+            same(&plane["aperture"][part], aperture);
+        }
+        same(&plane["slip_max"], number(row, "slip_max"));
+        same(&plane["open_area"], number(row, "open_area"));
+    }
+    let aperture = &steps[1]["fractures"]["z_plane"]["aperture"]["mean"];
+    assert!((aperture.as_f64().expect("a number") - 2.681209e-5).abs() < 1e-10);
 }

@@ -76,6 +76,10 @@ def test_a_folder_is_read_as_what_was_saved(scene, mesh, tmp_path):
         np.testing.assert_array_equal(ours, theirs)
     np.testing.assert_array_equal(read.rock.points, run.rock.points)
     assert read.fractures["joint"].numbers == run.fractures["joint"].numbers
+    for ours, theirs in zip(run.steps, read.steps):
+        known = ["aperture", "normal_traction", "slip_max", "open_area"]
+        ours, theirs = (step.fractures["joint"].numbers for step in (ours, theirs))
+        assert [theirs[key] for key in known] == [ours[key] for key in known]
 
 
 def test_results_may_stay_on_the_disk(scene, mesh, tmp_path):

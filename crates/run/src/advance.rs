@@ -24,7 +24,7 @@ use crate::output::Output;
 use crate::request::Request;
 use crate::resume;
 use crate::stages::{Interruption, Run};
-use crate::summary::{StepMeasures, StepSummary, Summary};
+use crate::summary::{StepFracture, StepMeasures, StepSummary, Summary};
 use crate::undetermined;
 use crate::unresolved;
 
@@ -293,7 +293,10 @@ impl PreparedRock<'_, '_, '_> {
             grid.cell_fields.push(undetermined::field(&facets));
         }
         let unresolved = unresolved::of_step(system, record);
-        let summary = StepSummary::of(step, StepMeasures::of(record, unresolved));
+        let summary = StepSummary {
+            fractures: StepFracture::all(&fractures),
+            ..StepSummary::of(step, StepMeasures::of(record, unresolved))
+        };
         run.summary.steps.push(summary.clone());
         run.summary.fractures.clone_from(&fractures);
         run.history.add(&Entry {

@@ -17,7 +17,7 @@ use twox_hash::XxHash3_128;
 
 use crate::flow_summary::StepFlow;
 use crate::measure::Measure;
-use crate::summary::{FractureSummary, Seconds, StepMeasures};
+use crate::summary::{FractureSummary, Seconds, StepFracture, StepMeasures};
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
@@ -60,6 +60,8 @@ pub struct Progress<'a> {
     pub flows: Vec<Option<StepFlow>>,
     /// Their grids, by which they are known again.
     pub files: Vec<StepFiles>,
+    /// Their fractures, as `summary.json` has them of every step.
+    pub step_fractures: Vec<Vec<(String, StepFracture)>>,
     /// The fractures after the last of them.
     pub fractures: Vec<(String, FractureSummary)>,
     /// Estimated error of the stress after the last of them.
@@ -294,6 +296,7 @@ mod tests {
             steps: Vec::new(),
             flows: vec![None],
             files: Vec::new(),
+            step_fractures: Vec::new(),
             fractures: Vec::new(),
             history: String::new(),
             probes: String::new(),

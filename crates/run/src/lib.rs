@@ -57,6 +57,7 @@ mod former;
 mod fractures;
 mod grids;
 mod history;
+mod json;
 mod machine;
 mod measure;
 mod measures;
@@ -116,5 +117,7 @@ pub use save::Saving;
 pub use spread::Spread;
 pub use stages::Interruption;
 pub use strength_summary::{MotionSummary, StrengthSummary, Trial};
-pub use summary::{FractureSummary, RankSummary, StepMeasures, StepSummary, Summary, Undetermined};
+pub use summary::{
+    FractureSummary, RankSummary, StepFracture, StepMeasures, StepSummary, Summary, Undetermined,
+};
 pub use threads::{ThreadCount, pool, thread_count};

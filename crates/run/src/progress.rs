@@ -57,10 +57,13 @@ impl Run<'_> {
     /// What is finished, without how to go on.
     fn progress<'a>(&self) -> Progress<'a> {
         let summary = &self.summary;
+        // A step that did not converge is no finished one.
+        let steps = summary.steps.iter().take(self.finished.len());
         Progress {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
-            flows: summary.steps.iter().map(|step| step.flow.clone()).collect(),
+            flows: steps.clone().map(|step| step.flow.clone()).collect(),
+            step_fractures: steps.map(|step| step.fractures.clone()).collect(),
             files: self.output.sums().to_vec(),
             fractures: summary.fractures.clone(),
             history: self.history.text().to_owned(),

@@ -28,7 +28,7 @@ use crate::pieces::Piece;
 use crate::probes::{self, Solved};
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
-use crate::summary::{StepMeasures, StepSummary, Summary};
+use crate::summary::{StepFracture, StepMeasures, StepSummary, Summary};
 use crate::undetermined;
 use crate::unresolved;
 
@@ -207,8 +207,9 @@ impl Run<'_> {
             }
         });
         self.summary.steps = summaries.collect();
-        for (step, flow) in self.summary.steps.iter_mut().zip(former.flows) {
-            step.flow = flow;
+        let of_steps = former.flows.into_iter().zip(former.step_fractures);
+        for (step, former) in self.summary.steps.iter_mut().zip(of_steps) {
+            (step.flow, step.fractures) = former;
         }
         self.summary.fractures = former.fractures;
         self.history = History::from_text(former.history);
@@ -303,6 +304,9 @@ impl Run<'_> {
         let facets = determinacy(system, &prepared.state);
         if let Some(facets) = &facets {
             undetermined::note_in(&mut fractures, system, facets);
+        }
+        if let Some(step) = self.summary.steps.last_mut() {
+            step.fractures = StepFracture::all(&fractures);
         }
         self.summary.fractures = fractures;
         self.summary.stress_error = accuracy.relative;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ending::Ending;
 use crate::flow_summary::{FlowSummary, StepFlow};
+use crate::json;
 use crate::measure::Measure;
 use crate::permeability_summary::PermeabilitySummary;
 use crate::provenance::Provenance;
@@ -66,6 +67,36 @@ pub struct FractureSummary {
     pub slip_uncertainty: Option<f64>,
 }
 
+/// Numbers of one fracture after one of the load steps, of which there may be many: the names and
+/// meanings are those of [`FractureSummary`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StepFracture {
+    /// Aperture (m).
+    pub aperture: Spread,
+    /// Normal traction (Pa), tension positive.
+    pub normal_traction: Spread,
+    /// Largest slip (m).
+    pub slip_max: f64,
+    /// Area that is open (m^2).
+    pub open_area: f64,
+}
+
+impl StepFracture {
+    /// Those of all fractures by name.
+    pub fn all(fractures: &[(String, FractureSummary)]) -> Vec<(String, Self)> {
+        let own = |own: &FractureSummary| Self {
+            aperture: own.aperture,
+            normal_traction: own.normal_traction,
+            slip_max: own.slip_max,
+            open_area: own.open_area,
+        };
+        let fractures = fractures.iter();
+        fractures
+            .map(|(name, summary)| (name.clone(), own(summary)))
+            .collect()
+    }
+}
+
 /// Numbers of the mesh.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct MeshSummary {
@@ -118,6 +149,9 @@ pub struct StepSummary {
     /// The flow at its end, if there is a fluid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<StepFlow>,
+    /// The fractures at its end, by name; none in rigid rock, and if it did not converge.
+    #[serde(serialize_with = "as_map", skip_serializing_if = "Vec::is_empty")]
+    pub fractures: Vec<(String, StepFracture)>,
 }
 
 /// How a load step was solved.
@@ -170,6 +204,7 @@ impl StepSummary {
             completed: 1.0,
             measures: None,
             flow: None,
+            fractures: Vec::new(),
         }
     }
 }
@@ -297,7 +332,7 @@ fn ending_in_words<S: serde::Serializer>(
 }
 
 fn as_map<S: serde::Serializer>(
-    fractures: &[(String, FractureSummary)],
+    fractures: &[(String, impl Serialize)],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     serializer.collect_map(fractures.iter().map(|(name, summary)| (name, summary)))
@@ -309,9 +344,6 @@ impl Summary {
     /// # Errors
     /// If the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Defect> {
-        write_atomically(path, |out| {
-            serde_json::to_writer_pretty(&mut *out, self)?;
-            std::io::Write::write_all(out, b"\n")
-        })
+        write_atomically(path, |out| json::write(out, self))
     }
 }

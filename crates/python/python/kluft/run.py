@@ -304,11 +304,13 @@ class FolderSource:
         return len(self._written)
 
     def numbers(self, index: int) -> tuple[str, list[tuple[str, str]]]:
-        """The numbers of a load step; those of the fractures are known of the last one only."""
+        """The numbers of a load step; of the last one, those of the fractures are all there."""
         is_last = index == len(self._written) - 1
-        fractures = self._summary["fractures"].items()
-        own = [(name, json.dumps(numbers if is_last else {})) for name, numbers in fractures]
-        return json.dumps(self._summary["steps"][index]), own
+        step = self._summary["steps"][index]
+        fractures = self._summary["fractures"]
+        known = fractures if is_last else step.get("fractures", {})
+        own = [(name, json.dumps(known.get(name, {}))) for name in fractures]
+        return json.dumps(step), own
 
     def grid(self, index: int, of_rock: bool) -> Grid:
         """The rock or the fractures of a load step."""

@@ -82,6 +82,7 @@ fn hostile(fractures: usize) -> Summary {
             phase: Some(BAD.into()),
             completed: 1.0,
             measures: None,
+            fractures: Vec::new(),
             flow: Some(flow(f64::from(i))),
         })
         .collect();
