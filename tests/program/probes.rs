@@ -104,3 +104,90 @@ fn an_inspection_tells_what_probes_hit() {
         assert!(run.out.contains(text), "{text}: {}", run.out);
     }
 }
+
+/// The scene's closed form again: the right face moves by the strain under the mean stress and the
+/// closure of the joint, which has 4e-4 m and -2e6 Pa everywhere.
+#[test]
+fn means_over_surfaces_have_the_closed_form() {
+    let probes =
+        "[probe.face]\nboundary = \"right\"\n[probe.whole]\nfracture = \"joint\"\n\n# Along";
+    let workshop = Workshop::new("water-by-depth", &[("# Along", probes)]);
+    let rows = rows(&workshop.solve("out", &[]));
+    let face = of(&rows, "face");
+    assert_eq!((face.len(), face[0]["point"].as_str()), (1, "mean"));
+    let strain = 0.9375 / 25e9 * -(2e6 + 9810.0 * 5.0);
+    let error = number(face[0], "displacement_x") - (2.0 * strain - 1e-4);
+    assert!(error.abs() < 1e-12, "{error:e}");
+    // Cells behind the face have their centres where they like, and the stress 9810 Pa in a metre.
+    let stress = number(face[0], "stress_xx");
+    assert!((stress + 2.049_05e6).abs() < 2e3, "{stress}");
+    for (axis, middle) in [("x", 2.0), ("z", 5.0)] {
+        assert!((number(face[0], axis) - middle).abs() < 1e-12);
+    }
+    let whole = of(&rows, "whole");
+    assert_eq!((whole.len(), whole[0]["point"].as_str()), (1, "mean"));
+    assert!((number(whole[0], "aperture") / 4e-4 - 1.0).abs() < 1e-9);
+    assert!((number(whole[0], "normal_traction") / -2e6 - 1.0).abs() < 1e-9);
+    assert_eq!(whole[0]["displacement_x"], "");
+    assert!(!whole[0].contains_key("pressure"), "nothing flows");
+}
+
+/// Nothing holds the upper slab down, so its top, which no condition names, rises by the mean
+/// opening of the joint: the stress in the slabs has no mean (virtual work of `u_z = z`).
+#[test]
+fn a_free_surface_rises_by_what_a_fluid_opens() {
+    let probes = "[probe.top]\nboundary = \"top\"\n[probe.joint]\nfracture = \"joint\"\n\
+                  [probe.inlet]\nfracture = \"joint\"\nat = [0, 0, 0.5]\n\n[load]";
+    let edits = [("[load]", probes), ("first = 0.1", "first = 1.0")];
+    let rows = rows(&Workshop::new("filling-joint", &edits).solve("out", &[]));
+    let pairs = of(&rows, "top").into_iter().zip(of(&rows, "joint"));
+    for (top, joint) in pairs {
+        let opened = number(joint, "aperture") - 1e-5;
+        let rise = number(top, "displacement_z");
+        assert!((rise / opened - 1.0).abs() < 1e-6, "{rise} {opened}");
+        assert_eq!(
+            (top["pressure"].as_str(), joint["step"].as_str()),
+            ("", top["step"].as_str())
+        );
+        // Of a linear joint without load from outside.
+        let carried = number(joint, "pressure");
+        assert!((carried / (1e11 * opened) - 1.0).abs() < 1e-6, "{carried}");
+    }
+    let inlet = of(&rows, "inlet");
+    assert_eq!(inlet.len(), 10);
+    for row in inlet {
+        assert!((number(row, "pressure") / 0.9e6 - 1.0).abs() < 1e-9);
+        assert_eq!(row["hydraulic_aperture"], row["aperture"]);
+    }
+}
+
+/// Water at rest in rigid rock: the pressure is that of the depth, linear, so its mean too.
+#[test]
+fn rigid_rock_has_probes_on_fractures_only() {
+    let probes = "[probe.down]\nfracture = \"joint\"\nfrom = [0.06, 0.5, 10]\nto = [0.94, 0.5, 0]\n\
+                  [probe.bed]\nfracture = \"bed\"\n\n[boundary.top]";
+    let workshop = Workshop::new("standing-water", &[("[boundary.top]", probes)]);
+    let rows = rows(&workshop.solve("out", &[]));
+    let down = of(&rows, "down");
+    assert_eq!(down.len(), 11);
+    for row in down {
+        let error = number(row, "pressure") - 9810.0 * (10.0 - number(row, "z"));
+        assert!(error.abs() < 1e-3, "{error}");
+        assert_eq!(number(row, "aperture"), 2e-4);
+        assert_eq!(
+            (row["opening"].as_str(), row["stress_xx"].as_str()),
+            ("", "")
+        );
+    }
+    let bed = of(&rows, "bed");
+    assert!((number(bed[0], "pressure") - 9810.0 * 6.0).abs() < 1e-3);
+    assert!((number(bed[0], "aperture") / 5e-5 - 1.0).abs() < 1e-12);
+    for wrong in ["at = [0.5, 0.5, 5]", "boundary = \"top\""] {
+        let probe = format!("[probe.a]\n{wrong}\n[boundary.top]");
+        let run = Workshop::new("standing-water", &[("[boundary.top]", &probe)]).run("out", &[]);
+        assert_eq!(run.code, Some(2));
+        for said in ["[probe.a]", "rigid rock", "`fracture`"] {
+            assert!(run.err.contains(said), "{said}: {}", run.err);
+        }
+    }
+}

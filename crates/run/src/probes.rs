@@ -1,10 +1,14 @@
-//! `probes.csv`: what the rock and the fractures do at the points of probes, load step by load
-//! step.
+//! `probes.csv`: what the rock and the fractures do where probes are, load step by load step.
 
 use glam::DVec3;
 use kluft_io::printable::cell;
-use kluft_scene::{Hit, Probe};
-use kluft_solver::{FacetResult, Solution, Step, System, principal, sample};
+use kluft_mesh::Mesh;
+use kluft_scene::{Hit, Probe, ProbePoint};
+use kluft_solver::{
+    FacetResult, FlowFields, RockSample, Solution, Step, System, principal, sample, surface_samples,
+};
+
+use crate::flow_summary::{ConduitSummary, conduits};
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "probes.csv";
@@ -46,14 +50,29 @@ const OF_FRACTURE: [&str; 11] = [
     "traction_y",
     "traction_z",
 ];
+/// Values of a fluid on a fracture.
+const OF_FLUID: [&str; 2] = ["pressure", "hydraulic_aperture"];
+/// Where the values on a fracture begin.
+const FRACTURE: usize = OF_ROCK.len();
+/// Where those of a fluid begin.
+const FLUID: usize = FRACTURE + OF_FRACTURE.len();
+/// All values.
+const WIDTH: usize = FLUID + OF_FLUID.len();
 
 /// Whether a text is a table of this kind.
 pub fn is_probes(text: &str) -> bool {
-    text.lines().next() == Some(head().as_str())
+    let first = text.lines().next();
+    [false, true]
+        .map(head)
+        .iter()
+        .any(|head| first == Some(head))
 }
 
-fn head() -> String {
-    [&OF_STEP[..], &OF_ROCK, &OF_FRACTURE].concat().join(",")
+/// The columns, without and with those of a fluid.
+fn head(has_fluid: bool) -> String {
+    let fluid = if has_fluid { &OF_FLUID[..] } else { &[] };
+    let all = [&OF_STEP[..], &OF_ROCK, &OF_FRACTURE, fluid];
+    all.concat().join(",")
 }
 
 /// A converged load step.
@@ -62,12 +81,30 @@ pub struct Solved<'a> {
     pub number: usize,
     /// The load step.
     pub step: &'a Step,
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// The rock, if it deforms.
+    pub rock: Option<SolvedRock<'a>>,
+    /// The fluid, if there is one.
+    pub fluid: Option<SolvedFluid<'a>>,
+}
+
+/// Rock that deforms.
+pub struct SolvedRock<'a> {
     /// The system.
     pub system: &'a System<'a>,
     /// Its solution.
     pub solution: &'a Solution,
     /// Results at the nodes of facets.
     pub nodes: &'a [FacetResult],
+}
+
+/// A fluid in fractures.
+pub struct SolvedFluid<'a> {
+    /// Its fields.
+    pub fields: &'a FlowFields,
+    /// Apertures (m) at the nodes of the facets where the rock is rigid.
+    pub apertures: &'a [f64],
 }
 
 /// Probes, and what they had after the load steps so far.
@@ -86,17 +123,52 @@ impl ProbeTable {
     }
 }
 
-/// What a point has, and where.
+/// What a place has; what does not apply is not there.
 struct Row {
     position: DVec3,
-    rock: Option<[f64; OF_ROCK.len()]>,
-    fracture: Option<[f64; OF_FRACTURE.len()]>,
+    /// Its share of a mean (m^2 where it stands for an area).
+    weight: f64,
+    values: [Option<f64>; WIDTH],
 }
 
 impl Row {
-    /// Whether the point hits anything that is there.
-    fn has_values(&self) -> bool {
-        self.rock.is_some() || self.fracture.is_some()
+    /// A row without values.
+    fn at(position: DVec3) -> Self {
+        Self {
+            position,
+            weight: 1.0,
+            values: [None; WIDTH],
+        }
+    }
+
+    /// Puts values side by side, from a column on.
+    fn put(&mut self, first: usize, values: impl IntoIterator<Item = f64>) {
+        let places = self.values[first..].iter_mut();
+        places
+            .zip(values)
+            .for_each(|(place, value)| *place = Some(value));
+    }
+
+    fn of_rock(position: DVec3, (weight, found): (f64, &RockSample)) -> Self {
+        let mut row = Self::at(position);
+        row.weight = weight;
+        let values = found.displacement.to_array().into_iter();
+        let values = values.chain(found.stress).chain(found.strain);
+        row.put(0, values.chain(principal(&found.stress)));
+        row
+    }
+
+    fn of_fracture(position: DVec3, (weight, found): (f64, &FacetResult)) -> Self {
+        let [jump, traction] = [found.jump, found.traction];
+        let across = found.normal_traction;
+        let along = traction.length_squared() - across * across;
+        let mut row = Self::at(position);
+        row.weight = weight;
+        let values = [found.aperture, found.opening].into_iter();
+        let values = values.chain(jump.to_array());
+        let values = values.chain([found.slip.length(), across, along.max(0.0).sqrt()]);
+        row.put(FRACTURE, values.chain(traction.to_array()));
+        row
     }
 }
 
@@ -107,79 +179,102 @@ impl Solved<'_> {
             return;
         }
         if text.is_empty() {
-            *text = head() + "\n";
+            *text = head(self.fluid.is_some()) + "\n";
         }
+        let conduits = match &self.fluid {
+            Some(fluid) => conduits(self.mesh, fluid.fields),
+            None => Vec::new(),
+        };
         let mut table = csv::Writer::from_writer(Vec::new());
         for probe in probes {
-            let rows: Vec<Row> = probe
-                .points
-                .iter()
-                .map(|point| self.row(point.position, &point.hit))
-                .collect();
-            let mean = mean(&rows).filter(|_| probe.mean);
-            let shown = match &mean {
-                Some(mean) => std::slice::from_ref(mean),
-                None => &rows[..],
+            let points = probe.points.iter();
+            let rows: Vec<Row> = points.map(|point| self.row(point, &conduits)).collect();
+            let shown = match probe.mean {
+                true => mean(&rows).into_iter().collect(),
+                false => rows,
             };
-            for (index, row) in shown.iter().enumerate() {
-                let name = match probe.mean {
+            for (number, row) in (1..).zip(&shown) {
+                let point = match probe.mean {
                     true => "mean".to_owned(),
-                    false => (index + 1).to_string(),
+                    false => u32::to_string(&number),
                 };
                 // Writing to memory cannot fail.
-                let _ = table.write_record(self.record(&probe.name, name, row));
+                let _ = table.write_record(self.record(&probe.name, point, row));
             }
         }
         let bytes = table.into_inner().unwrap_or_default();
         text.push_str(&String::from_utf8_lossy(&bytes));
     }
 
-    fn row(&self, position: DVec3, hit: &Hit) -> Row {
-        match hit {
-            Hit::Rock(place) => {
-                let found = sample(self.system, self.solution, place);
-                let mut values = [0.0; OF_ROCK.len()];
-                values[..3].copy_from_slice(&found.displacement.to_array());
-                values[3..9].copy_from_slice(&found.stress);
-                values[9..15].copy_from_slice(&found.strain);
-                values[15..].copy_from_slice(&principal(&found.stress));
-                Row {
-                    position,
-                    rock: Some(values),
-                    fracture: None,
-                }
+    fn row(&self, point: &ProbePoint, conduits: &[ConduitSummary]) -> Row {
+        let position = point.position;
+        match (&point.hit, &self.rock) {
+            (Hit::Rock(place), Some(rock)) => {
+                let found = sample(rock.system, rock.solution, place);
+                Row::of_rock(position, (1.0, &found))
             }
-            Hit::Nothing => Row {
-                position,
-                rock: None,
-                fracture: None,
-            },
-            Hit::Fracture(node) => {
-                let found = &self.nodes[*node];
-                let [jump, traction] = [found.jump, found.traction];
-                let across = found.normal_traction;
-                let along = (traction.length_squared() - across * across)
-                    .max(0.0)
-                    .sqrt();
-                Row {
-                    position,
-                    rock: None,
-                    fracture: Some([
-                        found.aperture,
-                        found.opening,
-                        jump.x,
-                        jump.y,
-                        jump.z,
-                        found.slip.length(),
-                        across,
-                        along,
-                        traction.x,
-                        traction.y,
-                        traction.z,
-                    ]),
-                }
+            (Hit::WholeBoundary(boundary), Some(rock)) => {
+                let found = surface_samples(rock.system, rock.solution, *boundary);
+                let facets = found.iter();
+                let facets = facets.map(|(area, own)| Row::of_rock(position, (*area, own)));
+                mean(&facets.collect::<Vec<_>>()).unwrap_or_else(|| Row::at(position))
             }
+            (Hit::Fracture(node), rock) => {
+                let mut row = match rock {
+                    Some(rock) => Row::of_fracture(position, (1.0, &rock.nodes[*node])),
+                    None => Row::at(position),
+                };
+                self.add_fluid_at(&mut row, *node);
+                row
+            }
+            (Hit::WholeFracture(fracture), rock) => {
+                let mut row = match rock {
+                    Some(rock) => rock.over_fracture(position, *fracture),
+                    None => self.rigid_over(position, *fracture),
+                };
+                let name = &self.mesh.fractures[*fracture];
+                let own = conduits.iter().find(|conduit| conduit.name == *name);
+                if let Some(own) = own {
+                    row.put(FLUID, [own.pressure.mean, own.hydraulic_aperture.mean]);
+                }
+                row
+            }
+            (Hit::Rock(_) | Hit::WholeBoundary(_), None) | (Hit::Nothing, _) => Row::at(position),
         }
+    }
+
+    /// Adds what a fluid does at a node of a facet; nothing where it cannot go.
+    fn add_fluid_at(&self, row: &mut Row, node: usize) {
+        let Some(fluid) = &self.fluid else {
+            return;
+        };
+        if self.rock.is_none() {
+            row.put(FRACTURE, [fluid.apertures[node]]);
+        }
+        let offsets = &self.mesh.facets.elements.offsets;
+        let facet = offsets.partition_point(|&start| start as usize <= node) - 1;
+        if fluid.fields.transmissivities[facet] > 0.0 {
+            let values = [&fluid.fields.pressures, &fluid.fields.hydraulic_apertures];
+            row.put(FLUID, values.map(|field| field[node]));
+        }
+    }
+
+    /// The mean aperture over a fracture in rigid rock, of each facet that of its corners.
+    fn rigid_over(&self, position: DVec3, fracture: usize) -> Row {
+        let Some(fluid) = &self.fluid else {
+            return Row::at(position);
+        };
+        let (facets, areas) = (&self.mesh.facets, self.mesh.facet_areas());
+        let own = (0..areas.len()).filter(|&facet| facets.fracture[facet] as usize == fracture);
+        let rows = own.map(|facet| {
+            let count = facets.elements.shapes[facet].corner_count();
+            let corners = &fluid.apertures[facets.elements.range(facet)][..count];
+            let mut row = Row::at(position);
+            row.weight = areas[facet].length();
+            row.put(FRACTURE, [corners.iter().sum::<f64>() / count as f64]);
+            row
+        });
+        mean(&rows.collect::<Vec<_>>()).unwrap_or_else(|| Row::at(position))
     }
 
     fn record(&self, probe: &str, point: String, row: &Row) -> Vec<String> {
@@ -192,41 +287,44 @@ impl Solved<'_> {
             cell(probe),
             point,
         ];
-        record.extend(row.position.to_array().map(number));
-        match row.rock {
-            Some(values) => record.extend(values.map(number)),
-            None => record.extend(OF_ROCK.map(|_| String::new())),
-        }
-        match row.fracture {
-            Some(values) => record.extend(values.map(number)),
-            None => record.extend(OF_FRACTURE.map(|_| String::new())),
-        }
+        let place = row
+            .position
+            .to_array()
+            .map(|x| Some(x).filter(|x| !x.is_nan()));
+        let width = if self.fluid.is_some() { WIDTH } else { FLUID };
+        let values = place.iter().chain(&row.values[..width]);
+        record.extend(values.map(|value| value.map_or_else(String::new, number)));
         record
     }
 }
 
-/// The mean of rows of one kind.
+impl SolvedRock<'_> {
+    /// The mean over a fracture at the points where its law is integrated.
+    fn over_fracture(&self, position: DVec3, fracture: usize) -> Row {
+        let points = self.system.discretisation().interface().points().iter();
+        let pairs = points.zip(&self.solution.facet_points);
+        let own = pairs.filter(|(point, _)| point.fracture as usize == fracture);
+        let rows = own.map(|(point, found)| Row::of_fracture(position, (point.area, found)));
+        mean(&rows.collect::<Vec<_>>()).unwrap_or_else(|| Row::at(position))
+    }
+}
+
+/// The mean of rows by their weights, of each value over the rows that have it.
 fn mean(rows: &[Row]) -> Option<Row> {
     let count = rows.len() as f64;
-    let present: Vec<&Row> = rows.iter().filter(|row| row.has_values()).collect();
-    let shared = present.len() as f64;
-    fn of<const N: usize>(all: impl Iterator<Item = [f64; N]>, count: f64) -> [f64; N] {
-        let mut sums = [0.0; N];
-        for values in all {
-            sums.iter_mut()
-                .zip(values)
-                .for_each(|(sum, value)| *sum += value);
+    let position = rows.iter().map(|row| row.position).sum::<DVec3>() / count;
+    let of_column = |column: usize| {
+        let present = rows.iter();
+        let present = present.filter_map(|row| Some((row.weight, row.values[column]?)));
+        let [mut weights, mut sum] = [0.0; 2];
+        for (weight, value) in present {
+            weights += weight;
+            sum += weight * value;
         }
-        sums.map(|sum| sum / count)
-    }
-    let rock = present.iter().filter_map(|row| row.rock);
-    let fracture = present.iter().filter_map(|row| row.fracture);
-    let first = present.first();
+        (weights != 0.0).then(|| sum / weights)
+    };
     (!rows.is_empty()).then(|| Row {
-        position: rows.iter().map(|row| row.position).sum::<DVec3>() / count,
-        rock: first.and_then(|row| row.rock).map(|_| of(rock, shared)),
-        fracture: first
-            .and_then(|row| row.fracture)
-            .map(|_| of(fracture, shared)),
+        values: std::array::from_fn(of_column),
+        ..Row::at(position)
     })
 }

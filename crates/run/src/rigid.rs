@@ -17,6 +17,7 @@ use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, in_plane, integer_field, real_field};
 use crate::history;
 use crate::observer::Stage;
+use crate::probes::{Solved, SolvedFluid};
 use crate::stages::{Interruption, Run, newton_settings};
 use crate::summary::StepSummary;
 use crate::unresolved;
@@ -144,6 +145,16 @@ impl Run<'_> {
                 run.keep(rock(), fractures());
             }
             Ok::<(), Interruption>(())
+        })?;
+        self.write_probes(&Solved {
+            number: index + 1,
+            step,
+            mesh: &problem.mesh,
+            rock: None,
+            fluid: Some(SolvedFluid {
+                fields: &solved.fields,
+                apertures: made.apertures(),
+            }),
         })?;
         self.write_summary()?;
         Ok(())

@@ -110,7 +110,10 @@ fn solve(
     }
     let binding = run.prepare(former.as_ref())?;
     match &binding.flow {
-        Some(flow) if run.request.scene.is_rigid() => run.solve_flow(&binding.problem, flow),
+        Some(flow) if run.request.scene.is_rigid() => {
+            run.probes.all.clone_from(&binding.probes);
+            run.solve_flow(&binding.problem, flow)
+        }
         _ => run.solve(&binding, former),
     }
 }

@@ -25,7 +25,7 @@ use crate::measures::{energy, measures};
 use crate::observer::{Stage, StepStart};
 use crate::outcome::StepResult;
 use crate::pieces::Piece;
-use crate::probes::{self, Solved};
+use crate::probes::{self, Solved, SolvedFluid, SolvedRock};
 use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings, solved};
 use crate::summary::{StepFracture, StepMeasures, StepSummary, Summary};
@@ -334,7 +334,7 @@ impl Run<'_> {
         };
         self.write_grids(prepared, &written)?;
         self.write_sources()?;
-        self.write_probes(prepared, &solution, &nodes)?;
+        self.probe(prepared, (&solution, &nodes), flow.as_ref())?;
         self.write_history(prepared, &solution)
     }
 
@@ -386,24 +386,40 @@ impl Run<'_> {
     }
 
     /// Adds the load step that was solved last to the values of probes.
-    fn write_probes(
+    fn probe(
         &mut self,
         prepared: &Prepared<'_, '_>,
-        solution: &Solution,
-        nodes: &[FacetResult],
+        (solution, nodes): (&Solution, &[FacetResult]),
+        flow: Option<&SolvedFlow>,
     ) -> Result<(), Interruption> {
+        let number = self.finished.len();
+        let system = prepared.system;
+        let solved = Solved {
+            number,
+            step: &system.problem().schedule.steps[number - 1],
+            mesh: &system.problem().mesh,
+            rock: Some(SolvedRock {
+                system,
+                solution,
+                nodes,
+            }),
+            fluid: flow.map(|flow| SolvedFluid {
+                fields: &flow.fields,
+                apertures: &[],
+            }),
+        };
+        self.write_probes(&solved)
+    }
+
+    /// Adds a load step to the values of probes, if there are any.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub(crate) fn write_probes(&mut self, solved: &Solved<'_>) -> Result<(), Interruption> {
         if self.probes.all.is_empty() || !self.output.is_kept() {
             return Ok(());
         }
-        let number = self.finished.len();
-        let solved = Solved {
-            number,
-            step: &prepared.system.problem().schedule.steps[number - 1],
-            system: prepared.system,
-            solution,
-            nodes,
-        };
-        self.probes.add(&solved);
+        self.probes.add(solved);
         let text = &self.probes.text;
         let write = |path: &Path| write_atomically(path, |out| out.write_all(text.as_bytes()));
         Ok(self.output.write(probes::NAME, write)?)

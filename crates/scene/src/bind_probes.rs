@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 use kluft_keys::section_head;
-use kluft_mesh::{Defect, Mesh, nearest};
+use kluft_mesh::{Defect, Elements, Mesh, nearest};
 use kluft_solver::{InCell, locate};
+use lie_core::load_areas;
 
-use crate::probe::ProbeEntry;
+use crate::probe::{ProbeEntry, ProbedPart};
 use crate::scene::{Named, Scene};
 
 /// A probe on a mesh.
@@ -35,6 +36,10 @@ pub enum Hit {
     Rock(InCell),
     /// A node of a facet: its index in the flat node list of the facets.
     Fracture(usize),
+    /// All of a fracture, by its number.
+    WholeFracture(usize),
+    /// All of a part of the outer surface, by its number.
+    WholeBoundary(usize),
     /// Nothing that is there now.
     Nothing,
 }
@@ -75,6 +80,10 @@ pub(crate) fn bind_probes(
 
 /// A probe on a mesh that other phases have other volumes of: what it misses now has no values.
 fn as_far_as_there(mesh: &Mesh, entry: &Named<ProbeEntry>) -> Probe {
+    let absent = |position: DVec3| ProbePoint {
+        position,
+        hit: Hit::Nothing,
+    };
     let point = |&position: &DVec3| {
         let single = Named {
             value: ProbeEntry {
@@ -85,14 +94,16 @@ fn as_far_as_there(mesh: &Mesh, entry: &Named<ProbeEntry>) -> Probe {
         };
         let found = hits(mesh, &single, &mut Vec::new()).ok();
         let found = found.and_then(|mut points| points.pop());
-        found.unwrap_or(ProbePoint {
-            position,
-            hit: Hit::Nothing,
-        })
+        found.unwrap_or_else(|| absent(position))
+    };
+    let points = match entry.value.points.is_empty() {
+        // Where it is without any area, nobody knows.
+        true => hits(mesh, entry, &mut Vec::new()).unwrap_or_else(|_| vec![absent(DVec3::NAN)]),
+        false => entry.value.points.iter().map(point).collect(),
     };
     Probe {
         name: entry.name.clone(),
-        points: entry.value.points.iter().map(point).collect(),
+        points,
         mean: entry.value.mean,
     }
 }
@@ -101,6 +112,8 @@ fn as_far_as_there(mesh: &Mesh, entry: &Named<ProbeEntry>) -> Probe {
 pub(crate) fn probe_defects(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
     let probes = scene.probes.iter();
     probes
+        // Walls of what is cut later are not there yet; their names have been looked up.
+        .filter(|entry| entry.value.boundary().is_none())
         .filter_map(|entry| hits(mesh, entry, &mut Vec::new()).err())
         .collect()
 }
@@ -111,9 +124,10 @@ fn hits(
     entry: &Named<ProbeEntry>,
     decisions: &mut Vec<String>,
 ) -> Result<Vec<ProbePoint>, Defect> {
-    match &entry.value.fracture {
-        Some(fracture) => on_fracture(mesh, entry, fracture, decisions),
-        None => in_rock(mesh, entry, decisions),
+    match &entry.value.part {
+        ProbedPart::Rock => in_rock(mesh, entry, decisions),
+        ProbedPart::Boundary(name) => over_boundary(mesh, entry, name, decisions),
+        ProbedPart::Fracture(name) => on_fracture(mesh, entry, name, decisions),
     }
 }
 
@@ -154,23 +168,84 @@ fn away(entry: &Named<ProbeEntry>, first: DVec3, count: usize, what: &str) -> De
     Defect::new(&entry.place, problem, "move the probe, or make it shorter")
 }
 
+fn over_boundary(
+    mesh: &Mesh,
+    entry: &Named<ProbeEntry>,
+    name: &str,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<ProbePoint>, Defect> {
+    let mut all = mesh.boundaries.iter();
+    let Some(index) = all.position(|boundary| boundary.name == name) else {
+        let known = mesh.boundaries.iter().map(|own| own.name.as_str());
+        let known: Vec<&str> = known.collect();
+        let problem = format!("`{name}` is no part of the outer surface");
+        let remedy = format!("parts that have names: {}", known.join(", "));
+        return Err(Defect::new(&entry.place, problem, remedy));
+    };
+    let elements = &mesh.boundaries[index].elements;
+    let facets: Vec<usize> = (0..elements.len()).collect();
+    let hit = Hit::WholeBoundary(index);
+    whole(mesh, (elements, &facets), (entry, name, hit), decisions)
+}
+
+/// The one point of a probe that is on facets as a whole: their centre.
+fn whole(
+    mesh: &Mesh,
+    (elements, facets): (&Elements, &[usize]),
+    (entry, name, hit): (&Named<ProbeEntry>, &str, Hit),
+    decisions: &mut Vec<String>,
+) -> Result<Vec<ProbePoint>, Defect> {
+    let (mut area, mut moment) = (0.0, DVec3::ZERO);
+    for &facet in facets {
+        let nodes = elements.nodes_of(facet).iter();
+        let places: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+        let sizes = load_areas(elements.shapes[facet], &places);
+        for (place, (size, _)) in places.iter().zip(sizes) {
+            area += size;
+            moment += size * *place;
+        }
+    }
+    if area == 0.0 {
+        let problem = format!("`{name}` has no area");
+        return Err(Defect::new(&entry.place, problem, "remove the probe"));
+    }
+    decisions.push(format!(
+        "{}: mean over {area:.6e} m2 of `{name}`, {} facets",
+        section_head("probe", &entry.name),
+        facets.len()
+    ));
+    let position = moment / area;
+    Ok(vec![ProbePoint { position, hit }])
+}
+
+/// The fracture of a name.
+fn fracture_called(mesh: &Mesh, entry: &Named<ProbeEntry>, name: &str) -> Result<usize, Defect> {
+    let found = mesh.fractures.iter().position(|own| own == name);
+    found.ok_or_else(|| {
+        let known = mesh.fractures.iter().map(String::as_str);
+        let remedy = match nearest(name, known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("fractures of the mesh: {}", mesh.fractures.join(", ")),
+        };
+        let problem = format!("`{name}` is no fracture of the mesh");
+        Defect::new(&entry.place, problem, remedy)
+    })
+}
+
 fn on_fracture(
     mesh: &Mesh,
     entry: &Named<ProbeEntry>,
     fracture: &str,
     decisions: &mut Vec<String>,
 ) -> Result<Vec<ProbePoint>, Defect> {
-    let Some(index) = mesh.fractures.iter().position(|name| name == fracture) else {
-        let known = mesh.fractures.iter().map(String::as_str);
-        let remedy = match nearest(fracture, known) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("fractures of the mesh: {}", mesh.fractures.join(", ")),
-        };
-        let problem = format!("`{fracture}` is no fracture of the mesh");
-        return Err(Defect::new(&entry.place, problem, remedy));
-    };
+    let index = fracture_called(mesh, entry, fracture)?;
     let elements = &mesh.facets.elements;
     let own = (0..elements.len()).filter(|&facet| mesh.facets.fracture[facet] as usize == index);
+    if entry.value.points.is_empty() {
+        let hit = Hit::WholeFracture(index);
+        let own: Vec<usize> = own.collect();
+        return whole(mesh, (elements, &own), (entry, fracture, hit), decisions);
+    }
     let nodes: Vec<usize> = own.flat_map(|facet| elements.range(facet)).collect();
     let position = |slot: usize| mesh.nodes[elements.nodes[slot] as usize];
     let mut farthest = 0.0_f64;

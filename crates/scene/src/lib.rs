@@ -60,7 +60,7 @@ pub use load::Clock;
 pub use oracle::{Extent, JumpProfile, Oracle};
 pub use place::SurfacePlace;
 pub use placed::name_places;
-pub use probe::ProbeEntry;
+pub use probe::{ProbeEntry, ProbedPart};
 pub use read::check_conditions;
 pub use refine::refine;
 pub use remedies::in_terms_of_scene;

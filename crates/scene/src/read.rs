@@ -142,7 +142,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let body = read_body(root, clock);
     // Of `kluft study`, which reads it.
     root.section("study");
-    let probe = |(name, s)| entry(source, name, s, read_probe);
+    let probe = |(name, s)| entry(source, name, s, |s| read_probe(s, setting));
     let oracle = |(name, s)| entry(source, name, s, oracle::read);
     let flowing = read_flow(root, &body);
     Some(Scene {
@@ -442,7 +442,13 @@ fn refuse_in_rigid_solver(root: &Section<'_, '_>) {
 
 /// The same in a scene, and a mesh that is to follow an error which nobody estimates.
 fn refuse_in_rigid_scene(root: &Section<'_, '_>) {
-    refuse_in_rigid_rock(root, &["fixed_point", "initial_stress", "oracle", "probe"]);
+    let idle = [
+        "fixed_point",
+        "initial_stress",
+        "oracle",
+        "strength_reduction",
+    ];
+    refuse_in_rigid_rock(root, &idle);
     refuse_in_rigid_solver(root);
     if let Some(mesh) = root.section("mesh").filter(|mesh| mesh.has("adapt")) {
         let problem = "no error of a mesh in rigid rock is estimated: no rock has a young_modulus";

@@ -129,6 +129,7 @@ fn surface_roles(
 ) -> Result<Vec<SurfaceRole>, Vec<Defect>> {
     let mut defects = Vec::new();
     let mut roles = vec![SurfaceRole::Unused; draft.groups.len()];
+    let mut probed = Vec::new();
     let mut assign = |name: &str, place: &str, role: SurfaceRole, roles: &mut Vec<SurfaceRole>| {
         match find_group(&draft.groups, name, 2, place) {
             Ok(group) if roles[group] == SurfaceRole::Unused => roles[group] = role,
@@ -145,6 +146,16 @@ fn surface_roles(
     }
     for entry in &scene.boundaries {
         assign(&entry.name, &entry.place, SurfaceRole::Boundary, &mut roles);
+    }
+    let is_named = |name: &str| scene.boundaries.iter().any(|entry| entry.name == name);
+    for entry in &scene.probes {
+        // What a probe alone names is free.
+        let own = entry.value.boundary().filter(|name| !is_named(name));
+        let Some(name) = own.filter(|name| !probed.contains(name)) else {
+            continue;
+        };
+        probed.push(name);
+        assign(name, &entry.place, SurfaceRole::Boundary, &mut roles);
     }
     defects.extend(volume_names(scene, &draft.groups));
     if scene.fractures.iter().any(|entry| entry.name == DEFAULT) {

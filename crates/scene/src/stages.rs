@@ -445,11 +445,15 @@ fn never_outside(scene: &Scene, whole: &Whole, plans: &[Plan]) -> Vec<Defect> {
     hidden
         .filter_map(|(group, _)| {
             let name = &whole.draft().groups[group].name;
-            let entry = scene.boundaries.iter().find(|entry| entry.name == *name)?;
+            let mut conditions = scene.boundaries.iter();
+            let mut probes = scene.probes.iter();
+            let condition = conditions.find(|entry| entry.name == *name);
+            let probe = probes.find(|entry| entry.value.boundary() == Some(name));
+            let place = condition.map(|entry| &entry.place);
             Some(Defect::new(
-                &entry.place,
+                place.or(probe.map(|entry| &entry.place))?,
                 format!("`{name}` lies inside the rock in all phases"),
-                "conditions act on the outer surface; let a phase remove the volume on one side of it",
+                "conditions and probes of boundaries are on the outer surface; let a phase remove the volume on one side of it",
             ))
         })
         .collect()

@@ -69,7 +69,7 @@ pub use problem::{
     VaryingLaw, VaryingLoad, VaryingPressure,
 };
 pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
-pub use sample::{InCell, RockSample, locate, principal, sample};
+pub use sample::{InCell, RockSample, locate, principal, sample, surface_samples};
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use space::pattern::{CellOfSlot, Pattern};
 pub use space::rigid_modes::UNHELD_BLOCK;

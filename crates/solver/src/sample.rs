@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use kluft_mesh::{Mesh, Shape};
 use lie_core::kernel::{self, MAX_NODES};
-use lie_core::{SymmetricStress, rule};
+use lie_core::{SymmetricStress, load_areas, rule};
 use rayon::prelude::*;
 
 use crate::solution::Solution;
@@ -130,13 +130,52 @@ pub fn sample(system: &System<'_>, solution: &Solution, place: &InCell) -> RockS
     );
     let moved = cell.moved().iter().zip(&place.shares);
     let displacement = moved.map(|(u, share)| *u * *share).sum();
-    let cell = cell.strained(system.strain_offsets(), place.cell);
+    in_cell(system, solution, (place.cell, cell), displacement)
+}
+
+/// Stress and strain of a cell, with a displacement.
+fn in_cell(
+    system: &System<'_>,
+    solution: &Solution,
+    (index, cell): (usize, Cell<'_>),
+    displacement: DVec3,
+) -> RockSample {
+    let cell = cell.strained(system.strain_offsets(), index);
     let gradient = kernel::mean_gradient(cell.shape, cell.nodes(), cell.moved());
     RockSample {
         displacement,
-        stress: solution.stresses[place.cell],
+        stress: solution.stresses[index],
         strain: components(0.5 * (gradient + gradient.transpose())),
     }
+}
+
+/// What the rock does on each facet of a part of the outer surface, with its area (m^2): the mean
+/// displacement over it, stress and strain of the cell behind it.
+pub fn surface_samples(
+    system: &System<'_>,
+    solution: &Solution,
+    boundary: usize,
+) -> Vec<(f64, RockSample)> {
+    let mesh = &system.problem().mesh;
+    let points = system.discretisation().points();
+    let surface = &mesh.boundaries[boundary];
+    let of_facet = |facet: usize| {
+        let elements = &surface.elements;
+        let nodes = elements.nodes_of(facet).iter();
+        let places: Vec<DVec3> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+        let sizes = load_areas(elements.shapes[facet], &places);
+        let slots = &surface.slots[elements.range(facet)];
+        let (mut area, mut moved) = (0.0, DVec3::ZERO);
+        for (&slot, (size, _)) in slots.iter().zip(sizes) {
+            let point = points.of_cell_node[slot as usize] as usize;
+            area += size;
+            moved += size * solution.displacements[point];
+        }
+        let index = surface.cell[facet] as usize;
+        let cell = Cell::of(system.problem(), points, &solution.displacements, index);
+        (area, in_cell(system, solution, (index, cell), moved / area))
+    };
+    (0..surface.elements.len()).map(of_facet).collect()
 }
 
 /// Eigenvalues of a symmetric tensor `xx, yy, zz, xy, yz, xz`, ascending (O. K. Smith,

@@ -39,4 +39,32 @@ pub(super) const CASES: &[Case] = &[
         ],
         ..SOUND
     },
+    Case {
+        name: "surfaces that are none, and points on them",
+        scene: &[(
+            "[boundary.top]",
+            "[probe.a]\nboundary = \"top\"\nat = [0, 0, 0]\n[probe.b]\nfracture = \"joint\"\nmean = false\n\
+             [boundary.top]",
+        )],
+        defects: 2,
+        says: &[
+            "both `boundary` and `at` are given",
+            "a probe of a whole surface is a mean",
+        ],
+        ..SOUND
+    },
+    Case {
+        name: "a surface that the mesh has not, and a fracture",
+        scene: &[(
+            "[boundary.top]",
+            "[probe.a]\nboundary = \"tpo\"\n[probe.b]\nboundary = \"joint\"\n[boundary.top]",
+        )],
+        defects: 2,
+        says: &[
+            "`tpo`",
+            "did you mean `top`?",
+            "`joint` is both a fracture and a boundary",
+        ],
+        ..SOUND
+    },
 ];

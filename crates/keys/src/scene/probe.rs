@@ -19,13 +19,26 @@ const fn position(
     }
 }
 
+/// What stands for points.
+const POINTLESS: &str = "the other is given, or all of a surface is meant";
+
 /// A probe.
 pub static PROBE: KeySection = KeySection {
     pattern: "[probe.NAME]",
-    says: "Points whose values `probes.csv` has after each load step, in the rock or on a fracture",
+    says: "Points or surfaces whose values `probes.csv` has after each load step, in rock or on fractures",
     keys: &[
-        position("at", Need::Or("from"), "[0.5, 0.5, 2.0]", "One point"),
-        position("from", Need::Or("at"), "[0, 0, 0]", "Where a line begins"),
+        position(
+            "at",
+            Need::Unless(POINTLESS),
+            "[0.5, 0.5, 2.0]",
+            "One point",
+        ),
+        position(
+            "from",
+            Need::Unless(POINTLESS),
+            "[0, 0, 0]",
+            "Where a line begins",
+        ),
         position(
             "to",
             Need::Without("required with `from`"),
@@ -57,14 +70,21 @@ pub static PROBE: KeySection = KeySection {
             kind: Kind::Text,
             need: Need::Without("in the rock"),
             example: "\"fault\"",
-            says: "The fracture whose nearest nodes are taken, with aperture, jump and tractions",
+            says: "The fracture whose nearest nodes are taken, with aperture, jump and tractions, and with `[fluid]` pressure and hydraulic aperture; without points, their mean by area over all of it",
+        },
+        Key {
+            name: "boundary",
+            kind: Kind::Text,
+            need: Need::Without("in the rock"),
+            example: "\"wall\"",
+            says: "The part of the outer surface over which displacement, stress and strain are averaged by area",
         },
         Key {
             name: "mean",
             kind: Kind::Flag,
             need: Need::Default("false"),
             example: "true",
-            says: "Whether the mean of the points is written instead of each",
+            says: "Whether the mean of the points is written instead of each; over a whole surface it always is",
         },
     ],
     also: None,

@@ -27,19 +27,24 @@ class Section:
 
 
 class Probe(Section):
-    """Points whose values `probes.csv` has after each load step, in the rock or on a fracture.
+    """Points or surfaces whose values `probes.csv` has after each load step, in rock or on fractures.
 
     Args:
-        at: One point (m). This or `from` is required.
-        from_: Where a line begins (m). This or `at` is required.
+        at: One point (m). Required, unless the other is given, or all of a surface is meant.
+        from_: Where a line begins (m). Required, unless the other is given, or all of a surface is
+            meant.
         to: Where it ends (m). Without it: required with `from`.
         count: Points on the line, both ends included; 2 to 10000. Without it 11.
         across: Vector by which the last of `rows` lines is moved from the first: a plane (m).
             Without it: a line.
         rows: Lines of a plane; 2 to 10000. Without it 11.
-        fracture: The fracture whose nearest nodes are taken, with aperture, jump and tractions.
-            Without it: in the rock.
-        mean: Whether the mean of the points is written instead of each. Without it false.
+        fracture: The fracture whose nearest nodes are taken, with aperture, jump and tractions, and
+            with `[fluid]` pressure and hydraulic aperture; without points, their mean by area over
+            all of it. Without it: in the rock.
+        boundary: The part of the outer surface over which displacement, stress and strain are
+            averaged by area. Without it: in the rock.
+        mean: Whether the mean of the points is written instead of each; over a whole surface it
+            always is. Without it false.
     """
 
     def __init__(
@@ -52,6 +57,7 @@ class Probe(Section):
         across: Sequence[Quantity] | None = None,
         rows: int | None = None,
         fracture: str | None = None,
+        boundary: str | None = None,
         mean: bool | None = None,
     ) -> None:
         super().__init__(
@@ -62,6 +68,7 @@ class Probe(Section):
             across=across,
             rows=rows,
             fracture=fracture,
+            boundary=boundary,
             mean=mean,
         )
 
