@@ -71,6 +71,8 @@ fn a_lining_takes_what_the_walls_let_go_after_it() {
     let once = "remove = [\"core\", \"ring\"]\nadd = [\"ring\"]\nadded_as = \"concrete\"\n";
     let later = Workshop::new("lined-tunnel", &[(once, phases)]);
     let later = later.solve("out", &[]);
+    let page = fs::read_to_string(later.join("report.html")).expect("a page");
+    assert!(page.contains("Displacement at probes"));
     // The rock has moved by 40 % of Kirsch before, and by 60 % of the lined tunnel after.
     let [side, crown] = [
         0.4 * -6.536023e-3 + 0.6 * -4.266462e-3,

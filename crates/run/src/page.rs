@@ -4,6 +4,7 @@ mod curves;
 mod fractures;
 mod iterations;
 mod numbers;
+mod probe_curves;
 
 use kluft_chart::Chart;
 use kluft_report::{Frame, Page, Surface};
@@ -52,6 +53,8 @@ pub struct Told<'a> {
     pub summary: &'a Summary,
     /// The text of `history.csv`.
     pub history: &'a str,
+    /// The text of `probes.csv`.
+    pub probes: &'a str,
     /// How Newton's method went.
     pub iterations: &'a Iterations,
     /// What can be drawn.
@@ -83,6 +86,9 @@ impl Told<'_> {
         fractures::add(&mut page, summary);
         let curves = curves::of_history(self.history);
         let curves = curves.into_iter().chain(curves::of_sources(&summary.steps));
+        let curves = probe_curves::of_probes(self.probes)
+            .into_iter()
+            .chain(curves);
         charts(&mut page, "Curves", &curves.collect::<Vec<_>>());
         numbers::add_steps(&mut page, &summary.steps);
         if let Some(found) = &summary.permeability {

@@ -75,6 +75,7 @@ impl<'a> Saving<'a> {
         let told = Told {
             summary: &summary,
             history: self.history,
+            probes: "",
             iterations: &Iterations::default(),
             shown: output.shown(),
             scene: None,

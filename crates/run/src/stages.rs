@@ -414,6 +414,7 @@ impl<'a> Run<'a> {
         let told = Told {
             summary: &self.summary,
             history,
+            probes: &self.probes.text,
             iterations: &self.iterations,
             shown: self.output.shown(),
             scene: self.request.origin.map(|origin| origin.text),

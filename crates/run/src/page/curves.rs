@@ -27,13 +27,13 @@ const COLUMNS: [(&str, &str, Measured); 5] = [
 ];
 
 /// What an axis measures, and its unit.
-type Measured = (&'static str, &'static str);
+pub(super) type Measured = (&'static str, &'static str);
 
-const APERTURE: Measured = ("aperture", "m");
-const TIME: Measured = ("time", "");
+pub(super) const APERTURE: Measured = ("aperture", "m");
+pub(super) const TIME: Measured = ("time", "");
 
-/// A value of a fracture after each load step: names, and times with values.
-type Curves = Vec<(String, Vec<(f64, f64)>)>;
+/// A value after each load step: names, and times with values.
+pub(super) type Curves = Vec<(String, Vec<(f64, f64)>)>;
 
 /// The curves of the fractures in a `history.csv`: over time, and the closure curve. None of a run
 /// of one step.
@@ -76,7 +76,8 @@ fn closure(text: &str) -> Option<Chart> {
     varies.then(|| chart("Closure", [APERTURE, ("compression", "Pa")], curves))
 }
 
-fn chart(title: &str, axes: [Measured; 2], curves: Curves) -> Chart {
+/// The curves that move most over one pair of axes.
+pub(super) fn chart(title: &str, axes: [Measured; 2], curves: Curves) -> Chart {
     let count = curves.len();
     let mut best = curves;
     // A curve that moves says more than one that does not; ties keep the order of the file.
@@ -138,7 +139,7 @@ fn push(curves: &mut Curves, name: &str, point: (f64, f64)) {
 }
 
 /// How far the values of a curve lie apart.
-fn spread(points: &[(f64, f64)]) -> f64 {
+pub(super) fn spread(points: &[(f64, f64)]) -> f64 {
     let values = points.iter().map(|point| point.1);
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(value), high.max(value)]

@@ -127,6 +127,7 @@ fn html(summary: &Summary, shown: Option<&Shown>, scene: &str) -> String {
         summary,
         history: "step,time,kind,name,aperture_mean,normal_traction_mean\n\
             1,1,fracture,<script>,1e-4,-1\n2,2,fracture,<script>,2e-4,-2\n",
+        probes: "",
         iterations: &Iterations::default(),
         shown,
         scene: Some(scene),
