@@ -192,7 +192,7 @@ fn a_block_that_is_pulled_off_is_named() {
         scenes::load(&mut problem, "top", DVec3::new(0.0, 0.0, 1e6));
         let (record, _) = walk(&problem, &[1.0]).remove(0);
         assert_eq!(record.outcome, StepOutcome::RigidBodyMotion);
-        let block = &record.rigid_motions[0];
+        let block = &record.rigid_motions[0].told;
         assert!(block.problem.contains("translation along z"), "{block}");
         assert!(block.remedy.contains("`joints`"), "{block}");
     }

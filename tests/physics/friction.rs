@@ -75,8 +75,13 @@ fn a_plane_of_weakness_slides_at_jaegers_load() {
                 "{}",
                 record.completed
             );
-            assert!(record.rigid_motions[0].problem.contains("nothing holds it"));
-            assert!(record.rigid_motions[0].remedy.contains("`joint`"));
+            assert!(
+                record.rigid_motions[0]
+                    .told
+                    .problem
+                    .contains("nothing holds it")
+            );
+            assert!(record.rigid_motions[0].told.remedy.contains("`joint`"));
         }
     }
 }

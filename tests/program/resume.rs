@@ -4,13 +4,15 @@
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use kluft_mesh::Defect;
-use kluft_run::{Ending, MeshInput, Observer, Origin, Outcome, Request, Stage};
+use kluft_run::{Ending, MeshInput, Observer, Origin, Outcome, Request, Stage, StepStart};
 use kluft_scene::Scene;
+use kluft_solver::Iteration;
 use serde_json::Value;
 
 use crate::harness::{
@@ -369,10 +371,21 @@ fn solve_in_two_steps(
     resume: bool,
     observer: &mut dyn Observer,
 ) -> Result<Outcome, Vec<Defect>> {
-    let place = root().join("geometries/inclined-joint");
+    let steps = |text: String| format!("{text}\n[load]\nsteps = [0.5, 1.0]\n");
+    solve_geometry("inclined-joint", steps, (folder, resume), observer)
+}
+
+/// Solves a geometry with an edit of its scene into a folder, from where a former run stopped if
+/// that is asked for.
+fn solve_geometry(
+    name: &str,
+    edit: impl Fn(String) -> String,
+    (folder, resume): (&Path, bool),
+    observer: &mut dyn Observer,
+) -> Result<Outcome, Vec<Defect>> {
+    let place = root().join("geometries").join(name);
     let file = place.join("scene.toml");
-    let text = fs::read_to_string(&file).expect("a scene");
-    let text = format!("{text}\n[load]\nsteps = [0.5, 1.0]\n");
+    let text = edit(fs::read_to_string(&file).expect("a scene"));
     let scene = Scene::parse(&text, "scene.toml", &place).expect("a sound scene");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
     let pool = pool.expect("threads");
@@ -408,4 +421,51 @@ fn a_run_that_dies_after_its_last_step_ends_when_it_is_resumed() {
     assert!(page.is_file());
     let again = solve_in_two_steps(&died, true, &mut ()).expect("no defects");
     assert_eq!(again.ending, Ending::NothingLeft);
+}
+
+/// Stops a run in the middle of the search for a factor of safety.
+struct Doubter {
+    factors: usize,
+}
+
+impl Observer for Doubter {
+    fn step_begins(&mut self, step: StepStart<'_>) {
+        self.factors += usize::from(step.what.starts_with("strength"));
+    }
+
+    fn iteration(&mut self, _: usize, _: &Iteration) -> ControlFlow<()> {
+        match self.factors > 3 {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// After a search for a factor of safety that was interrupted the last load step is solved again,
+/// and the search finds the same.
+#[test]
+fn a_factor_of_safety_is_found_again() {
+    let folder = scratch();
+    let [whole, stopped] = ["whole", "stopped"].map(|name| folder.path().join(name));
+    let coarse = |text: String| {
+        let text = text.replace("accuracy = 1e-3", "accuracy = 0.02");
+        format!("{text}\n[load]\nsteps = [0.5, 1.0]\n")
+    };
+    let solve = |out: &Path, resume: bool, observer: &mut dyn Observer| {
+        let ending = solve_geometry("cliff-wedge", coarse, (out, resume), observer);
+        ending.expect("no defects").ending
+    };
+    assert_eq!(solve(&whole, false, &mut ()), Ending::Solved);
+    let mut doubter = Doubter { factors: 0 };
+    assert_eq!(solve(&stopped, false, &mut doubter), Ending::Stopped);
+    assert_eq!(doubter.factors, 4);
+    assert!(summary(&stopped)["strength_reduction"].is_null());
+    assert_eq!(solve(&stopped, true, &mut ()), Ending::Solved);
+    assert_eq!(outcome(&stopped), outcome(&whole));
+    let page = fs::read_to_string(stopped.join("report.html")).expect("a page");
+    let last = "Fractures after the last load step";
+    for said in [last, "Factor of safety", "Motion of blocks across"] {
+        assert!(page.contains(said), "{said}");
+    }
+    assert_eq!(solve(&stopped, true, &mut ()), Ending::NothingLeft);
 }

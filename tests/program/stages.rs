@@ -200,7 +200,10 @@ fn a_wedge_slides_at_its_factor_of_safety() {
             said.contains("left_joint") && said.contains("right_joint"),
             "{said}"
         );
-        assert!(out.join("strength_rock.vtu").exists());
+        for grid in ["rock", "fractures", "motion"] {
+            assert!(out.join(format!("strength_{grid}.vtu")).exists());
+        }
+        wedge_slides_along_its_line(found);
     }
 }
 
@@ -261,6 +264,25 @@ fn a_wedge_between_unlike_joints_slides_at_its_factor_of_safety() {
             "{wanted}: {found}"
         );
     }
+}
+
+/// The line where the joints meet plunges 40 degrees, away from the rock, along which the wedge
+/// slides as a whole; the rock stays.
+fn wedge_slides_along_its_line(found: &serde_json::Value) {
+    let motions = found["failing_motions"].as_array().expect("motions");
+    let length = |motion: &serde_json::Value| {
+        let parts = [0, 1, 2].map(|axis| motion["displacement"][axis].as_f64().expect("a motion"));
+        (parts.iter().map(|u| u * u).sum::<f64>().sqrt(), parts[2])
+    };
+    let moving = motions.iter().filter(|motion| length(motion).0 > 1e-9);
+    let moving: Vec<_> = moving.collect();
+    assert_eq!((motions.len(), moving.len()), (2, 1), "{found}");
+    let (size, down) = length(moving[0]);
+    assert!(
+        (down / size + 40_f64.to_radians().sin()).abs() < 1e-6,
+        "{found}"
+    );
+    assert!((size - 1.0).abs() < 1e-6, "{found}");
 }
 
 /// The limit equilibrium in the head of the scene. Blocks that deform stand on a little more than

@@ -85,7 +85,8 @@ pub fn not_converged(
         format!("; {percent:.1} % of the load increment was completed")
     });
     let motions = record.rigid_motions.iter().map(|block| {
-        let (place, problem, remedy) = (&block.place, &block.problem, &block.remedy);
+        let told = &block.told;
+        let (place, problem, remedy) = (&told.place, &told.problem, &told.remedy);
         format!("; {place}: {problem}: {remedy}")
     });
     let rest: String = completed.into_iter().chain(motions).collect();

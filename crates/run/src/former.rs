@@ -10,6 +10,7 @@ use crate::flow::SOURCES;
 use crate::history;
 use crate::page;
 use crate::probes;
+use crate::strength_summary;
 
 /// The list of the grids of the last load step.
 pub const TOGETHER: &str = "results.vtm";
@@ -43,6 +44,9 @@ pub fn named_files(folder: &Path) -> Vec<String> {
         }
         if summary["flow"].is_object() {
             names.push(SOURCES.into());
+        }
+        if summary["strength_reduction"].is_object() {
+            names.extend(strength_summary::GRIDS.map(String::from));
         }
         if summary["meshes"]
             .as_array()

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
-//! | `strength`, `strength_summary` | the factor of safety, by strength reduction |
+//! | `strength`, `strength_motion`, `strength_summary` | the factor of safety, by strength reduction |
 //! | `sequence` | one body after the other, where phases remove and add volumes |
 //! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
 //! | `flow`, `flow_summary` | the flow of a run, and its numbers |
@@ -87,6 +87,7 @@ mod spread;
 mod stages;
 mod steps;
 mod strength;
+mod strength_motion;
 mod strength_summary;
 mod summary;
 mod threads;

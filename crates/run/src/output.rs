@@ -19,6 +19,7 @@ use crate::page::{self, Shown};
 use crate::pieces::Piece;
 use crate::probes;
 use crate::ranks::Ranks;
+use crate::strength_summary;
 
 /// The collections of the grids of all load steps.
 pub const COLLECTIONS: [&str; 2] = ["rock.pvd", "fractures.pvd"];
@@ -431,7 +432,7 @@ impl Output {
 }
 
 /// Lowest and highest coordinates.
-fn box_of(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+pub fn box_of(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
     let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for point in points {
         for axis in 0..3 {
@@ -446,6 +447,7 @@ fn box_of(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
 fn is_of_run(name: &str) -> bool {
     let tables = [history::NAME, probes::NAME, SOURCES];
     tables.contains(&name)
+        || strength_summary::GRIDS.contains(&name)
         || [checkpoint::NAME, page::NAME, TOGETHER].contains(&name)
         || former::is_step(name)
 }

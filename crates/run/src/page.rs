@@ -5,11 +5,13 @@ mod fractures;
 mod iterations;
 mod numbers;
 mod probe_curves;
+mod strength;
 
 use kluft_chart::Chart;
 use kluft_report::{Frame, Page, Surface};
 
 pub use iterations::Iterations;
+pub use strength::StrengthShown;
 
 use crate::ending::Ending;
 use crate::summary::{StepSummary, Summary};
@@ -59,6 +61,8 @@ pub struct Told<'a> {
     pub iterations: &'a Iterations,
     /// What can be drawn.
     pub shown: Option<&'a Shown>,
+    /// What can be drawn of a reduction of strength.
+    pub strength: Option<&'a StrengthShown>,
     /// The text of the scene.
     pub scene: Option<&'a str>,
 }
@@ -84,6 +88,9 @@ impl Told<'_> {
         self.lead(&mut page);
         self.pictures(&mut page);
         fractures::add(&mut page, summary);
+        if let Some(found) = &summary.strength_reduction {
+            strength::add(&mut page, found, self.strength);
+        }
         let curves = curves::of_history(self.history);
         let curves = curves.into_iter().chain(curves::of_sources(&summary.steps));
         let curves = probe_curves::of_probes(self.probes)

@@ -16,11 +16,12 @@ impl Run<'_> {
         self.finished.len() < steps || self.request.scene.strength_reduction.is_some()
     }
 
-    /// Lets the run be resumed after the load step that was solved last, if anything is left to
-    /// solve.
+    /// Lets the run be resumed after the load step that was solved last, unless it is the last one
+    /// of all: what a reduction of strength adds to begins with that one, and its warnings, flow
+    /// and pictures are those of a run that was never interrupted.
     pub(crate) fn write_checkpoint(&mut self, prepared: &Prepared<'_, '_>) -> Result<(), Defect> {
         let steps = prepared.system.problem().schedule.steps.len();
-        if !self.keeps_checkpoints() || !self.has_more_to_solve(steps) {
+        if !self.keeps_checkpoints() || self.finished.len() >= steps {
             return Ok(());
         }
         self.write_progress(Progress {

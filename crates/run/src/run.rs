@@ -18,7 +18,7 @@ use crate::ranks::agreed;
 use crate::request::{MeshInput, Request};
 use crate::resume::{self, FormerRun};
 use crate::stages::{Interruption, Run};
-use crate::strength;
+use crate::strength_summary;
 
 /// Runs a scene: mesh, enrich, assemble, solve, write.
 ///
@@ -76,7 +76,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
     let mut names = OWN.to_vec();
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
     if request.scene.strength_reduction.is_some() {
-        names.extend(strength::GRIDS);
+        names.extend(strength_summary::GRIDS);
     }
     names.extend(request.report.then_some(page::NAME));
     if !request.scene.probes.is_empty() {

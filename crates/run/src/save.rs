@@ -78,6 +78,7 @@ impl<'a> Saving<'a> {
             probes: "",
             iterations: &Iterations::default(),
             shown: output.shown(),
+            strength: None,
             scene: None,
         };
         let html = told.html();

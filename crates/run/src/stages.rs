@@ -21,7 +21,7 @@ use crate::memory;
 use crate::observer::{Observer, Stage};
 use crate::outcome::{Outcome, StepResult};
 use crate::output::{Output, SUMMARY};
-use crate::page::{self, Iterations, Told};
+use crate::page::{self, Iterations, StrengthShown, Told};
 use crate::prepare::{self, MeshFile};
 use crate::probes::ProbeTable;
 use crate::provenance::InputFile;
@@ -72,6 +72,8 @@ pub struct Run<'a> {
     pub flow_history: FlowHistory,
     /// Every iteration, for the page.
     pub iterations: Iterations,
+    /// What the page shows of a reduction of strength.
+    pub strength_shown: Option<StrengthShown>,
     /// Values of probes after all of them, a table.
     pub probes: ProbeTable,
     /// The results that are kept.
@@ -139,6 +141,7 @@ impl<'a> Run<'a> {
             history: History::default(),
             flow_history: FlowHistory::default(),
             iterations: Iterations::default(),
+            strength_shown: None,
             probes: ProbeTable::default(),
             kept: Vec::new(),
             choice: Default::default(),
@@ -417,6 +420,7 @@ impl<'a> Run<'a> {
             probes: &self.probes.text,
             iterations: &self.iterations,
             shown: self.output.shown(),
+            strength: self.strength_shown.as_ref(),
             scene: self.request.origin.map(|origin| origin.text),
         };
         let html = told.html();

@@ -1,20 +1,23 @@
 //! The factor of safety: strength is reduced until blocks move.
 
+use std::path::Path;
+
 use kluft_io::write_vtu;
+use kluft_report::Surface;
 use kluft_scene::StrengthReduction;
 use kluft_solver::{
-    BlockMotion, Newton, State, StepOutcome, StepRecord, System, block_motions, solution,
+    BlockMotion, Newton, Solution, State, StepOutcome, StepRecord, System, block_motions, solution,
 };
 use lie_core::FractureLaw;
 
 use crate::failures;
-use crate::grids::{fracture_grid, real_field, rock_grid};
+use crate::grids::{fracture_grid, in_plane, real_field, rock_grid};
 use crate::observer::{Stage, StepStart};
+use crate::output::box_of;
+use crate::page::StrengthShown;
 use crate::stages::{Interruption, Run};
-use crate::strength_summary::{MotionSummary, StrengthSummary, Trial};
-
-/// The rock and the fractures at the last stable factor.
-pub const GRIDS: [&str; 2] = ["strength_rock.vtu", "strength_fractures.vtu"];
+use crate::strength_motion::{self, FailedTrial};
+use crate::strength_summary::{GRIDS, MotionSummary, StrengthSummary, Trial};
 
 /// By what the factor grows as long as nothing fails.
 const GROWTH: f64 = 1.25;
@@ -27,6 +30,8 @@ struct Search<'a> {
     is_weakened: Vec<bool>,
     /// Displacement of all points at full strength (m).
     begin: Vec<glam::DVec3>,
+    /// The smallest factor so far that did not hold.
+    failed: Option<FailedTrial>,
     found: StrengthSummary,
 }
 
@@ -44,6 +49,7 @@ impl<'a> Search<'a> {
                 ..StrengthSummary::default()
             },
             begin: system.total_displacements(state),
+            failed: None,
             asked,
             laws,
             is_weakened,
@@ -70,10 +76,14 @@ impl<'a> Search<'a> {
             return;
         }
         found.failing = Some(factor);
-        let blocks = record.rigid_motions.iter();
+        let blocks = record.rigid_motions.iter().map(|body| &body.told);
         let blocks = blocks.map(|b| format!("{}: {}: {}", b.place, b.problem, b.remedy));
         found.free_blocks = blocks.collect();
         found.failure = Some(failures::of_outcome(system, record));
+        self.failed = Some(FailedTrial {
+            bodies: record.rigid_motions.clone(),
+            reached: system.total_displacements(state),
+        });
     }
 
     /// The next factor, if the answer is not accurate enough.
@@ -152,30 +162,78 @@ impl Run<'_> {
         search: Search<'_>,
     ) -> Result<(), Interruption> {
         let Search {
-            begin, mut found, ..
+            begin,
+            failed,
+            mut found,
+            ..
         } = search;
         let solution = solution(system, state);
         let pairs = solution.displacements.iter().zip(&begin);
         let moved: Vec<glam::DVec3> = pairs.map(|(now, begin)| *now - *begin).collect();
-        let motions = block_motions(system, &moved);
-        found.motions = motions.iter().enumerate().map(motion).collect();
+        found.motions = motions(system, &moved);
+        let failed = failed.map(|failed| {
+            let motion = failed.motion(system, &solution.displacements);
+            found.failing_motions = motions(system, &motion);
+            (failed, motion)
+        });
         self.observer.note("strength", &says(&found));
         for block in &found.free_blocks {
             self.observer.note("strength", block);
         }
         self.summary.strength_reduction = Some(found);
         if self.output.is_kept() {
-            let nodes = solution.facet_nodes(system.problem(), system.discretisation().interface());
-            let mut rock = rock_grid(system, &solution, None);
-            let field = real_field("moved", moved.iter().map(|u| u.to_array()));
-            rock.point_fields.push(field);
-            let fractures = fracture_grid(system, &nodes, None);
-            self.output.write(GRIDS[0], |path| write_vtu(path, rock))?;
-            self.output
-                .write(GRIDS[1], |path| write_vtu(path, fractures))?;
+            self.write_stable(system, &solution, &moved)?;
+            self.write_failed(system, failed)?;
         }
         Ok(self.write_summary()?)
     }
+
+    /// Writes the state at the last stable factor.
+    fn write_stable(
+        &mut self,
+        system: &System<'_>,
+        solution: &Solution,
+        moved: &[glam::DVec3],
+    ) -> Result<(), Interruption> {
+        let mesh = &system.problem().mesh;
+        let nodes = solution.facet_nodes(system.problem(), system.discretisation().interface());
+        let mut rock = rock_grid(system, solution, None);
+        let field = real_field("moved", moved.iter().map(|u| u.to_array()));
+        rock.point_fields.push(field);
+        let fractures = in_plane(mesh, fracture_grid(system, &nodes, None));
+        self.strength_shown = self.request.report.then(|| StrengthShown {
+            stable: Surface::of(&fractures, &["slip"]),
+            failing: None,
+            body: box_of(&rock.points),
+        });
+        let rock = in_plane(mesh, rock);
+        self.output.write(GRIDS[0], |path| write_vtu(path, rock))?;
+        let write = |path: &Path| write_vtu(path, fractures);
+        Ok(self.output.write(GRIDS[1], write)?)
+    }
+
+    /// Writes how blocks move at the first failing factor, if one failed.
+    fn write_failed(
+        &mut self,
+        system: &System<'_>,
+        failed: Option<(FailedTrial, Vec<glam::DVec3>)>,
+    ) -> Result<(), Interruption> {
+        let Some((failed, motion)) = failed else {
+            return Ok(());
+        };
+        if let Some(shown) = &mut self.strength_shown {
+            let fractures = strength_motion::fracture_grid(system, &motion);
+            shown.failing = Some(Surface::of(&fractures, &["motion"]));
+        }
+        let rock = failed.rock_grid(system, &motion);
+        Ok(self.output.write(GRIDS[2], |path| write_vtu(path, rock))?)
+    }
+}
+
+/// How blocks move with all points.
+fn motions(system: &System<'_>, points: &[glam::DVec3]) -> Vec<MotionSummary> {
+    let motions = block_motions(system, points);
+    motions.iter().enumerate().map(motion).collect()
 }
 
 fn motion((index, motion): (usize, &BlockMotion)) -> MotionSummary {

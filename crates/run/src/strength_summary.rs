@@ -2,6 +2,14 @@
 
 use serde::Serialize;
 
+/// The rock and the fractures at the last stable factor, and how blocks move at the first failing
+/// one.
+pub const GRIDS: [&str; 3] = [
+    "strength_rock.vtu",
+    "strength_fractures.vtu",
+    "strength_motion.vtu",
+];
+
 /// How far strength could be reduced.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct StrengthSummary {
@@ -15,6 +23,8 @@ pub struct StrengthSummary {
     pub failure: Option<String>,
     /// Blocks that nothing held there, with their free motions.
     pub free_blocks: Vec<String>,
+    /// How blocks move there; the largest motion of a point is 1.
+    pub failing_motions: Vec<MotionSummary>,
     /// How blocks have moved from full strength to the last stable factor.
     pub motions: Vec<MotionSummary>,
     /// The factors that were tried, in order.
@@ -41,8 +51,8 @@ pub struct MotionSummary {
     pub block: usize,
     /// Volume (m^3).
     pub volume: f64,
-    /// Mean displacement (m).
+    /// Mean displacement (m), or a direction with a size among others.
     pub displacement: [f64; 3],
-    /// Mean rotation (radians).
+    /// Mean rotation (radians), or the same over the unit of the displacement (1/m).
     pub rotation: [f64; 3],
 }

@@ -72,7 +72,7 @@ pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resul
 pub use sample::{InCell, RockSample, locate, principal, sample, surface_samples};
 pub use solution::{FacetResult, FacetState, Solution, solution};
 pub use space::pattern::{CellOfSlot, Pattern};
-pub use space::rigid_modes::UNHELD_BLOCK;
+pub use space::rigid_modes::{FreeBody, UNHELD_BLOCK};
 pub use space::sector_nodes::SectorNodes;
 pub use space::supports::{Constraint, Supports};
 pub use system::{Discretisation, FacetPointState, StageEnd, State, System};

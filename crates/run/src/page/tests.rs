@@ -130,6 +130,7 @@ fn html(summary: &Summary, shown: Option<&Shown>, scene: &str) -> String {
         probes: "",
         iterations: &Iterations::default(),
         shown,
+        strength: None,
         scene: Some(scene),
     };
     told.html()

@@ -1,7 +1,6 @@
 //! Blocks that nothing holds once fractures have opened or slide.
 
 use glam::DVec3;
-use kluft_mesh::Defect;
 use rayon::prelude::*;
 
 use super::facet_points::{self, interface, tangent};
@@ -9,7 +8,7 @@ use super::fluid;
 use super::iterate::Iterate;
 use crate::problem::Load;
 use crate::space::mechanism::Push;
-use crate::space::rigid_modes::{self, FreeMotions, Tie};
+use crate::space::rigid_modes::{self, FreeBody, FreeMotions, Tie};
 use crate::system::{State, System};
 
 /// Stiffness that counts as none, against that of the rock beside a facet point.
@@ -21,7 +20,7 @@ pub(super) const UNBALANCED: f64 = 1e-4;
 
 /// The blocks that the forces of an iterate push along motions that nothing resists and no wall
 /// stops, with the fractures that let them.
-pub(super) fn find(system: &System<'_>, iterate: &Iterate) -> Vec<Defect> {
+pub(super) fn find(system: &System<'_>, iterate: &Iterate) -> Vec<FreeBody> {
     let ties = ties(system, &iterate.state);
     let Some((free, push)) = push(system, &iterate.state, &iterate.rock_forces, &ties) else {
         return Vec::new();
@@ -33,7 +32,7 @@ pub(super) fn find(system: &System<'_>, iterate: &Iterate) -> Vec<Defect> {
         "{} has opened or slides there; hold the block, lower the load, or give the fracture friction, cohesion or stiffness",
         untied_fractures(system, &ties).join(", ")
     );
-    free.describe(&system.problem.mesh, &push.along, &remedy)
+    free.bodies(&system.problem.mesh, &push.along, &remedy)
 }
 
 /// Whether a load pushes blocks from a state through open gaps to walls with friction.

@@ -1,7 +1,7 @@
 //! What is known of a load step once it has been solved, or not.
 
+use crate::space::rigid_modes::FreeBody;
 use kluft_algebra::LinearFailure;
-use kluft_mesh::Defect;
 
 use crate::problem::Load;
 
@@ -91,7 +91,7 @@ pub struct StepRecord {
     /// [`NewtonSettings::time`](super::NewtonSettings::time).
     pub time_error: Option<f64>,
     /// Blocks that nothing held when it failed, each with its free motions.
-    pub rigid_motions: Vec<Defect>,
+    pub rigid_motions: Vec<FreeBody>,
     /// The facet point with the largest closure error at the end.
     pub worst_facet_point: Option<usize>,
     /// Time spent in factorisations (s).

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use kluft_mesh::Defect;
+use crate::space::rigid_modes::FreeBody;
 
 use super::free_blocks;
 use super::iterate::Iterate;
@@ -22,7 +22,7 @@ pub(super) struct Step<'a> {
     /// Whether the increment at hand is given up soon, because shorter ones are to be tried.
     pub(super) is_tried_briefly: bool,
     /// Blocks that an increment from the same state as that at hand pushed.
-    pub(super) pushed: Vec<Defect>,
+    pub(super) pushed: Vec<FreeBody>,
     observe: &'a mut Observe<'a>,
     is_stopped: bool,
 }

@@ -91,6 +91,28 @@ pub(crate) struct FreeMotions {
     bounds: (DVec3, DVec3),
 }
 
+/// A body that nothing holds, and the motion along which it is pushed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeBody {
+    /// Where it is, and which of its motions are free.
+    pub told: Defect,
+    /// Its blocks: numbers, from 0.
+    pub blocks: Vec<u32>,
+    /// The point about which it turns (m).
+    about: DVec3,
+    /// How that point moves; only the direction and the ratios to other motions mean something.
+    displacement: DVec3,
+    /// How it turns, in units of the displacement (1/m).
+    rotation: DVec3,
+}
+
+impl FreeBody {
+    /// How a point of it moves, `d + r x (x - x_0)`, at a place (m).
+    pub fn motion_at(&self, place: DVec3) -> DVec3 {
+        self.displacement + self.rotation.cross(place - self.about)
+    }
+}
+
 /// The free motions with what `ties` hold, one for each facet; none if there are too many bodies to
 /// tell.
 pub(crate) fn free_motions(
@@ -147,23 +169,43 @@ impl FreeMotions {
         self.motions.iter().map(of_motion).collect()
     }
 
-    /// Names every body that these coefficients of the motions move, by what it does most.
-    pub(crate) fn describe(&self, mesh: &Mesh, coefficients: &[f64], remedy: &str) -> Vec<Defect> {
+    /// Every body that these coefficients of the motions move, named by what it does most.
+    pub(crate) fn bodies(&self, mesh: &Mesh, coefficients: &[f64], remedy: &str) -> Vec<FreeBody> {
         let entry = |body: usize, component: usize| -> f64 {
             let motions = self.motions.iter().zip(coefficients);
             motions.map(|(motion, c)| c * motion[body][component]).sum()
         };
         let of_body =
-            |body| -> [f64; 6] { std::array::from_fn(|component| entry(body, component).powi(2)) };
-        let shares: Vec<[f64; 6]> = (0..self.body_count).map(of_body).collect();
+            |body| -> [f64; 6] { std::array::from_fn(|component| entry(body, component)) };
+        let all: Vec<[f64; 6]> = (0..self.body_count).map(of_body).collect();
+        let shares: Vec<[f64; 6]> = all
+            .iter()
+            .map(|own| own.map(|entry| entry * entry))
+            .collect();
         let most = |shares: &[f64; 6]| shares.iter().copied().fold(0.0, f64::max);
         let largest = shares.iter().map(most).fold(0.0, f64::max);
         let moving = (0..self.body_count).filter(|&body| most(&shares[body]) > MOVES * largest);
         let named = |body: usize| {
             let own = shares[body].map(|share| share / most(&shares[body]));
-            describe(mesh, &self.body_of_block, body, &own, remedy)
+            let told = describe(mesh, &self.body_of_block, body, &own, remedy)?;
+            Some(self.body((body, told), all[body]))
         };
         moving.filter_map(named).collect()
+    }
+
+    /// A body with the components of its motion.
+    fn body(&self, (body, told): (usize, Defect), motion: [f64; 6]) -> FreeBody {
+        let (low, high) = self.bounds;
+        let [x, y, z, turn_x, turn_y, turn_z] = motion;
+        let blocks = (0..).zip(&self.body_of_block);
+        let own = blocks.filter(|(_, of)| **of as usize == body);
+        FreeBody {
+            told,
+            blocks: own.map(|(block, _)| block).collect(),
+            about: 0.5 * (low + high),
+            displacement: DVec3::new(x, y, z),
+            rotation: DVec3::new(turn_x, turn_y, turn_z) / (high - low).length(),
+        }
     }
 
     /// The jump at a corner of a facet in each of the motions; lengths in units of the body.
