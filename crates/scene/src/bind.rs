@@ -164,7 +164,7 @@ pub(crate) fn bind_with(
     let probes = bind_probes(scene, &problem.mesh, &mut decisions)?;
     let odd = bind_fields(scene, &bound, &mut problem, &mut decisions)?;
     if let Some(flow) = &mut flow {
-        treat(scene, &problem, flow, &mut decisions)?;
+        settle_flow(scene, &problem, flow, &mut decisions)?;
     }
     Ok(Binding {
         warnings: doubts(scene, &problem, flow.as_ref(), [odd, idle]),
@@ -190,6 +190,20 @@ fn doubts(
         .chain(known)
         .chain(of_flow)
         .collect()
+}
+
+/// Treats networks that are isolated, and checks what goes with the flow.
+fn settle_flow(
+    scene: &Scene,
+    problem: &Problem,
+    flow: &mut Flow,
+    decisions: &mut Vec<String>,
+) -> Result<(), Vec<Defect>> {
+    treat(scene, problem, flow, decisions)?;
+    let reduction = scene.strength_reduction.as_ref();
+    let is_timed = problem.schedule.is_timed;
+    let defect = reduction.and_then(|own| own.defect_beside(flow, is_timed));
+    defect.map_or(Ok(()), |defect| Err(vec![defect]))
 }
 
 /// What is wrong with the reduction of strength, where no volumes come and go.

@@ -120,7 +120,6 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     };
     let title = root.text("title").unwrap_or("untitled").to_owned();
     let mut mesh = read_mesh_section(root, folder);
-    refuse_strength_beside_fluid(root);
     if timetable.has_stages() {
         settle_stages(root, &mut mesh);
     }
@@ -186,15 +185,6 @@ fn read_strength(root: &Section<'_, '_>) -> Option<StrengthReduction> {
 fn silenced(root: &Section<'_, '_>) -> Vec<&'static str> {
     let section = root.section("warnings");
     section.map_or_else(Vec::new, read_silenced)
-}
-
-/// What reduces strength has no pressures that move.
-fn refuse_strength_beside_fluid(root: &Section<'_, '_>) {
-    if root.has("fluid") && root.has("strength_reduction") {
-        let problem = "[strength_reduction] knows nothing of a fluid that flows".into();
-        let remedy = "give fractures a fluid_pressure, or remove [strength_reduction]";
-        root.refuse("strength_reduction", problem, remedy);
-    }
 }
 
 /// What a scene says of its mesh.

@@ -1,6 +1,7 @@
 //! Reads how far strength is to be reduced, and finds the fractures that are meant.
 
 use kluft_mesh::{Defect, nearest};
+use kluft_solver::Flow;
 use lie_core::FractureLaw;
 
 use crate::reader::Section;
@@ -40,6 +41,19 @@ impl StrengthReduction {
                 is_meant && law.friction.is_some()
             })
             .collect()
+    }
+
+    /// What is wrong with it beside a flow: the pressures of the last load step stay while strength
+    /// is reduced, and those of a flow that follows its walls would not.
+    pub(crate) fn defect_beside(&self, flow: &Flow, is_timed: bool) -> Option<Defect> {
+        let flows = !flow.conditions.is_empty() || flow.is_undrained;
+        (flows && flow.follows_walls(is_timed)).then(|| {
+            let problem = "strength is reduced at the pressures of the last load step, and those of \
+                           this fluid follow the walls";
+            let remedy = "give each fracture that conducts a constant hydraulic_aperture, and load \
+                          steps without times; or replace [fluid] by a fluid_pressure of fractures";
+            Defect::new(&self.place, problem, remedy)
+        })
     }
 
     /// What is wrong with it on a mesh with these fractures.
