@@ -55,12 +55,7 @@ impl Coupling<'_> {
         if self.is_transient {
             return None;
         }
-        let mut system = self.system(fluid);
-        self.factorise(&mut system)?;
-        let state = system.solve(load).ok()?;
-        let loaded = self.loaded(fluid, load);
-        let rows = state.pressures.iter().enumerate();
-        let mut potentials: Vec<f64> = rows.map(|(row, p)| p - loaded.weight(row)).collect();
+        let mut potentials = self.solved(fluid, load)?;
         for network in &self.undrained {
             let off = network.sum(|row| fluid.potentials[row] - potentials[row]);
             for &row in network.rows() {
@@ -68,6 +63,38 @@ impl Coupling<'_> {
             }
         }
         Some(potentials)
+    }
+
+    /// Potentials under a load of a fluid that has come to rest between walls as far apart as they
+    /// are, within the bounds of those that it has; none if a network has no pressure to come to
+    /// rest at.
+    pub(crate) fn at_rest(&self, fluid: &FluidState, load: &Load) -> Option<Vec<f64>> {
+        let networks = &self.topology.networks;
+        if !networks.iter().all(|network| network.has_pressure) {
+            return None;
+        }
+        let mut bounds = vec![[f64::INFINITY, f64::NEG_INFINITY]; networks.len()];
+        let network_of_row = || self.topology.network_of_row.iter().map(|&of| of as usize);
+        for (network, potential) in network_of_row().zip(&fluid.potentials) {
+            let [least, most] = bounds[network];
+            bounds[network] = [least.min(*potential), most.max(*potential)];
+        }
+        let mut potentials = self.solved(fluid, load)?;
+        for (network, potential) in network_of_row().zip(&mut potentials) {
+            let [least, most] = bounds[network];
+            *potential = potential.clamp(least, most);
+        }
+        Some(potentials)
+    }
+
+    /// Potentials of the steady flow under a load, counted as a fluid has them.
+    fn solved(&self, fluid: &FluidState, load: &Load) -> Option<Vec<f64>> {
+        let mut system = self.system(fluid);
+        self.factorise(&mut system)?;
+        let state = system.solve(load).ok()?;
+        let loaded = self.loaded(fluid, load);
+        let rows = state.pressures.iter().enumerate();
+        Some(rows.map(|(row, p)| p - loaded.weight(row)).collect())
     }
 
     /// Factorises a steady flow; what its networks without a pressure have at one node stays.

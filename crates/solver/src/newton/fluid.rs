@@ -1,8 +1,8 @@
 //! The flow of an increment: where it stands, and how it follows the unknowns.
 //!
-//! A transmissivity grows with the cube of its aperture. Where a correction changes an aperture
-//! much, its slope would tell that so much fluid flows on as never does, so the correction is found
-//! again with the transmissivities as they stand.
+//! A transmissivity grows with the cube of its aperture. Where a correction opens an aperture much,
+//! its slope would tell that so much fluid flows on as never does, so the correction is found again
+//! with the transmissivities as they stand. Where it closes one the slope holds the fluid back.
 
 use std::sync::Arc;
 
@@ -161,7 +161,7 @@ pub(super) fn total_tractions(
     tractions
 }
 
-/// Whether a correction of the unknowns (m) changes an aperture by more than the share for which
+/// Whether a correction of the unknowns (m) opens an aperture by more than the share for which
 /// the slope of a transmissivity speaks.
 pub(super) fn goes_far(system: &System<'_>, state: &State, correction: &[DVec3]) -> bool {
     let jumps = interface(system).jumps(correction, &Load::NONE);
@@ -169,6 +169,6 @@ pub(super) fn goes_far(system: &System<'_>, state: &State, correction: &[DVec3])
     let mut pairs = points.zip(jumps);
     pairs.any(|((point, state), jump)| {
         let before = state.aperture(point.normal);
-        before > 0.0 && jump.dot(point.normal).abs() > FAR * before
+        before > 0.0 && jump.dot(point.normal) > FAR * before
     })
 }

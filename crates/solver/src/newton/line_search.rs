@@ -2,7 +2,8 @@
 //!
 //! All the way, as long as the iteration is on its way. Once it has taken more iterations than it
 //! should and its errors grow, the correction is halved until they do not: a search for a smaller
-//! residual.
+//! residual. Beside a fluid and smooth laws corrections stay whole: errors grow there on the way,
+//! as joints fill and choke, and short corrections only make it longer.
 
 use super::iterate::{Iterate, Update};
 use super::{Iteration, Step, StepOutcome};
@@ -30,7 +31,9 @@ pub(super) fn advance(
     update: Update<'_>,
     count: usize,
 ) -> Result<Iteration, StepOutcome> {
-    let former = iterate.merit.filter(|_| count > WHOLE_CORRECTIONS);
+    let searches =
+        count > WHOLE_CORRECTIONS && !(step.system.is_smooth() && iterate.flow.is_some());
+    let former = iterate.merit.filter(|_| searches);
     let best = former.and_then(|former| search(step, iterate, update, former));
     let Some((iteration, next)) = best else {
         return iterate.correct(step, update);

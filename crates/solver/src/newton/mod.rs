@@ -23,6 +23,7 @@ mod convergence;
 mod damping;
 mod dense;
 mod determinacy;
+mod drained;
 mod extrapolation;
 mod facet_points;
 mod fluid;

@@ -4,6 +4,7 @@
 use super::acceleration::Acceleration;
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::damping;
+use super::drained;
 use super::facet_points::{self, LastTrial, Linearisation};
 use super::fluid;
 use super::forcing_term;
@@ -59,7 +60,7 @@ impl Newton {
 
     /// The path continued to a load. Where a fluid spreads, states of long ago may mislead: of the
     /// ways to continue the path the one with the least mass error is taken, if none but the
-    /// present state.
+    /// present state. Where there is no path a joint may open wide.
     fn continued(&self, system: &System<'_>, from: &State, load: &Load) -> State {
         let guess = |most: usize| {
             let mut state = from.clone();
@@ -69,8 +70,11 @@ impl Newton {
             (state, used)
         };
         let (mut best, mut most) = guess(self.path.len());
-        if system.coupling().is_none() || most == 0 {
+        if system.coupling().is_none() {
             return best;
+        }
+        if most == 0 {
+            return drained::guess(system, from, load).unwrap_or(best);
         }
         let error = |state: &State| fluid::mass_error(system, from, state);
         let mut least = error(&best);
