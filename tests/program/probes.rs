@@ -109,9 +109,7 @@ fn an_inspection_tells_what_probes_hit() {
 /// closure of the joint, which has 4e-4 m and -2e6 Pa everywhere.
 #[test]
 fn means_over_surfaces_have_the_closed_form() {
-    let probes =
-        "[probe.face]\nboundary = \"right\"\n[probe.whole]\nfracture = \"joint\"\n\n# Along";
-    let workshop = Workshop::new("water-by-depth", &[("# Along", probes)]);
+    let workshop = Workshop::new("water-by-depth", &[]);
     let rows = rows(&workshop.solve("out", &[]));
     let face = of(&rows, "face");
     assert_eq!((face.len(), face[0]["point"].as_str()), (1, "mean"));
