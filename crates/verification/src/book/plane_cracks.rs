@@ -33,7 +33,7 @@ const SCALE: f64 = 4.0 * (1.0 - 0.25 * 0.25) * 2e6 / 25e9;
 
 /// What Phan et al. and GEOS have of the crack that meets another: probe, column, numbers in mm or
 /// MPa.
-const TABLES: [(&str, &str, f64, Option<f64>); 9] = [
+const TABLES: [(&str, &str, f64, Option<f64>); 10] = [
     ("junction", "aperture", 135.4, Some(136.46)),
     ("above", "aperture", 236.6, None),
     ("below", "aperture", 163.0, None),
@@ -41,6 +41,7 @@ const TABLES: [(&str, &str, f64, Option<f64>); 9] = [
     ("closed-11", "normal_traction", -114.15, None),
     ("closed-7", "normal_traction", -105.32, None),
     ("closed-4", "normal_traction", -90.42, None),
+    ("closed-11", "slip", 20.41, None),
     ("closed-7", "slip", 33.30, None),
     ("closed-4", "slip", 44.80, None),
 ];
