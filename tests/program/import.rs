@@ -203,8 +203,12 @@ fn lists_of_other_programs_become_networks() {
         0.05,0.25,0.5,0.95,0.25,0.5,0.95,2,0.5,0.05,2,0.5\n\
         0.5,0.05,0.95,0.5,0.05,0.05,0.5,0.3,0.05,0.5,0.3,0.95\n";
     let dfnworks = "nPolygons: 1\n4 {0, 0, 1} {2, 0, 1} {2, 1, 1} {0, 1, 1} \n";
+    let rectangles = "nUserRect: 2 \n \nRadii: \n0.6 \n1.0 \n\nAspect_Ratio: \n1 \n0.65 \n\n\
+        Beta: \n0 \n0 \n\nAngleOption: \ndegree \ndegree \n\nTranslation: \n[-0.4, 0, 0] \n\
+        [0, 0, 0] \n\nuserOrientationOption: 0 \n \nNormal: \n[0, 0, 1] \n[1, 0, 0] \n";
     for (name, text, areas) in [
-        ("network.csv", porepy, &[0.9 * 1.75, 0.25 * 0.9][..]),
+        ("rectangles.dat", rectangles, &[1.44, 2.6][..]),
+        ("network.csv", porepy, &[0.9 * 1.75, 0.25 * 0.9]),
         ("polygons.dat", dfnworks, &[2.0]),
     ] {
         let workshop = Workshop::of("");

@@ -417,3 +417,56 @@ fn two_joints_are_pushed_and_pulled_as_in_opengeosys() {
     let pulled = 3.0 * 1e5 / 200e9 + 2.0 * 1e5 / 20e9;
     assert_near(numbers(&rows, "TOP", "displacement_y")[4], pulled, STORED);
 }
+
+/// `mohr_coulomb_load_path_nu0p3`: pure shear of 20 kPa and then -30 kPa on a joint that is closed
+/// by 1e-6 m. It slides both ways, so the traction across follows from the cohesion of 1 kPa.
+#[test]
+fn a_joint_under_shear_tractions_slides_both_ways() {
+    let times = "0 1 2 4 10";
+    let story = Story {
+        size: [1.0, 2.0],
+        law: "<type>Coulomb</type><friction_angle>phi</friction_angle>\
+              <dilatancy_angle>psi</dilatancy_angle><cohesion>c</cohesion>\
+              <penalty_aperture_cutoff>1e-5</penalty_aperture_cutoff>\
+              <tension_cutoff>1</tension_cutoff>",
+        fractures: &[7],
+        constants: &[
+            ["E", "2e18"],
+            ["nu", "0"],
+            ["Kn", "20e9"],
+            ["Ks", "20e9"],
+            ["phi", "22"],
+            ["psi", "10"],
+            ["c", "1e3"],
+            ["b", "1e-5"],
+            ["zero", "0"],
+            ["one", "1"],
+            ["minus", "-1"],
+        ],
+        curves: &[
+            ["closure", "0 1 10", "0 -1e-6 -1e-6", "one"],
+            ["shear", times, "0 0 20e3 -30e3 -30e3", "one"],
+            ["against", times, "0 0 20e3 -30e3 -30e3", "minus"],
+        ],
+        conditions: &[
+            ["displacement", "LEFT", "Neumann", "1", "against"],
+            ["displacement", "RIGHT", "Neumann", "1", "shear"],
+            ["displacement", "TOP", "Neumann", "0", "shear"],
+            ["displacement", "TOP", "Dirichlet", "1", "closure"],
+            ["displacement", "BOTTOM", "Dirichlet", "0", "zero"],
+            ["displacement", "BOTTOM", "Dirichlet", "1", "zero"],
+        ],
+        steps: (8, 0.5),
+    };
+    let (_, rows) = told(&story, GRID);
+    let across = numbers(&rows, "surface-7", "normal_traction_mean");
+    let along = numbers(&rows, "surface-7", "shear_traction_mean");
+    for (step, shear) in [(3, 20e3), (7, 30e3)] {
+        assert_near(along[step], shear, 1e-7);
+        assert_near(
+            across[step],
+            (1e3 - shear) / 22_f64.to_radians().tan(),
+            1e-7,
+        );
+    }
+}
