@@ -7,7 +7,7 @@ use kluft_solver::{
     Condition, Field, Flow, Fracture, InitialStress, NewtonSettings, Problem, Schedule, Support,
     SurfaceLoad,
 };
-use lie_core::{Closure, FractureLaw};
+use lie_core::{Closure, FractureLaw, Rock};
 
 use super::flow::{VISCOSITY, block, on_side, water};
 use super::soft_slabs::{Path, as_given, path, steady, times};
@@ -20,7 +20,7 @@ pub const PRESSURE: f64 = 10e6;
 /// Aperture without load (m).
 pub const APERTURE: f64 = 1e-4;
 /// Edge of the cube (m).
-const EDGE: f64 = 10.0;
+pub const EDGE: f64 = 10.0;
 
 /// What is done to the cube in one step.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +35,8 @@ pub struct Trial {
     pub load: Option<f64>,
     /// Of the fluid (1/Pa).
     pub compressibility: f64,
+    /// Of the rock (Pa).
+    pub young_modulus: f64,
 }
 
 impl Trial {
@@ -46,6 +48,7 @@ impl Trial {
             inlet: None,
             load: None,
             compressibility: 0.0,
+            young_modulus: ROCK.young_modulus,
         }
     }
 
@@ -64,7 +67,7 @@ impl Trial {
     }
 
     /// `L^2 / D` with the stiffness and the transmissivity before any load (s).
-    fn diffusion_time(&self) -> f64 {
+    pub fn diffusion_time(&self) -> f64 {
         let law = FractureLaw::elastic(self.closure(), self.stiffness);
         let traction = (PRESSURE - STRESS) * DVec3::Z;
         let walls = law.under_initial_stress(traction, DVec3::Z).separation;
@@ -106,7 +109,14 @@ impl Trial {
             conditions: (0..mesh.boundaries.len()).map(condition).collect(),
             schedule,
             initial_stress: Some(initial_stress),
-            ..Problem::of_rock(mesh.clone(), ROCK)
+            ..Problem::of_rock(mesh.clone(), self.rock())
+        }
+    }
+
+    fn rock(&self) -> Rock {
+        Rock {
+            young_modulus: self.young_modulus,
+            ..ROCK
         }
     }
 
@@ -126,6 +136,20 @@ const TOP: &str = "side top";
 
 /// The cube of so many cells an edge.
 pub fn cube(shape: Shape, n: usize) -> Mesh {
+    layered(shape, [n; 3], |z| z)
+}
+
+/// The cube of so many hexahedra along the joint and eight layers across, thin beside it.
+pub fn fine_along(n: usize) -> Mesh {
+    let half = 0.5 * EDGE;
+    layered(Shape::Hex8, [n, n, 8], |z| {
+        let share = z / half - 1.0;
+        half * (1.0 + share * share.abs())
+    })
+}
+
+/// The cube of so many cells along its edges, their heights moved by `height` (m).
+fn layered(shape: Shape, counts: [usize; 3], height: impl Fn(f64) -> f64) -> Mesh {
     let surfaces = [
         Patch::new("joint", &|x| x[2] == 5.0),
         Patch::new("side left", &|x| x[0] == 0.0),
@@ -135,5 +159,7 @@ pub fn cube(shape: Shape, n: usize) -> Mesh {
         Patch::new("side front", &|x| x[1] == 0.0),
         Patch::new("side back", &|x| x[1] == 10.0),
     ];
-    block(shape, ([n; 3], [EDGE; 3]), &surfaces, |x| x)
+    block(shape, (counts, [EDGE; 3]), &surfaces, |[x, y, z]| {
+        [x, y, height(z)]
+    })
 }

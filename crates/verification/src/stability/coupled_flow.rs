@@ -5,101 +5,29 @@ use kluft_mesh::Shape;
 use kluft_solver::{Condition, Discretisation, Fracture, Problem, Support, System};
 use lie_core::{Closure, FractureLaw};
 
-use crate::report::{Effort, Finding, Study, digits, largest};
+use crate::report::{Effort, Finding, Study, largest};
 use crate::scenes::flow::{ARMS, on_side, star, water};
-use crate::scenes::flowing_cube::{APERTURE, PRESSURE, STRESS, Trial, cube};
+use crate::scenes::flowing_cube::{PRESSURE, Trial, cube};
 use crate::scenes::soft_slabs::{
     DRIVEN, as_given, equal_steps, path, problem, steady, strip, times,
 };
 use crate::scenes::{EXACT, ROCK};
 
+use super::coupled_linear;
 use super::coupled_steps::{Case, chart, table, text};
+use super::coupled_sweeps::sweeps;
+use super::coupled_walks;
 
 /// The study.
 pub const STUDY: Study = Study {
     name: "coupled-flow",
     title: "Flow that opens and closes its joints",
-    subject: "time steps over 18 decades, joints closed to a millionth that open, loads of 1 to 100 \
-              K_n b0 on trapped fluid, crossing angles from 90 to 2 degrees, closed networks, threads",
+    subject: "time steps over 18 decades, joints closed to a millionth that open, drawdown, loads \
+              of 0.1 to 100 K_n b0 on trapped fluid, rock of 10 MPa to 10 TPa, meshes of 8 to 64 \
+              cells across, paths of small steps, crossing angles from 90 to 2 degrees, closed \
+              networks, threads",
     run,
 };
-
-/// One step of a trial on the cube.
-fn tried(group: &'static str, (what, value): (String, f64), trial: Trial) -> Case {
-    let path = trial.taken(&cube(Shape::Hex8, 6));
-    Case::of(group, what, value, (&path, trial.aperture()))
-}
-
-fn steps(effort: Effort) -> Vec<Case> {
-    let (stiffnesses, decades): (&[f64], &[i32]) = match effort {
-        Effort::Quick => (&[1e11], &[-9, 0, 9]),
-        Effort::Full => (
-            &[1e9, 1e10, 1e11, 1e13],
-            &[-9, -7, -5, -3, -1, 0, 1, 3, 5, 7, 9],
-        ),
-    };
-    let mut cases = Vec::new();
-    for &stiffness in stiffnesses {
-        for (compressibility, fluid) in [(0.0, "incompressible"), (4.5e-10, "water")] {
-            for &decade in decades {
-                let step = 10_f64.powi(decade);
-                let trial = Trial {
-                    inlet: Some(15e6),
-                    compressibility,
-                    ..Trial::of(stiffness, Some(step))
-                };
-                let what = format!("K_n {stiffness:e}, {fluid}, {step:e} diffusion times");
-                cases.push(tried("time steps", (what, step), trial));
-            }
-        }
-    }
-    cases
-}
-
-/// Joints that pressures open, one of them closed to less than a millionth.
-fn openings(effort: Effort) -> Vec<Case> {
-    let (stiffnesses, shares): (&[f64], &[f64]) = match effort {
-        Effort::Quick => (&[1e10], &[0.8]),
-        Effort::Full => (&[5.2e8, 1e9, 1e10, 1e11], &[0.6, 0.8, 0.95, 1.0, 1.2]),
-    };
-    let pairs = stiffnesses.iter();
-    let pairs = pairs.flat_map(|&stiffness| shares.iter().map(move |&share| (stiffness, share)));
-    let cases = pairs.map(|(stiffness, share)| {
-        let trial = Trial {
-            inlet: Some(share * STRESS),
-            ..Trial::of(stiffness, Some(1.0))
-        };
-        let closed = trial.aperture() / APERTURE;
-        let what = format!(
-            "from {} of the aperture, {share} of the stress",
-            digits(closed)
-        );
-        tried("opening", (what, share), trial)
-    });
-    cases.collect()
-}
-
-/// Loads on a joint whose fluid leaves slowly through one end.
-fn closings(effort: Effort) -> Vec<Case> {
-    let pairs = match effort {
-        Effort::Quick => vec![(1.0, 1e-6), (1.0, 1.0), (100.0, 1.0), (1.0, 1e6)],
-        Effort::Full => [0.1, 1.0, 10.0, 100.0]
-            .into_iter()
-            .flat_map(|load| [1e-6, 1.0, 1e6].map(|step| (load, step)))
-            .collect(),
-    };
-    let pairs = pairs.into_iter();
-    let cases = pairs.map(|(load, step)| {
-        let trial = Trial {
-            inlet: Some(PRESSURE),
-            load: Some(load * 1e11 * APERTURE),
-            ..Trial::of(1e11, Some(step))
-        };
-        let what = format!("{load} K_n b0 in {step:e} diffusion times");
-        tried("closing", (what, load), trial)
-    });
-    cases.collect()
-}
 
 /// A strip that is pumped up and let off again and again; how far the last state of full pressure
 /// is from the first.
@@ -205,15 +133,18 @@ fn run(effort: Effort) -> Finding {
         Effort::Quick => &[90.0, 2.0],
         Effort::Full => &[90.0, 45.0, 20.0, 10.0, 5.0, 2.0],
     };
-    let mut cases = steps(effort);
-    cases.extend(openings(effort));
-    cases.extend(closings(effort));
+    let mut cases = sweeps(effort);
+    cases.extend(coupled_walks::paths(effort));
     cases.push(reversed);
     cases.extend(angles.iter().map(|&angle| crossing(angle)));
     let rough = [Shape::Tet4, Shape::Hex8, Shape::Prism6].map(undrained);
     let [off, rough] = [0, 1].map(|which| largest(rough.map(|found| found[which])));
     let said = isolated();
+    let linear = coupled_linear::sweep(effort);
+    let walks = coupled_walks::walks(effort);
     let mut misses: Vec<String> = cases.iter().filter_map(Case::miss).collect();
+    misses.extend(linear.misses());
+    misses.extend(walks.misses());
     let mut hold = |holds: bool, what: String| {
         if !holds {
             misses.push(what);
@@ -251,5 +182,13 @@ fn run(effort: Effort) -> Finding {
     .text(text(&cases, [apart, off, rough]))
     .chart("coupled-flow", chart(&cases))
     .table(table(&cases))
+    .text(linear.text())
+    .table_in("coupled-flow-linear", linear.table())
+    .text(format!(
+        "{} {}",
+        coupled_walks::text_of_paths(&cases),
+        walks.text()
+    ))
+    .table_in("coupled-flow-walks", walks.table())
     .missing(misses)
 }
