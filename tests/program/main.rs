@@ -38,6 +38,7 @@ mod read_back;
 mod refine;
 mod renumbered;
 mod report;
+mod resting_fluid;
 mod results;
 mod resume;
 mod soak;

@@ -101,8 +101,13 @@ impl Conduits {
     }
 }
 
-/// Looks at pressures that drive the fluid and vary, at the nodes where they may act.
+/// Looks at pressures of the fluid that vary, at the nodes where they may act.
 fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
+    let initial = look.scene.fluid.as_ref();
+    if let Some(field) = initial.and_then(|fluid| fluid.value.initial_pressure.field.as_ref()) {
+        let nodes = mesh.facets.elements.nodes.iter();
+        look.at(field, &places(mesh, nodes), &[0.0]);
+    }
     let facets = 0..mesh.facets.elements.len();
     let mut is_fractured = vec![false; mesh.nodes.len()];
     for &node in &mesh.facets.elements.nodes {
@@ -118,7 +123,7 @@ fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
         look.at(field, &places(mesh, nodes), &[0.0]);
     }
     for entry in &bound.boundaries {
-        let Some(field) = &entry.value.fluid_field else {
+        let Some(field) = &entry.value.fluid_pressure.field else {
             continue;
         };
         let boundary = mesh.boundaries.iter().find(|own| own.name == entry.name);

@@ -44,11 +44,12 @@ pub(crate) fn bind_flow(
         weight,
         (&mut lines, &mut *decisions),
     );
-    let drilled = match (drilled, leaks_in_no_time(scene, bound)) {
+    let refused = [leaks_in_no_time(scene, bound), unweighed(scene, bound)].concat();
+    let drilled = match (drilled, refused) {
         (Ok(drilled), early) if early.is_empty() => drilled,
         (drilled, early) => return Err([early, drilled.err().unwrap_or_default()].concat()),
     };
-    let mut conditions = on_boundaries(mesh, bound, cases);
+    let mut conditions = on_boundaries(mesh, (bound, weight), cases);
     conditions.extend(in_fractures(mesh, bound, cases));
     conditions.extend(leaking(mesh, bound, cases));
     conditions.extend(drilled);
@@ -56,7 +57,7 @@ pub(crate) fn bind_flow(
         is_undrained: scene.isolated == Isolated::Undrained
             && !matches!(scene.timetable, Timetable::Times { .. }),
         fluid: fluid.value.fluid,
-        initial_pressure: fluid.value.initial_pressure,
+        initial_pressure: fluid.value.initial_pressure.resolved(weight),
         conduits,
         of_facets,
         inactive: Vec::new(),
@@ -99,14 +100,24 @@ fn from_sources(
     }
 }
 
-fn on_boundaries(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> {
+/// Conditions on parts of the outer surface, for the weight of the fluid (Pa/m).
+fn on_boundaries(
+    mesh: &Mesh,
+    (bound, weight): (&Bound<'_>, f64),
+    cases: &Cases,
+) -> Vec<FlowCondition> {
     let entries = bound.boundaries.iter().enumerate();
     let conditions = entries.filter_map(|(index, entry)| {
         let boundary = mesh.boundaries.iter().position(|b| b.name == entry.name)?;
         Some(FlowCondition {
             name: section_head("boundary", &entry.name),
             place: FlowPlace::Boundary(boundary),
-            drive: entry.value.fluid.clone()?,
+            drive: match entry.value.fluid.clone()? {
+                FlowDrive::Pressure(_) => {
+                    FlowDrive::Pressure(entry.value.fluid_pressure.resolved(weight))
+                }
+                other => other,
+            },
             case: cases.of_condition(index),
         })
     });
@@ -140,6 +151,27 @@ fn leaking(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> 
         })
     });
     conditions.collect()
+}
+
+/// Refuses water tables where the fluid has no weight, or one that is not along z.
+fn unweighed(scene: &Scene, bound: &Bound<'_>) -> Vec<Defect> {
+    let gravity = scene.body.gravity;
+    let problem = match (gravity.z == 0.0, gravity.x == 0.0 && gravity.y == 0.0) {
+        (true, _) => "there is a water table, but no gravity along z",
+        (false, false) => "there is a water table, but gravity is not along z",
+        (false, true) => return Vec::new(),
+    };
+    let initial = scene.fluid.iter();
+    let initial = initial.map(|entry| (&entry.place, &entry.value.initial_pressure));
+    let boundaries = bound.boundaries.iter();
+    let boundaries = boundaries.map(|entry| (&entry.place, &entry.value.fluid_pressure));
+    let tables = initial
+        .chain(boundaries)
+        .filter(|(_, given)| given.water_table.is_some());
+    let remedy = "add [body] with gravity = [0, 0, -9.81], or write value and per_metre";
+    tables
+        .map(|(place, _)| Defect::new(place, problem, remedy))
+        .collect()
 }
 
 /// Refuses what would leak off in no time, or out of fractures that store nothing.

@@ -8,7 +8,7 @@ use kluft_solver::{
 
 use crate::conduit::HydraulicParameter;
 use crate::field::{self, FieldEntry, InTime, Value, read_value};
-use crate::fluid::read_boundary_fluid;
+use crate::fluid::{PressureEntry, read_boundary_fluid};
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
 use crate::place::SurfacePlace;
@@ -28,8 +28,8 @@ pub struct BoundaryEntry {
     pub springs: Option<SpringEntry>,
     /// What drives the fluid there.
     pub fluid: Option<FlowDrive>,
-    /// Its fluid pressure, if it varies.
-    pub fluid_field: Option<FieldEntry>,
+    /// How the pressure of the fluid is given there, if it is.
+    pub fluid_pressure: PressureEntry,
     /// How all change with time.
     pub history: Option<LoadHistory>,
 }
@@ -83,7 +83,7 @@ impl BoundaryEntry {
         let load = self.varying_load().map_or(&[][..], |load| &load.fields);
         load.iter()
             .chain(self.spring_fields())
-            .chain(&self.fluid_field)
+            .chain(&self.fluid_pressure.field)
     }
 
     /// Values of its springs that vary.
@@ -150,7 +150,7 @@ pub struct FixedPointEntry {
 
 /// Reads what acts on a part of the outer surface; rigid rock has no use for loads and supports.
 pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Option<BoundaryEntry> {
-    let (fluid, fluid_field) = read_boundary_fluid(section, setting);
+    let (fluid, fluid_pressure) = read_boundary_fluid(section, setting);
     let (load, support, springs) = match setting.is_rigid() {
         true => (None, None, None),
         false => (
@@ -193,7 +193,7 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
         support,
         springs,
         fluid,
-        fluid_field,
+        fluid_pressure,
         history: read_history(section, setting.clock, scaled),
     })
 }

@@ -6,7 +6,7 @@ use kluft_solver::{Conduit, Field, FlowDrive, Fluid, Leakoff, Profile};
 use crate::field::FieldEntry;
 use crate::history::LoadHistory;
 use crate::load::{Scaled, read_history};
-use crate::profile::{read_profile, read_profile_or_field};
+use crate::profile::{read_profile_or_field, says};
 use crate::reader::Section;
 use crate::setting::{FluidUse, Setting};
 
@@ -79,12 +79,73 @@ pub(crate) fn fluid_use(root: &Section<'_, '_>) -> FluidUse {
 }
 
 /// A fluid and its state before any load.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct FluidEntry {
     /// The fluid.
     pub fluid: Fluid,
     /// Pressure before any load (Pa).
-    pub initial_pressure: Profile,
+    pub initial_pressure: PressureEntry,
+}
+
+/// The pressure of a fluid, as the scene gives it.
+#[derive(Debug, Clone, Default)]
+pub struct PressureEntry {
+    /// Its values (Pa); without meaning where there is a water table.
+    pub pressure: Field,
+    /// The same, if it varies by more than the elevation.
+    pub field: Option<FieldEntry>,
+    /// Elevation below which the fluid rests (m), where its pressure is given so.
+    pub water_table: Option<f64>,
+}
+
+impl PressureEntry {
+    /// The values (Pa) for the weight of the fluid along z (Pa/m), which is negative downwards.
+    pub(crate) fn resolved(&self, weight: f64) -> Field {
+        let resting = |level| {
+            Field::from(Profile {
+                at: level,
+                value: 0.0,
+                per_metre: weight,
+            })
+        };
+        self.water_table
+            .map_or_else(|| self.pressure.clone(), resting)
+    }
+}
+
+/// Reads the elevation below which a fluid rests (m), if a pressure is given so.
+fn read_water_table(section: &Section<'_, '_>, name: &'static str) -> Option<f64> {
+    if section.is_word(name, "hydrostatic") {
+        let problem = format!("`{name}` is hydrostatic, but from which elevation on?");
+        let remedy = format!("write {name} = {{ water_table = 0.0 }}, where the pressure is 0 (m)");
+        section.refuse(name, problem, remedy);
+        return Some(0.0);
+    }
+    if !says(section, name, &["water_table"]) {
+        return None;
+    }
+    let value = section.section(name)?;
+    let forms = ["value", "per_metre", "at", "table", "expression", "file"];
+    refuse_beside(&value, "water_table", &forms);
+    let level = value.number("water_table");
+    value.finish();
+    level
+}
+
+fn read_pressure(section: &Section<'_, '_>, key: &'static str) -> PressureEntry {
+    let water_table = read_water_table(section, key);
+    if water_table.is_some() {
+        return PressureEntry {
+            water_table,
+            ..PressureEntry::default()
+        };
+    }
+    let (pressure, field) = read_profile_or_field(section, key);
+    PressureEntry {
+        pressure,
+        field,
+        water_table,
+    }
 }
 
 /// Reads the fluid.
@@ -96,7 +157,7 @@ pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<Flu
     let viscosity = section.number("viscosity");
     let density = section.number("density");
     let compressibility = section.number("compressibility");
-    let initial_pressure = read_profile(&section, "initial_pressure");
+    let initial_pressure = read_pressure(&section, "initial_pressure");
     section.finish();
     Some(FluidEntry {
         fluid: Fluid {
@@ -180,9 +241,8 @@ fn read_points(section: &Section<'_, '_>) -> Option<SourcePlace> {
 pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option<SourceEntry> {
     refuse_without_fluid(section, setting, &["rate", "pressure"]);
     let place = read_place(section);
-    let drive = read_drive(section, ["pressure", "rate"], |section, key| {
-        Field::constant(section.number(key).unwrap_or(0.0))
-    });
+    let constant = || Field::constant(section.number("pressure").unwrap_or(0.0));
+    let drive = read_drive(section, ["pressure", "rate"], constant);
     if drive.is_none() {
         section.require("rate");
     }
@@ -198,30 +258,26 @@ pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option
     })
 }
 
-/// Reads what drives the fluid at a part of the outer surface.
+/// Reads what drives the fluid at a part of the outer surface, and how its pressure is given.
 pub(crate) fn read_boundary_fluid(
     section: &Section<'_, '_>,
     setting: Setting,
-) -> (Option<FlowDrive>, Option<FieldEntry>) {
-    refuse_without_fluid(section, setting, &["fluid_pressure", "fluid_inflow"]);
-    let mut field = None;
-    let drive = read_drive(
-        section,
-        ["fluid_pressure", "fluid_inflow"],
-        |section, key| {
-            let (pressure, entry) = read_profile_or_field(section, key);
-            field = entry;
-            pressure
-        },
-    );
-    (drive, field)
+) -> (Option<FlowDrive>, PressureEntry) {
+    let keys = ["fluid_pressure", "fluid_inflow"];
+    refuse_without_fluid(section, setting, &keys);
+    let mut given = PressureEntry::default();
+    let drive = read_drive(section, keys, || {
+        given = read_pressure(section, "fluid_pressure");
+        given.pressure.clone()
+    });
+    (drive, given)
 }
 
 /// A pressure or a rate.
 fn read_drive(
     section: &Section<'_, '_>,
     [pressure, rate]: [&'static str; 2],
-    read_pressure: impl FnOnce(&Section<'_, '_>, &'static str) -> Field,
+    read_pressure: impl FnOnce() -> Field,
 ) -> Option<FlowDrive> {
     if section.has(pressure) && section.has(rate) {
         let problem = format!("both {pressure} and {rate} are given");
@@ -232,7 +288,7 @@ fn read_drive(
         return section.number(rate).map(FlowDrive::Rate);
     }
     section.number(rate);
-    Some(FlowDrive::Pressure(read_pressure(section, pressure)))
+    Some(FlowDrive::Pressure(read_pressure()))
 }
 
 /// Reads what leaks off from a fracture; none if nothing does.

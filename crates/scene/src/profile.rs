@@ -27,18 +27,21 @@ pub(crate) fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Pro
     read
 }
 
+/// Whether a key holds a section with one of some keys.
+pub(crate) fn says(section: &Section<'_, '_>, name: &'static str, keys: &[&'static str]) -> bool {
+    let value = section.is_table(name).then(|| section.section(name));
+    value
+        .flatten()
+        .is_some_and(|value| keys.iter().any(|key| value.has(key)))
+}
+
 /// Reads a number, a profile, or a value that varies otherwise but not with time, which is kept
 /// beside.
 pub(crate) fn read_profile_or_field(
     section: &Section<'_, '_>,
     name: &'static str,
 ) -> (Field, Option<FieldEntry>) {
-    let varies = section.is_table(name)
-        && section.section(name).is_some_and(|value| {
-            let forms = ["table", "expression", "file"];
-            forms.into_iter().any(|form| value.has(form))
-        });
-    if !varies {
+    if !says(section, name, &["table", "expression", "file"]) {
         return (Field::from(read_profile(section, name)), None);
     }
     let quantity = section.quantity(name);

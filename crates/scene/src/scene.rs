@@ -181,10 +181,13 @@ impl Scene {
         let rocks = self.rocks.iter().flat_map(|entry| &entry.value.fields);
         let fractures = rocks.map(|(_, field)| field).chain(fractures);
         let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);
+        let fluid = self.fluid.iter();
+        let fluid = fluid.filter_map(|entry| entry.value.initial_pressure.field.as_ref());
         let mut files: Vec<&Path> = Vec::new();
         for file in fractures
             .chain(loads)
             .chain(stress)
+            .chain(fluid)
             .filter_map(|field| field.file.as_deref())
         {
             if !files.contains(&file) {

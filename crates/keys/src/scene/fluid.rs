@@ -59,7 +59,7 @@ pub static FLUID: KeySection = KeySection {
             kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &INITIAL_PROFILE),
             need: Need::Default("0"),
             example: "10e6",
-            says: "Pressure before any load, in balance with `[initial_stress]`, which is total: constant, or linear in the elevation",
+            says: "Pressure before any load, in balance with `[initial_stress]`, which is total: constant, linear in the elevation, or any value that varies but not with time",
         },
         Key {
             name: "isolated",
@@ -183,21 +183,19 @@ pub static FLUID_PROFILE: KeySection = KeySection {
     also: Some(&FIELD),
 };
 
-/// A pressure before any load that is linear in the elevation.
+/// A pressure before any load that is linear in the elevation, or varies otherwise.
 pub static INITIAL_PROFILE: KeySection = KeySection {
     pattern: "[fluid.initial_pressure]",
-    says: LINEAR_PRESSURE,
+    says: "Pressure `value + per_metre (z - at)`, or one that varies",
     keys: &PROFILE_KEYS,
-    also: None,
+    also: Some(&FIELD),
 };
 
-const LINEAR_PRESSURE: &str = "A pressure `value + per_metre (z - at)` at the elevation z";
-
-static PROFILE_KEYS: [Key; 3] = [
+static PROFILE_KEYS: [Key; 4] = [
     Key {
         name: "value",
         kind: number(Dimension::Stress, INITIAL),
-        need: Need::Required,
+        need: Need::Or("water_table"),
         example: "1e6",
         says: "Pressure at the elevation `at`",
     },
@@ -214,6 +212,13 @@ static PROFILE_KEYS: [Key; 3] = [
         need: Need::Default("0"),
         example: "0.0",
         says: "Elevation of `value`, positive upwards",
+    },
+    Key {
+        name: "water_table",
+        kind: number(Dimension::Length, Range::Finite),
+        need: Need::Or("value"),
+        example: "350.0",
+        says: "Instead: elevation below which a fluid at rest has this pressure, by `density` and gravity; 0 there, negative above",
     },
 ];
 

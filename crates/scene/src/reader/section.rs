@@ -109,6 +109,12 @@ impl<'a, 'i> Section<'a, 'i> {
             .is_some_and(|value| value.get_ref().is_table())
     }
 
+    /// Whether the key is there and holds this word.
+    pub fn is_word(&self, key: &'static str, word: &str) -> bool {
+        self.get(key)
+            .is_some_and(|value| value.get_ref().as_str() == Some(word))
+    }
+
     /// Whether the key is there and holds a list with a table in it.
     pub fn has_table_in(&self, key: &'static str) -> bool {
         let list = self.get(key).and_then(|value| value.get_ref().as_array());

@@ -58,6 +58,8 @@ pub struct Coupling<'a> {
     areas: Vec<f64>,
     /// What belongs to each node before any load (m^3).
     initial_volumes: Vec<f64>,
+    /// Pressure before any load at each row (Pa).
+    initial_pressures: Vec<f64>,
 }
 
 /// The fluid in a state.
@@ -161,6 +163,7 @@ impl<'a> Coupling<'a> {
             undrained,
             initial_volumes: points.at_rows(apertures),
             push: Push::of(interface, &points),
+            initial_pressures: topology.initial_pressures(),
             points,
             topology,
             is_transient,
@@ -242,9 +245,7 @@ impl<'a> Coupling<'a> {
 
     /// Pressure before any load at a row (Pa).
     pub(super) fn initial(&self, row: usize) -> f64 {
-        let node = self.topology.nodes.node[row] as usize;
-        let elevation = self.topology.mesh.nodes[node].z;
-        self.topology.flow.initial_pressure.at_elevation(elevation)
+        self.initial_pressures[row]
     }
 
     /// Moves a fluid to another load: pressures stay, but those that are given.

@@ -5,7 +5,7 @@ use super::nodal::{self, Nodal, NodalCondition};
 use super::operator::FlowOperator;
 use super::places::{self, Place};
 use super::topology::Topology;
-use crate::problem::{FlowCondition, Load};
+use crate::problem::{Field, FlowCondition, Load};
 
 /// The flow at a load.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +70,14 @@ impl<'s, 'a> Loaded<'s, 'a> {
     /// Counts potentials from the mean of those that are given to each network, and elsewhere from
     /// the initial pressure.
     pub(super) fn counted_from_means(self) -> Self {
-        let elsewhere = self.topology.flow.initial_pressure.value;
+        let topology = self.topology;
+        let elsewhere = match &topology.flow.initial_pressure {
+            Field::Profile(profile) => profile.value,
+            varying => {
+                let first = topology.nodes.node[0] as usize;
+                varying.at(topology.mesh.nodes[first], 0.0)
+            }
+        };
         let elsewhere = vec![elsewhere; self.references.len()];
         self.counted_from_given(&elsewhere)
     }

@@ -68,6 +68,7 @@ pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTenso
 pub use steady::FlowSystem;
 pub use steady_state::NO_PRESSURE;
 pub use transient::{TimeStep, TransientFlow};
+pub(crate) use wall_points::between_corners;
 
 #[cfg(test)]
 mod tests;

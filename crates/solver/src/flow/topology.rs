@@ -75,4 +75,13 @@ impl<'a> Topology<'a> {
         };
         Ok((topology, conductance))
     }
+
+    /// Pressure before any load at each row (Pa).
+    pub(super) fn initial_pressures(&self) -> Vec<f64> {
+        let places = self.nodes.node.iter();
+        let places = places.map(|&node| self.mesh.nodes[node as usize]);
+        places
+            .map(|place| self.flow.initial_pressure.at(place, 0.0))
+            .collect()
+    }
 }

@@ -69,11 +69,7 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
         accuracy: f64,
     ) -> Self {
         let flow = system.topology.flow;
-        let nodes = system.nodes().iter();
-        let elevation = |node: &u32| system.topology.mesh.nodes[*node as usize].z;
-        let initial: Vec<f64> = nodes
-            .map(|node| flow.initial_pressure.at_elevation(elevation(node)))
-            .collect();
+        let initial = system.topology.initial_pressures();
         Self {
             storage: storage(system, apertures),
             accuracy,

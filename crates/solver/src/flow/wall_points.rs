@@ -2,10 +2,11 @@
 //! and stores.
 
 use kluft_algebra::Lists;
-use kluft_mesh::Shape;
+use kluft_mesh::{Mesh, Shape};
 use rayon::prelude::*;
 
 use super::topology::Topology;
+use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::interface::Interface;
 
 /// Marks a facet that conducts nothing.
@@ -129,10 +130,30 @@ impl WallPoints {
     }
 }
 
+/// Values of nodes at the facet points of an interface, as the pressure of a fluid is: linear
+/// between the corners of facets.
+pub(crate) fn between_corners(
+    mesh: &Mesh,
+    interface: &Interface,
+    of_node: impl Fn(usize) -> f64,
+) -> Vec<f64> {
+    let elements = &mesh.facets.elements;
+    let points = interface.points().iter().zip(interface.node_shares(mesh));
+    let value = |(point, own): (&FacetPoint, Vec<(u8, f64)>)| {
+        let facet = point.facet as usize;
+        let shares = corner_shares(elements.shapes[facet], &own, elements.nodes_of(facet));
+        let terms = shares.into_iter();
+        terms
+            .map(|(node, share)| share * of_node(node as usize))
+            .sum()
+    };
+    points.map(value).collect()
+}
+
 /// Shares of the corners in the pressure at a point of a facet, of which the shares of the nodes
 /// are given.
 fn corner_shares(shape: Shape, nodes: &[(u8, f64)], corners: &[u32]) -> Vec<(u32, f64)> {
-    let mut shares = vec![0.0; corners.len()];
+    let mut shares = vec![0.0; shape.corner_count()];
     for &(local, share) in nodes {
         for (corner, part) in of_corners(shape, local as usize) {
             shares[corner] += share * part;

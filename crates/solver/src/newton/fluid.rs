@@ -13,6 +13,9 @@ use crate::flow::{Coupling, FlowAtWalls, FlowIncrement, FluidState, LinearisedFl
 use crate::problem::Load;
 use crate::system::{State, System};
 
+/// Share of a pressure below which its change within an increment is none.
+const LEAST_CHANGE: f64 = 1e-7;
+
 /// Share of an aperture.
 const FAR: f64 = 0.5;
 
@@ -137,11 +140,14 @@ impl FlowIterate {
     }
 
     /// Largest difference of a pressure of the fluid under a load from what the increment began
-    /// with (Pa).
+    /// with (Pa). Where pressures stand still it is the least share of them that would count as a
+    /// change: rounding is no scale.
     pub(super) fn moved(&self, coupling: &Coupling<'_>, fluid: &FluidState, load: &Load) -> f64 {
         let pressures = coupling.pressures(fluid, load);
         let pairs = pressures.iter().zip(&*self.start);
-        pairs.fold(0.0, |most, (now, then)| most.max((now - then).abs()))
+        pairs.fold(0.0, |most, (now, then)| {
+            most.max((now - then).abs()).max(LEAST_CHANGE * now.abs())
+        })
     }
 }
 

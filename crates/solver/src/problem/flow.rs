@@ -1,7 +1,7 @@
 //! What flows in the fractures, and what drives it.
 
 use glam::DVec3;
-use kluft_field::{Field, Profile};
+use kluft_field::Field;
 use kluft_mesh::Mesh;
 use lie_core::HydraulicAperture;
 
@@ -123,8 +123,9 @@ pub struct Flow {
     pub conditions: Vec<FlowCondition>,
     /// Lines within fractures, each by the corners that share it.
     pub lines: Vec<Vec<LineShare>>,
-    /// Pressure before any load (Pa), in equilibrium with the initial stress, which is total.
-    pub initial_pressure: Profile,
+    /// Pressure before any load (Pa), in equilibrium with the initial stress, which is total; by
+    /// position but not by time.
+    pub initial_pressure: Field,
     /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
     /// Load case of gravity.

@@ -8,7 +8,7 @@ mod state;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, LinearFailure, norm};
-use kluft_mesh::Defect;
+use kluft_mesh::{Defect, Mesh};
 use lie_core::{FractureLaw, JointHistory, JointState, TrialState};
 use rayon::prelude::*;
 
@@ -16,8 +16,8 @@ use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::interface::Interface;
 use crate::assembly::loads::Loads;
 use crate::assembly::{rock, springs};
-use crate::flow::{Coupling, FlowSystem};
-use crate::problem::{Conduit, Flow, Load, Problem};
+use crate::flow::{Coupling, FlowSystem, between_corners};
+use crate::problem::{Conduit, Field, Flow, Load, Problem};
 use crate::space::cell::StrainOffsets;
 
 use carried::Carried;
@@ -78,7 +78,7 @@ impl<'a> System<'a> {
         let interface = &mut self.discretisation.interface;
         interface.set_laws(self.problem, laws);
         if let Some(coupling) = &self.coupling {
-            let pressures = initial_pressures(coupling.flow(), interface);
+            let pressures = initial_pressures(&self.problem.mesh, coupling.flow(), interface);
             interface.set_initial_pressures(self.problem, &pressures);
         }
     }
@@ -122,7 +122,7 @@ impl<'a> System<'a> {
     /// As [`Coupling::of`].
     pub fn couple(&mut self, flow: &'a Flow) -> Result<(), Vec<Defect>> {
         let interface = &mut self.discretisation.interface;
-        let pressures = initial_pressures(flow, interface);
+        let pressures = initial_pressures(&self.problem.mesh, flow, interface);
         interface.set_initial_pressures(self.problem, &pressures);
         let apertures = apertures(interface.points.iter().map(|point| point.initial));
         self.coupling = Some(Coupling::of(self.problem, flow, interface, &apertures)?);
@@ -379,14 +379,22 @@ impl<'a> System<'a> {
     }
 }
 
-/// Pressure of the fluid at each facet point before any load (Pa).
-fn initial_pressures(flow: &Flow, interface: &Interface) -> Vec<f64> {
+/// Pressure of the fluid at each facet point before any load (Pa). One that is not linear is taken
+/// as the flow has it, so that nothing moves at the start.
+fn initial_pressures(mesh: &Mesh, flow: &Flow, interface: &Interface) -> Vec<f64> {
     let points = interface.points.iter();
-    let of = |point: &FacetPoint| match flow.conduits[point.fracture as usize] {
-        Conduit::Sealed => 0.0,
-        Conduit::Open(_) => flow.initial_pressure.at_elevation(point.position.z),
+    let mut pressures: Vec<f64> = match &flow.initial_pressure {
+        Field::Profile(profile) => points
+            .map(|point| profile.at_elevation(point.position.z))
+            .collect(),
+        varying => between_corners(mesh, interface, |node| varying.at(mesh.nodes[node], 0.0)),
     };
-    points.map(of).collect()
+    for (pressure, point) in pressures.iter_mut().zip(&interface.points) {
+        if flow.conduits[point.fracture as usize] == Conduit::Sealed {
+            *pressure = 0.0;
+        }
+    }
+    pressures
 }
 
 fn apertures(walls: impl Iterator<Item = JointState>) -> Vec<f64> {

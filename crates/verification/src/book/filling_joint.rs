@@ -2,7 +2,7 @@
 //! logarithmic law.
 
 use kluft_mesh::Shape;
-use kluft_solver::NewtonSettings;
+use kluft_solver::{Field, NewtonSettings};
 use lie_core::{Closure, ClosureKind};
 
 use crate::oracles::similarity::Filling;
@@ -100,7 +100,7 @@ impl Joint {
         let schedule = equal_steps(steps, self.end);
         let problem = problem(&mesh, self.closure, self.pressed, schedule);
         let mut flow = water(&mesh, vec![on_side(&mesh, "side left", self.pressures[1])]);
-        flow.initial_pressure.value = self.pressures[0];
+        flow.initial_pressure = Field::constant(self.pressures[0]);
         let path = path(&problem, &flow, settings);
         let parts = path.frames.iter().map(|frame| frame.record.substeps.len());
         let parts = parts.sum();

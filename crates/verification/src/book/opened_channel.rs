@@ -1,6 +1,7 @@
 //! Steady flow through joints that it opens.
 
 use kluft_mesh::Shape;
+use kluft_solver::Field;
 use lie_core::{Closure, ClosureKind};
 
 use crate::report::{Effort, Finding, Study, largest, percent};
@@ -71,7 +72,7 @@ impl Joint {
         let conditions = ["side left", "side right"].into_iter().zip(self.ends);
         let conditions = conditions.map(|(side, end)| on_side(&mesh, side, end));
         let mut flow = water(&mesh, conditions.collect());
-        flow.initial_pressure.value = self.ends[1];
+        flow.initial_pressure = Field::constant(self.ends[1]);
         path(&problem, &flow, as_given())
     }
 

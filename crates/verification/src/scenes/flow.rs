@@ -5,7 +5,6 @@ use kluft_mesh::structured::{Patch, cells_of};
 use kluft_mesh::{Mesh, Shape, SurfaceRole};
 use kluft_solver::{
     Conduit, Field, Flow, FlowCondition, FlowDrive, FlowPlace, FlowState, FlowSystem, Fluid, Load,
-    Profile,
 };
 use lie_core::{HydraulicAperture, Roughness};
 
@@ -40,7 +39,7 @@ pub fn water(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
         residual: 0.0,
     });
     Flow {
-        initial_pressure: Profile::default(),
+        initial_pressure: Field::default(),
         fluid: Fluid {
             viscosity: VISCOSITY,
             density: 0.0,

@@ -126,7 +126,7 @@ impl Trial {
         let outlet = self.inlet.filter(|_| self.step.is_none());
         let outlet = outlet.map(|_| on_side(mesh, "side right", PRESSURE));
         let mut flow = water(mesh, inlet.into_iter().chain(outlet).collect());
-        flow.initial_pressure.value = PRESSURE;
+        flow.initial_pressure = Field::constant(PRESSURE);
         flow.fluid.compressibility = self.compressibility;
         flow
     }

@@ -2,7 +2,7 @@
 //! angles, closed networks, threads.
 
 use kluft_mesh::Shape;
-use kluft_solver::{Condition, Discretisation, Fracture, Problem, Support, System};
+use kluft_solver::{Condition, Discretisation, Field, Fracture, Problem, Support, System};
 use lie_core::{Closure, FractureLaw};
 
 use crate::report::{Effort, Finding, Study, largest};
@@ -40,7 +40,7 @@ fn reversed() -> (Case, f64) {
     let mut driven = on_side(&mesh, "side left", 25e6);
     driven.case = DRIVEN;
     let mut flow = water(&mesh, vec![driven]);
-    flow.initial_pressure.value = 10e6;
+    flow.initial_pressure = Field::constant(10e6);
     let path = path(&problem, &flow, as_given());
     let apart = match &path.frames[..] {
         [first, .., last] => {

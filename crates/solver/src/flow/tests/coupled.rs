@@ -280,7 +280,7 @@ fn opened(mesh: &Mesh, law: FractureLaw, (schedule, inlet): (Schedule, f64)) -> 
         conditions.truncate(1);
     }
     let mut flow = flow(mesh, conditions);
-    flow.initial_pressure.value = 10e6;
+    flow.initial_pressure = Field::constant(10e6);
     solved(&problem, &flow).records.remove(0)
 }
 

@@ -16,7 +16,7 @@ use lie_core::{HydraulicAperture, Roughness};
 
 use crate::flow::{FlowState, FlowSystem};
 use crate::problem::{
-    Conduit, Field, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Load, Profile, Schedule, Step,
+    Conduit, Field, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid, Load, Schedule, Step,
 };
 
 const VISCOSITY: f64 = 1e-3;
@@ -63,7 +63,7 @@ fn flow(mesh: &Mesh, conditions: Vec<FlowCondition>) -> Flow {
             density: 0.0,
             compressibility: 0.0,
         },
-        initial_pressure: Profile::default(),
+        initial_pressure: Field::default(),
         conduits: vec![smooth(); mesh.fractures.len()],
         of_facets: Vec::new(),
         inactive: Vec::new(),
