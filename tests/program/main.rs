@@ -32,6 +32,7 @@ mod one_answer;
 mod opengeosys;
 mod places;
 mod plane;
+mod point_contacts;
 mod pressed_joints;
 mod probes;
 mod read_back;

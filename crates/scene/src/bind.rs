@@ -16,6 +16,7 @@ use crate::isolated::treat;
 use crate::join::{JoinedDraft, join};
 use crate::oracle::Oracle;
 use crate::placed::name_places;
+use crate::point_contacts;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::rock::RockEntry;
@@ -184,11 +185,13 @@ fn doubts(
     known: [Vec<String>; 2],
 ) -> Vec<String> {
     let of_flow = flow.and_then(|flow| fluid_doubts::warning(scene, problem, flow));
+    let contacts = flow.and_then(|flow| point_contacts::warning(scene, &problem.mesh, flow));
     let known = known.into_iter().flatten();
     warnings(scene, problem)
         .into_iter()
         .chain(known)
         .chain(of_flow)
+        .chain(contacts)
         .collect()
 }
 

@@ -28,6 +28,7 @@ mod look;
 mod oracle;
 mod place;
 mod placed;
+mod point_contacts;
 mod probe;
 mod profile;
 mod read;
@@ -51,7 +52,7 @@ pub use conditions::{
     VaryingLoadEntry,
 };
 pub use field::FieldEntry;
-pub use fluid::{FluidEntry, SourceEntry, SourcePlace};
+pub use fluid::{FluidEntry, PressureEntry, SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, PhaseEntry, StepEnd, Timetable};
 pub use initial_stress::InitialStressEntry;

@@ -29,11 +29,13 @@ pub enum Doubt {
     LongTimeSteps,
     /// Times or a viscosity that make no sense beside the apertures and sizes of a scene.
     FluidTimes,
+    /// Fractures between which fluid passes through a single node only.
+    PointContacts,
 }
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Values,
         Self::BodySize,
         Self::WideApertures,
@@ -46,6 +48,7 @@ impl Doubt {
         Self::UnresolvedPath,
         Self::LongTimeSteps,
         Self::FluidTimes,
+        Self::PointContacts,
     ];
 
     /// Its name under `silence`.
@@ -63,6 +66,7 @@ impl Doubt {
             Self::UnresolvedPath => "unresolved_path",
             Self::LongTimeSteps => "long_time_steps",
             Self::FluidTimes => "fluid_times",
+            Self::PointContacts => "point_contacts",
         }
     }
 }

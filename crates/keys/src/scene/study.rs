@@ -59,7 +59,7 @@ pub static STUDY: KeySection = KeySection {
             kind: Kind::Sweeps(&SERIES),
             need: Need::Without("none"),
             example: "{ normal_stiffness = [1e9, 1e10] }",
-            says: "Numbers of all fractures that have the key; `\"NAME.key\"` is of one fracture, `\"boundary.NAME.pressure\"` a load",
+            says: "Numbers of all fractures that have the key; `\"NAME.key\"` is of one fracture, `\"boundary.NAME.pressure\"` a load, `\"fluid.viscosity\"` of the fluid, `\"source.NAME.rate\"` of a source",
         },
         Key {
             name: "facets",

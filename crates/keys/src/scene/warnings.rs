@@ -3,7 +3,7 @@
 use crate::table::{Key, KeySection, Kind, Need};
 
 /// Names of what a run may warn of.
-pub const WARNINGS: [&str; 12] = [
+pub const WARNINGS: [&str; 13] = [
     "values",
     "body_size",
     "wide_apertures",
@@ -16,6 +16,7 @@ pub const WARNINGS: [&str; 12] = [
     "unresolved_path",
     "long_time_steps",
     "fluid_times",
+    "point_contacts",
 ];
 
 /// What a run does not warn of.

@@ -142,7 +142,7 @@ class Warnings(Section):
     def __init__(
         self,
         *,
-        silence: Sequence[Literal["values", "body_size", "wide_apertures", "large_displacements", "idle_histories", "initial_stress", "unnamed_surfaces", "overlapping_walls", "not_unique", "unresolved_path", "long_time_steps", "fluid_times"]] | None = None,
+        silence: Sequence[Literal["values", "body_size", "wide_apertures", "large_displacements", "idle_histories", "initial_stress", "unnamed_surfaces", "overlapping_walls", "not_unique", "unresolved_path", "long_time_steps", "fluid_times", "point_contacts"]] | None = None,
     ) -> None:
         super().__init__(
             silence=silence,
@@ -424,12 +424,34 @@ class Source(Section):
 
 
 class InitialPressure(Section):
-    """A pressure `value + per_metre (z - at)` at the elevation z.
+    """Pressure `value + per_metre (z - at)`, or one that varies.
 
     Args:
-        value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. Required.
+        value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. This or `water_table` is
+            required.
         per_metre: Increase with the elevation (Pa/m); -1e9 to 1e9. Without it 0.
         at: Elevation of `value`, positive upwards (m). Without it 0.
+        water_table: Instead: elevation below which a fluid at rest has this pressure, by `density`
+            and gravity; 0 there, negative above (m). This or `value` is required.
+        table: Rows `[coordinate, value]` with linear values between, in any order. Without it:
+            `expression` or `file`.
+        over: What the rows of the table are over; the time is that of the load steps. Without it:
+            required with `table`.
+        ground: Elevation z of the ground: the depth is `ground` - z (m). Without it 0.
+        expression: Value by x, y, z, depth (m) and time, with + - * / ^, min(a, b), max(a, b),
+            sqrt, exp, ln, log10, sin, cos, tan, abs, step (0 below 0, else 1) and PI. Without it:
+            `table` or `file`.
+        file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
+            nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
+            middle of its cells. Without it: `table` or `expression`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
+        method: Between samples: the nearest one, or linear along their line, in the Delaunay
+            triangles of their plane, or on their grid. Without it "nearest".
+        reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
+            Without it: any; the run tells the largest.
+        beyond: Beyond the table or the samples between which values are linear: a defect, or the
+            nearest value. Without it "refuse".
+        unit: Unit of the values. Without it: SI units, angles in degrees.
     """
 
     def __init__(
@@ -438,11 +460,33 @@ class InitialPressure(Section):
         value: Quantity | None = None,
         per_metre: Quantity | None = None,
         at: Quantity | None = None,
+        water_table: Quantity | None = None,
+        table: Sequence[Sequence[float]] | None = None,
+        over: Literal["x", "y", "z", "depth", "time"] | None = None,
+        ground: Quantity | None = None,
+        expression: str | None = None,
+        file: str | os.PathLike[str] | None = None,
+        column: str | None = None,
+        method: Literal["nearest", "linear"] | None = None,
+        reach: Quantity | None = None,
+        beyond: Literal["refuse", "nearest"] | None = None,
+        unit: str | None = None,
     ) -> None:
         super().__init__(
             value=value,
             per_metre=per_metre,
             at=at,
+            water_table=water_table,
+            table=table,
+            over=over,
+            ground=ground,
+            expression=expression,
+            file=file,
+            column=column,
+            method=method,
+            reach=reach,
+            beyond=beyond,
+            unit=unit,
         )
 
 
@@ -456,7 +500,8 @@ class Fluid(Section):
             time, which in rigid rock it does only if the fluid is compressible (1/Pa); >= 0.
             Without it 0.
         initial_pressure: Pressure before any load, in balance with `[initial_stress]`, which is
-            total: constant, or linear in the elevation (Pa); -1e12 to 1e12. Without it 0.
+            total: constant, linear in the elevation, or any value that varies but not with time
+            (Pa); -1e12 to 1e12. Without it 0.
         isolated: Networks of fractures that no pressure and no rate acts on are refused, or left
             out of the flow; or, undrained, in steady flow between walls that move, they keep the
             fluid that they hold, and so do those whose rates add up to zero. Without it "refuse".
@@ -535,9 +580,12 @@ class FluidPressure(Section):
     """A pressure `value + per_metre (z - at)`, or one that varies.
 
     Args:
-        value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. Required.
+        value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. This or `water_table` is
+            required.
         per_metre: Increase with the elevation (Pa/m); -1e9 to 1e9. Without it 0.
         at: Elevation of `value`, positive upwards (m). Without it 0.
+        water_table: Instead: elevation below which a fluid at rest has this pressure, by `density`
+            and gravity; 0 there, negative above (m). This or `value` is required.
         table: Rows `[coordinate, value]` with linear values between, in any order. Without it:
             `expression` or `file`.
         over: What the rows of the table are over; the time is that of the load steps. Without it:
@@ -565,6 +613,7 @@ class FluidPressure(Section):
         value: Quantity | None = None,
         per_metre: Quantity | None = None,
         at: Quantity | None = None,
+        water_table: Quantity | None = None,
         table: Sequence[Sequence[float]] | None = None,
         over: Literal["x", "y", "z", "depth", "time"] | None = None,
         ground: Quantity | None = None,
@@ -580,6 +629,7 @@ class FluidPressure(Section):
             value=value,
             per_metre=per_metre,
             at=at,
+            water_table=water_table,
             table=table,
             over=over,
             ground=ground,
