@@ -28,20 +28,32 @@ impl Edit {
         let Some((last, sections)) = path.split_last() else {
             return;
         };
-        let mut table = scene;
-        for section in sections {
-            let entry = table.entry(section.clone());
-            let inner = entry.or_insert_with(|| Value::Table(Table::new()));
-            // The scene has been checked: sections are tables.
-            let Some(inner) = inner.as_table_mut() else {
-                return;
-            };
-            table = inner;
-        }
+        // The scene has been checked: sections are tables, or lists of them.
+        let Some(table) = below(scene, sections) else {
+            return;
+        };
         match self {
             Self::Set(_, value) => table.insert(last.clone(), value.clone()),
             Self::Remove(_) => table.remove(last),
         };
+    }
+}
+
+/// The table at the end of a path, made if it is not there; of a list the next part of the path is
+/// a number.
+fn below<'t>(table: &'t mut Table, path: &[String]) -> Option<&'t mut Table> {
+    let Some((first, rest)) = path.split_first() else {
+        return Some(table);
+    };
+    let entry = table.entry(first.clone());
+    match entry.or_insert_with(|| Value::Table(Table::new())) {
+        Value::Table(inner) => below(inner, rest),
+        Value::Array(list) => {
+            let (number, rest) = rest.split_first()?;
+            let inner = list.get_mut(number.parse::<usize>().ok()?)?;
+            below(inner.as_table_mut()?, rest)
+        }
+        _ => None,
     }
 }
 
@@ -107,6 +119,14 @@ mod tests {
         let wanted =
             "[mesh]\norder = 2\n[fracture.a]\naperture = 1e-4\n[solver]\nlinear = 'direct'\n";
         assert_eq!(scene, table(wanted));
+    }
+
+    #[test]
+    fn an_edit_changes_one_section_of_a_list() {
+        let mut scene = table("[[source]]\nrate = 1\n[[source]]\nrate = 2\n");
+        Edit::set(&["source", "1", "rate"], 3).apply(&mut scene);
+        Edit::set(&["source", "7", "rate"], 3).apply(&mut scene);
+        assert_eq!(scene, table("[[source]]\nrate = 1\n[[source]]\nrate = 3\n"));
     }
 
     #[test]

@@ -257,9 +257,12 @@ struct UnknownNumbers {
     jump: usize,
 }
 
+/// Flow in rigid rock takes no iterations, and tells none.
 #[derive(Deserialize)]
 struct StepNumbers {
+    #[serde(default)]
     newton_iterations: usize,
+    #[serde(default)]
     linear_iterations: usize,
 }
 

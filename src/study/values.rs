@@ -1,6 +1,7 @@
-//! Numbers of a scene that a study sweeps: of fractures, and loads of boundaries.
+//! Numbers of a scene that a study sweeps: of fractures, of a fluid and its sources, and loads of
+//! boundaries.
 
-use kluft_keys::scene::{BOUNDARY, FRACTURE};
+use kluft_keys::scene::{BOUNDARY, FLUID, FRACTURE, SOURCE};
 use kluft_keys::{Key, KeySection, Kind, Quantity};
 use toml::{Table, Value};
 
@@ -15,6 +16,10 @@ enum SweptName<'a> {
     Fracture(Option<&'a str>, &'a str),
     /// A boundary and the keys below it, `top.pressure`.
     Boundary(&'a str),
+    /// A key of the fluid.
+    Fluid(&'a str),
+    /// A key of one source, or of all that have it.
+    Source(Option<&'a str>, &'a str),
 }
 
 /// A number that is swept.
@@ -42,11 +47,16 @@ pub(super) fn values_of(section: &Section<'_, '_>, scene: &Table) -> Vec<(String
         let number = match swept_name(&name, scene) {
             SweptName::Fracture(wanted, key) => of_fractures((wanted, key), scene),
             SweptName::Boundary(rest) => of_boundary(section, rest, scene),
+            SweptName::Fluid(key) => of_fluid(section, key, scene),
+            SweptName::Source(wanted, key) => of_sources(section, (wanted, key), scene),
         };
         let Some(number) = number else {
-            let problem = format!("`{name}` is of no fracture or boundary");
+            let problem = format!("`{name}` is of no fracture, boundary, fluid or source");
             let names = |kind| named(scene, kind).map(move |(name, _)| format!("{kind}.{name}"));
-            let all: Vec<String> = names("fracture").chain(names("boundary")).collect();
+            let fluid = scene.get("fluid").map(|_| "fluid".to_owned());
+            let sources = sources(scene).map(|(_, name)| format!("source.{name}"));
+            let all = names("fracture").chain(names("boundary"));
+            let all: Vec<String> = all.chain(fluid).chain(sources).collect();
             section.refuse(
                 "values",
                 problem,
@@ -79,6 +89,13 @@ fn swept_name<'a>(name: &'a str, scene: &Table) -> SweptName<'a> {
     }
     if let Some(rest) = name.strip_prefix("boundary.") {
         return SweptName::Boundary(rest);
+    }
+    if let Some(key) = name.strip_prefix("fluid.") {
+        return SweptName::Fluid(key);
+    }
+    if let Some(rest) = name.strip_prefix("source.") {
+        let (source, key) = fracture_and_key(rest);
+        return SweptName::Source(source, key);
     }
     let (fracture, key) = fracture_and_key(name.strip_prefix("fracture.").unwrap_or(name));
     SweptName::Fracture(fracture, key)
@@ -124,6 +141,52 @@ fn of_boundary(section: &Section<'_, '_>, rest: &str, scene: &Table) -> Option<S
     })
 }
 
+/// Of the fluid, if the scene has one.
+fn of_fluid(section: &Section<'_, '_>, key: &str, scene: &Table) -> Option<SweptNumber> {
+    scene.get("fluid")?;
+    if number_below(&FLUID, &[key]).is_none() {
+        let problem = format!("`{key}` of a fluid is no number");
+        section.refuse("values", problem, "write \"fluid.viscosity\"");
+    }
+    Some(SweptNumber {
+        label: key.to_owned(),
+        paths: vec![vec!["fluid".into(), key.to_owned()]],
+    })
+}
+
+/// The sources of a scene, by their numbers, and what they are called.
+fn sources(scene: &Table) -> impl Iterator<Item = (usize, String)> {
+    let sources = scene.get("source").and_then(Value::as_array);
+    let named = sources.into_iter().flatten().enumerate();
+    named.map(|(number, source)| {
+        let name = source.get("name").and_then(Value::as_str);
+        (number, name.map_or((number + 1).to_string(), str::to_owned))
+    })
+}
+
+/// Of all sources that have the key, or of one (`source.NAME.rate`; by its number without a name).
+fn of_sources(
+    section: &Section<'_, '_>,
+    (wanted, key): (Option<&str>, &str),
+    scene: &Table,
+) -> Option<SweptNumber> {
+    let own = sources(scene).filter(|(number, name)| match wanted {
+        Some(wanted) => name == wanted,
+        None => scene["source"][*number].get(key).is_some(),
+    });
+    let path = |(number, _): (usize, String)| vec!["source".into(), number.to_string(), key.into()];
+    let paths: Vec<Vec<String>> = own.map(path).collect();
+    if !paths.is_empty() && number_below(&SOURCE, &[key]).is_none() {
+        let problem = format!("`{key}` of a source is no number");
+        let remedy = "write \"source.NAME.rate\", or \"source.NAME.pressure\"";
+        section.refuse("values", problem, remedy);
+    }
+    (!paths.is_empty()).then(|| SweptNumber {
+        label: wanted.map_or(key.to_owned(), |name| format!("{name}.{key}")),
+        paths,
+    })
+}
+
 /// The boundary of the scene that a name begins with, and what follows it.
 fn boundary_and_keys<'a>(rest: &'a str, scene: &'a Table) -> Option<(&'a str, &'a str)> {
     named(scene, "boundary").find_map(|(name, _)| {
@@ -151,6 +214,8 @@ fn quantity_of(name: &str, scene: &Table) -> Quantity {
             let keys: Vec<&str> = keys.unwrap_or(rest).split('.').collect();
             number_below(&BOUNDARY, &keys)
         }
+        SweptName::Fluid(key) => FLUID.key(key),
+        SweptName::Source(_, key) => SOURCE.key(key),
     };
     let dimension = key
         .and_then(|key| key.kind.quantity())

@@ -13,6 +13,7 @@ mod examples;
 mod fields;
 mod flow;
 mod fluid_fields;
+mod flow_study;
 mod harness;
 mod history;
 mod import;
