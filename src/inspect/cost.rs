@@ -1,9 +1,16 @@
 //! Unknowns, and what solving for them will take.
 
-use kluft_mesh::Mesh;
-use kluft_solver::{Discretisation, Pattern, Plan, Prediction, SectorNodes, Unknowns, Workload};
+use kluft_mesh::{Defect, Mesh};
+use kluft_run::RunFlow;
+use kluft_scene::{Binding, Scene, in_terms_of_scene};
+use kluft_solver::{
+    Discretisation, Flow, Pattern, Plan, Prediction, Problem, SectorNodes, Unknowns, Workload,
+};
 
 use super::findings::{Inspection, SectorCounts, SolverFinding, UnknownFindings};
+
+/// Directions in which a permeability is asked for.
+const AXES: usize = 3;
 
 /// Counts unknowns and predicts memory and time of the solvers.
 pub fn predict(
@@ -37,9 +44,11 @@ pub fn predict(
     };
     let workload = workload.with_extra_memory(mesh, points.len());
     match Plan::of(outline, workload, None, usize::MAX) {
-        Ok(plan) => inspection
-            .solvers
-            .extend(plan.predictions.iter().map(|p| finding(&plan, p))),
+        Ok(plan) => {
+            let all = plan.predictions.iter();
+            let all = all.map(|own| finding(own, own.method == plan.method));
+            inspection.solvers.extend(all);
+        }
         Err(failure) => {
             let warning = format!("the direct solver cannot analyse this mesh: {failure:?}");
             inspection.warnings.push(warning);
@@ -47,11 +56,68 @@ pub fn predict(
     }
 }
 
-fn finding(plan: &Plan, prediction: &Prediction) -> SolverFinding {
+/// Predicts memory and time of a flow in rigid rock, whose matrix is factorised once, or where it
+/// takes time for each length of its increments; of a permeability there are three solves more.
+///
+/// # Errors
+/// A flow that cannot be made.
+pub fn predict_flow(
+    scene: &Scene,
+    binding: &Binding,
+    inspection: &mut Inspection,
+) -> Result<(), Vec<Defect>> {
+    let (problem, Some(flow)) = (&binding.problem, &binding.flow) else {
+        return Ok(());
+    };
+    let made = RunFlow::of(problem, flow).map_err(in_terms_of_scene)?;
+    let mut times = increments(scene, problem, flow);
+    if scene.equivalent_permeability {
+        times[0] += 1;
+        times[1] += AXES;
+    }
+    let pressures = made.system().unknown_count();
+    match made.system().analysis() {
+        Ok(analysis) => {
+            let found = analysis.map(|own| Prediction::of_rigid_flow(&own, pressures, times));
+            let found = found.iter().map(|own| finding(own, true));
+            inspection.solvers.extend(found);
+        }
+        Err(failure) => {
+            let warning = format!("the flow cannot be analysed: {failure:?}");
+            inspection.warnings.push(warning);
+        }
+    }
+    Ok(())
+}
+
+/// Factorisations and solves of the load steps of a flow: one step is one increment, or one and two
+/// where the accuracy in time is asked for.
+fn increments(scene: &Scene, problem: &Problem, flow: &Flow) -> [usize; 2] {
+    let schedule = &problem.schedule;
+    if flow.conditions.is_empty() && scene.equivalent_permeability {
+        return [0, 0];
+    }
+    if !flow.is_stored(schedule.is_timed) {
+        return [1, schedule.steps.len()];
+    }
+    let is_divided = scene.solver.time_accuracy.is_none_or(|share| share < 1.0);
+    let mut lengths = Vec::new();
+    let mut now = schedule.start().time;
+    for step in &schedule.steps {
+        lengths.push((step.load.time - now).to_bits());
+        now = step.load.time;
+    }
+    lengths.sort_unstable();
+    lengths.dedup();
+    let (of_each, solves) = if is_divided { (2, 3) } else { (1, 1) };
+    [of_each * lengths.len(), solves * schedule.steps.len()]
+}
+
+fn finding(prediction: &Prediction, is_chosen: bool) -> SolverFinding {
     SolverFinding {
         name: prediction.method.name(),
         is_prediction: true,
-        is_chosen: prediction.method == plan.method,
+        is_chosen,
         factor_entries: prediction.factor_entries,
         memory_bytes: prediction.memory_bytes,
         operations: prediction.operations,

@@ -166,6 +166,10 @@ fn look(
                 _ => is_timed,
             };
             let pressures = connect(&binding, takes_time || is_idle, inspection);
+            if scene.is_rigid() && pressures.is_ok() {
+                let found = cost::predict_flow(scene, &binding, inspection);
+                defects.extend(found.err().unwrap_or_default());
+            }
             if !scene.is_rigid() {
                 let pressures = pressures.as_ref().ok().copied().flatten();
                 let flow = workload(scene, &binding, pressures);

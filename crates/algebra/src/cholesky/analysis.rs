@@ -80,17 +80,7 @@ impl Analysis {
     /// Floating-point operations of one factorisation: the sum over the columns of the factor of
     /// the square of the number of their entries.
     pub fn factor_operations(&self) -> f64 {
-        let squares = |tallest: usize, columns: usize| -> f64 {
-            (0..columns).map(|j| ((tallest - j) as f64).powi(2)).sum()
-        };
-        let factor = self.supernodal();
-        (0..factor.n_supernodes())
-            .map(|index| {
-                let columns = factor.supernode_end()[index] - factor.supernode_begin()[index];
-                let below = factor.supernode(index).pattern().len();
-                squares(below + columns, columns)
-            })
-            .sum()
+        factor::operations(self.supernodal())
     }
 
     /// Memory of a solve (bytes): the factor, its work space, the matrix of the rock and of the

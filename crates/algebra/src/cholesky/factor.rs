@@ -48,6 +48,21 @@ pub(super) fn supernodal(symbolic: &SymbolicCholesky<usize>) -> &SymbolicSuperno
     }
 }
 
+/// Floating-point operations of a factorisation: the sum over the columns of the factor of the
+/// square of the number of their entries.
+pub(super) fn operations(factor: &SymbolicSupernodalCholesky<usize>) -> f64 {
+    let squares = |tallest: usize, columns: usize| -> f64 {
+        (0..columns).map(|j| ((tallest - j) as f64).powi(2)).sum()
+    };
+    (0..factor.n_supernodes())
+        .map(|index| {
+            let columns = factor.supernode_end()[index] - factor.supernode_begin()[index];
+            let below = factor.supernode(index).pattern().len();
+            squares(below + columns, columns)
+        })
+        .sum()
+}
+
 /// Factorises the upper triangle of a matrix; the error of a matrix that is not positive definite
 /// holds the place in the order of elimination where it showed.
 ///

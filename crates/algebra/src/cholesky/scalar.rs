@@ -6,6 +6,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
 use super::ordering::NodeOrder;
 use super::{factor, substitution};
+use crate::dense_kernels::parallelism;
 use crate::failure::LinearFailure;
 use crate::lists::Lists;
 
@@ -68,6 +69,20 @@ impl ScalarCholesky {
     /// Number of entries of the factor.
     pub fn factor_entries(&self) -> usize {
         self.symbolic.len_val()
+    }
+
+    /// Floating-point operations of one factorisation.
+    pub fn factor_operations(&self) -> f64 {
+        factor::operations(factor::supernodal(&self.symbolic))
+    }
+
+    /// Memory of a solve (bytes): the factor, its work space, and the entries of the matrix.
+    pub fn memory_bytes(&self) -> usize {
+        let work = self
+            .symbolic
+            .factorize_numeric_llt_scratch::<f64>(parallelism(), faer::Spec::default());
+        let entries = self.row_index.len() * (size_of::<f64>() + size_of::<usize>());
+        self.factor_entries() * size_of::<f64>() + work.unaligned_bytes_required() + entries
     }
 
     /// Factorises a matrix of the pattern that was analysed.

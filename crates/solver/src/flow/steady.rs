@@ -55,6 +55,18 @@ impl<'a> FlowSystem<'a> {
         steady_state::unbalanced(&self.topology, &self.operator.conditions)
     }
 
+    /// Analyses the matrix without factorising it; none if all pressures are given.
+    ///
+    /// # Errors
+    /// If the pattern cannot be analysed.
+    pub fn analysis(&self) -> Result<Option<ScalarCholesky>, LinearFailure> {
+        if self.topology.free.is_empty() {
+            return Ok(None);
+        }
+        let matrix = self.operator.free_matrix(&self.topology, |_| 0.0);
+        ScalarCholesky::of(&matrix.pattern).map(Some)
+    }
+
     /// Factorises the matrix, once for all loads.
     ///
     /// # Errors

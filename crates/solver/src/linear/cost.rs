@@ -7,7 +7,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use glam::DVec3;
-use kluft_algebra::Analysis;
+use kluft_algebra::{Analysis, ScalarCholesky};
 use kluft_mesh::Mesh;
 use lie_core::{FractureLaw, Rock};
 
@@ -251,6 +251,24 @@ pub struct Prediction {
 }
 
 impl Prediction {
+    /// Cost of factorising a flow in rigid rock, of this analysis and number of pressures, so often
+    /// and of solving it so often.
+    pub fn of_rigid_flow(
+        factor: &ScalarCholesky,
+        pressures: usize,
+        [factorisations, solves]: [usize; 2],
+    ) -> Self {
+        let factorise = ANALYSIS * pressures as f64 + factor.factor_operations() / OPERATIONS;
+        let substitute = 16.0 * factor.factor_entries() as f64 / BYTES;
+        Self {
+            method: LinearMethod::Direct,
+            seconds: factorisations as f64 * factorise + solves as f64 * substitute,
+            memory_bytes: factor.memory_bytes(),
+            factor_entries: factor.factor_entries(),
+            operations: factor.factor_operations(),
+        }
+    }
+
     /// The time that counts: direct solvers are exact to rounding, so one that is over in no time
     /// is as good as any.
     pub(super) fn effective_seconds(&self) -> f64 {
