@@ -64,8 +64,11 @@ def coloured(grid, field, colours):
 
 def colours_of(grid, field):
     values = vtk_to_numpy(grid.GetPointData().GetArray(field))
+    if values.ndim > 1:
+        values = np.linalg.norm(values, axis=1)
     low, high = float(values.min()), float(values.max())
     transfer = vtk.vtkColorTransferFunction()
+    transfer.SetVectorModeToMagnitude()
     for place, colour in zip(np.linspace(low, high, len(COLOURS)), COLOURS):
         transfer.AddRGBPoint(place, *colour)
     return transfer
@@ -115,7 +118,7 @@ def main():
     idle.ScalarVisibilityOff()
     renderer.AddActor(actor_of(idle, IDLE, 0.35))
     renderer.AddActor(frame(grid))
-    unit = {"pressure": "Pa", "hydraulic_aperture": "m"}.get(asked.field, "")
+    unit = {"pressure": "Pa", "hydraulic_aperture": "m", "slip": "m"}.get(asked.field, "")
     renderer.AddViewProp(legend(colours, f"{asked.field.replace('_', ' ')}  {unit}"))
     camera = renderer.GetActiveCamera()
     centre = np.array(grid.GetCenter())

@@ -45,6 +45,7 @@ mod results;
 mod resume;
 mod soak;
 mod stages;
+mod stimulation;
 mod strangers;
 mod studies;
 mod study;
