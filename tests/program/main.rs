@@ -23,6 +23,7 @@ mod kept_files;
 mod lie_project;
 mod lines;
 mod load_paths;
+mod loaded_permeability;
 mod machine;
 mod manners;
 mod mesh_once;
