@@ -26,6 +26,7 @@ mod load_paths;
 mod loaded_permeability;
 mod machine;
 mod manners;
+mod mass_balance;
 mod mesh_once;
 mod network;
 mod network_flow;

@@ -31,6 +31,9 @@ pub struct StepFlow {
     pub stored: f64,
     /// What nodes lose or gain that should not, as a share of what flows.
     pub mass_error: f64,
+    /// The part of it that rounding explains; large where next to nothing moves any more.
+    #[serde(default)]
+    pub mass_rounding: f64,
     /// What flows where it is driven.
     pub sources: Vec<SourceFlow>,
 }
@@ -95,6 +98,7 @@ pub fn of_step(flow: &Flow, state: &FlowState) -> StepFlow {
         outflow: state.balance.outflow,
         stored: state.balance.stored,
         mass_error: state.balance.mass_error,
+        mass_rounding: state.balance.rounding,
         sources: sources.collect(),
     }
 }

@@ -68,6 +68,7 @@ fn hostile(fractures: usize) -> Summary {
         outflow: rate,
         stored: 0.0,
         mass_error: 0.0,
+        mass_rounding: 0.0,
         sources: vec![SourceFlow {
             name: BAD.into(),
             pressure: 1.0,
