@@ -577,7 +577,6 @@ class FixedPoint(Section):
 
 class FluidPressure(Section):
     """Pressure `value + per_metre (z - at)`, or one that varies.
-    """A pressure `value + per_metre (z - at)`, or one that varies.
 
     Args:
         value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. This or `water_table` is
