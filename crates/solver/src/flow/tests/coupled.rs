@@ -248,8 +248,8 @@ fn diffusion_time(law: FractureLaw) -> f64 {
     100.0 / (law.closure.at(walls).tangent * conducts)
 }
 
-/// What a step records from 10 MPa of water under a normal stress of 20 MPa to a pressure at one end
-/// (Pa).
+/// What a step records from 10 MPa of water under a normal stress of 20 MPa to a pressure at one
+/// end (Pa).
 fn opened(mesh: &Mesh, law: FractureLaw, (schedule, inlet): (Schedule, f64)) -> StepRecord {
     let conditions = (0..mesh.boundaries.len()).map(|boundary| Condition {
         boundary,
