@@ -180,6 +180,11 @@ impl<'a> Coupling<'a> {
         self.is_transient
     }
 
+    /// Whether fluid is trapped between walls: it takes time to leave, or never does.
+    pub fn traps(&self) -> bool {
+        self.is_transient || !self.undrained.is_empty()
+    }
+
     /// Number of pressures.
     pub fn nodes(&self) -> usize {
         self.topology.nodes.len()

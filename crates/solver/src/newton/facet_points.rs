@@ -15,6 +15,9 @@ use crate::system::{FacetPointState, State, System};
 /// tractions follow by increments, so it decides how fast they converge and not where.
 const RIGID: f64 = 1e6;
 
+/// Share of its aperture that the walls beside a fluid keep in one iteration.
+const LEAST_SHARE: f64 = 0.1;
+
 pub(super) fn interface<'a>(system: &'a System<'_>) -> &'a Interface {
     &system.discretisation.interface
 }
@@ -175,8 +178,10 @@ pub(super) fn follow(
     planes: &Linearised,
 ) -> Vec<f64> {
     let flow = system.coupling().filter(|_| system.is_smooth());
-    let follows =
-        |trial: &TrialState, state: &FacetPointState| flow.is_some() && opens(trial, state);
+    // A law that is linear lets walls pass through each other where it balances the rock.
+    let follows = |law: &FractureLaw, trial: &TrialState, state: &FacetPointState| {
+        flow.is_some_and(|flow| opens(trial, state) || (law.is_linear() && flow.traps()))
+    };
     let points = interface(system).points.par_iter();
     points
         .zip(changes)
@@ -187,7 +192,7 @@ pub(super) fn follow(
             let trial = trial(point, state, *tangent, *change);
             match planes.by {
                 Linearisation::Springs if !law.is_linear() => split(law, point, trial, state),
-                Linearisation::Tangents if follows(&trial, state) => {
+                Linearisation::Tangents if follows(law, &trial, state) => {
                     at_jump(law, point, &trial, state)
                 }
                 _ => follow_point(law, point, &trial, state, last),
@@ -232,16 +237,25 @@ fn opens(trial: &TrialState, state: &FacetPointState) -> bool {
     trial.separation.beyond(state.joint.separation) > 0.0
 }
 
-/// Moves a facet point, whose law is smooth, to where a linear solve has put its walls; returns
-/// its closure error (Pa).
+/// Moves a facet point, whose law is smooth, to where a linear solve has put its walls, but no
+/// closer than to a share of its aperture; returns its closure error (Pa).
 fn at_jump(
     law: &FractureLaw,
     point: &FacetPoint,
     trial: &TrialState,
     state: &mut FacetPointState,
 ) -> f64 {
-    state.jump_residual = DVec3::ZERO;
-    state.joint = law.state_at(trial);
+    let before = state.joint.separation;
+    let least = LEAST_SHARE * before.aperture;
+    let separation = match trial.separation.aperture < least {
+        true => before.moved(least - before.aperture),
+        false => trial.separation,
+    };
+    state.jump_residual = trial.separation.beyond(separation) * point.normal;
+    state.joint = law.state_at(&TrialState {
+        separation,
+        ..*trial
+    });
     let traction = trial.normal_traction * point.normal + trial.shear;
     (traction - state.joint.traction(point.normal)).length()
 }
