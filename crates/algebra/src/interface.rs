@@ -76,6 +76,22 @@ impl<'a> FixedPart<'a> {
         InterfaceBlocks { pattern, blocks }.add_product(vector, product);
     }
 
+    /// Entries `rows` of that product, to the same bits.
+    pub fn products(&self, blocks: &[DMat3], rows: &[u32], vector: &[DVec3]) -> Vec<DVec3> {
+        let pattern = self.interface;
+        let added = InterfaceBlocks { pattern, blocks };
+        let product = |&row: &u32| {
+            let own = self.matrix.row_product(row as usize, vector);
+            let Ok(index) = pattern.rows.binary_search(&row) else {
+                return own;
+            };
+            let blocks = added.row(index);
+            let sum: DVec3 = blocks.map(|(at, block)| *block * vector[at as usize]).sum();
+            own + sum
+        };
+        rows.par_iter().map(product).collect()
+    }
+
     /// Where the blocks of the interface belong in the matrix: block row and number of the block in
     /// it.
     ///

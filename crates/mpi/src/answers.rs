@@ -21,8 +21,7 @@ impl From<PetscFailure> for LinearFailure {
 /// What was counted on this rank since the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Traffic {
-    /// Iterations of linear solves, the first of each left out: smoothers look for the bounds of
-    /// their spectra in it.
+    /// Iterations of linear solves, the first of each left out: vectors are made in it.
     pub iterations: f64,
     /// Halo exchanges in them.
     pub exchanges: f64,
@@ -32,6 +31,8 @@ pub struct Traffic {
     pub bytes: f64,
     /// Reductions.
     pub reductions: f64,
+    /// Levels of the last solver, the finest included.
+    pub levels: f64,
 }
 
 /// What became of a solve.

@@ -1,19 +1,18 @@
-//! The linear solver whose rows are divided among ranks: conjugate gradients of PETSc on Kluft's
-//! first coarsening, with PETSc's own levels below.
+//! The linear solver whose rows are divided among ranks: PETSc's conjugate gradients and V-cycle on
+//! Kluft's levels.
 
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use kluft_solver::multigrid::{BlockList, FirstCoarsening, LevelPart};
-use kluft_solver::small::rows_of;
+use kluft_solver::multigrid::{BlockList, FirstCoarsening, LevelPart, MultigridFailure};
 use kluft_solver::{
     FixedPart, InterfaceBlocks, LinearFailure, LinearSolution, SolverHistory, System,
     TangentSolver, first_coarsening, first_guess, norm, serves,
 };
 
-use crate::next_level::NextNodes;
+use crate::levels::{Levels, SolverParts, gathered_parts};
 use crate::partition::Partition;
-use crate::petsc::{Matrix, PetscFailure, Solver, SolverParts, World};
+use crate::petsc::{Matrix, PetscFailure, Solver, World};
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 2000;
@@ -31,7 +30,6 @@ pub struct Distributed {
     world: Arc<World>,
     partition: Arc<Partition>,
     coarsening: FirstCoarsening,
-    nodes: NextNodes,
     solver: Option<Solver>,
     /// Stiffness of the fractures, one block for each of the interface's columns.
     stiffness: Option<Vec<DMat3>>,
@@ -50,7 +48,6 @@ impl Distributed {
         let coarsening = first_coarsening(system)?;
         let partition = Partition::of(world, system, coarsening.clusters());
         Ok(Self {
-            nodes: NextNodes::of(coarsening.basis(), &partition.owner, world),
             world: Arc::clone(world),
             partition: Arc::new(partition),
             coarsening,
@@ -77,33 +74,86 @@ impl Distributed {
             pattern: fixed.interface,
             blocks: &stiffness,
         };
-        let own = &self.partition.own;
-        let part = self.coarsening.part(fixed.matrix, blocks, own)?;
-        let parts = self.parts(fixed, blocks, part)?;
-        self.solver = Some(Solver::new(&self.world, own.len(), parts)?);
+        let parts = self.parts(fixed, blocks)?;
+        let own = self.partition.own.len();
+        self.solver = Some(Solver::new(&self.world, own, parts)?);
         self.built_for = Some(stiffness);
         Ok(())
     }
 
     fn parts(
-        &self,
+        &mut self,
         fixed: FixedPart<'_>,
         blocks: InterfaceBlocks<'_>,
-        mut part: LevelPart,
     ) -> Result<SolverParts, LinearFailure> {
         let rows = fixed.matrix.rows();
-        let modes = self.coarsening.modes();
-        let next = match self.coarsening.has_next(rows) {
-            true => Some(self.nodes.level(&self.world, &mut part, modes)?),
-            false => None,
+        let mut part = self.part(fixed, blocks)?;
+        let levels = match self.coarsening.has_next(rows) {
+            true => self.levels(&mut part)?,
+            false => Levels::none(),
         };
+        let bounds = std::iter::once(part.largest_eigenvalue).chain(levels.largest_eigenvalues);
         Ok(SolverParts {
             operator: self.operator(fixed, blocks)?,
             inverse: self.matrix(&part.inverse)?,
-            next,
+            below: levels.below,
+            coarsest: levels.coarsest,
+            largest_eigenvalues: bounds.map(|bound| self.margin * bound).collect(),
             is_small: 3 * rows <= LARGEST_FACTOR,
-            margin: self.margin,
         })
+    }
+
+    /// What the rows of this rank give to the levels.
+    fn part(
+        &mut self,
+        fixed: FixedPart<'_>,
+        blocks: InterfaceBlocks<'_>,
+    ) -> Result<LevelPart, LinearFailure> {
+        let partition = Arc::clone(&self.partition);
+        let rows = self
+            .coarsening
+            .factorised(fixed.matrix, blocks, &partition.own);
+        let rows = self.agreed(rows)?;
+        let world = Arc::clone(&self.world);
+        let mut failure = None;
+        let part = self.coarsening.part(&rows, |vector| {
+            if let Err(error) = partition.complete(&world, vector) {
+                failure = Some(error);
+            }
+        });
+        match failure {
+            Some(failure) => Err(failure.into()),
+            None => self.agreed(match part.largest_eigenvalue.is_finite() {
+                true => Ok(part),
+                false => Err(MultigridFailure::NotFinite),
+            }),
+        }
+    }
+
+    fn levels(&self, part: &mut LevelPart) -> Result<Levels, LinearFailure> {
+        let parts = gathered_parts(&self.world, &part.next)?;
+        part.next = BlockList::default();
+        let lower = self.coarsening.levels_below(&parts)?;
+        drop(parts);
+        let basis = self.coarsening.basis();
+        let movers = |row: usize| basis.row(row).map(|(node, _)| node as u32).collect();
+        let owner = &self.partition.owner;
+        Ok(Levels::of(&self.world, owner, part, &lower, movers)?)
+    }
+
+    /// What this rank has if all of them could do their part, and else the failure of one of them.
+    fn agreed<T>(&self, result: Result<T, MultigridFailure>) -> Result<T, LinearFailure> {
+        let code = match &result {
+            Ok(_) => 0,
+            Err(MultigridFailure::NotFinite) => 1,
+            Err(MultigridFailure::NotPositive(row)) => 2 + *row as u64,
+        };
+        let codes = self.world.gather(&[code])?;
+        match codes.into_iter().max() {
+            Some(1) => Err(LinearFailure::NotFinite),
+            Some(row @ 2..) => Err(LinearFailure::Indefinite(row as usize - 2)),
+            _ => result.map_err(LinearFailure::from),
+        }
     }
 
     fn matrix(&self, rows: &BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
@@ -117,23 +167,33 @@ impl Distributed {
         fixed: FixedPart<'_>,
         blocks: InterfaceBlocks<'_>,
     ) -> Result<Matrix, PetscFailure> {
-        let mut rows = BlockList {
-            offset: vec![0],
-            ..BlockList::default()
+        let own = &self.partition.own;
+        Matrix::by_rows([own.len(); 2], &self.world, |at, entries| {
+            self.partition.add_row(fixed, blocks, own[at], entries);
+        })
+    }
+
+    /// Takes a new stiffness of the fractures into the operator: the rows of this rank that have
+    /// some of it.
+    fn update_operator(
+        &mut self,
+        fixed: FixedPart<'_>,
+        stiffness: &[DMat3],
+    ) -> Result<(), LinearFailure> {
+        let blocks = InterfaceBlocks {
+            pattern: fixed.interface,
+            blocks: stiffness,
         };
-        for &row in &self.partition.own {
-            let index = blocks.pattern.rows.binary_search(&row);
-            let added = index.into_iter().flat_map(|index| blocks.row(index));
-            let mut added = added.peekable();
-            for (column, block) in fixed.matrix.row(row as usize) {
-                let other = added.next_if(|(at, _)| *at == column);
-                let sum = other.map_or(*block, |(_, other)| *block + *other);
-                rows.columns.push(column);
-                rows.blocks.push(rows_of(&sum));
-            }
-            rows.offset.push(rows.columns.len());
-        }
-        self.matrix(&rows)
+        let partition = Arc::clone(&self.partition);
+        let rank = self.world.rank() as u32;
+        let rows = blocks.pattern.rows.iter();
+        let own = rows.filter(|row| partition.owner[**row as usize] == rank);
+        let rows = own.map(|&row| {
+            let mut entries = Vec::new();
+            partition.add_row(fixed, blocks, row, &mut entries);
+            (partition.number[row as usize], entries)
+        });
+        Ok(self.solver()?.update(rows)?)
     }
 
     fn solver(&mut self) -> Result<&mut Solver, LinearFailure> {
@@ -149,12 +209,8 @@ impl Distributed {
 
     /// The entries of all ranks, each in its place.
     fn all(&self, own: &[[f64; 3]]) -> Result<Vec<DVec3>, PetscFailure> {
-        let Partition { all, counts, .. } = &*self.partition;
-        let gathered = self.world.gather_vectors(own, counts)?;
-        let mut vector = vec![DVec3::ZERO; all.len()];
-        for (&row, entry) in all.iter().zip(gathered) {
-            vector[row as usize] = DVec3::from_array(entry);
-        }
+        let mut vector = vec![DVec3::ZERO; self.partition.all.len()];
+        self.partition.gather(&self.world, own, &mut vector)?;
         Ok(vector)
     }
 
@@ -203,12 +259,7 @@ impl TangentSolver for Distributed {
         if !built_for.is_some_and(|built_for| serves(fixed, built_for, &stiffness)) {
             self.rebuild_for(fixed, stiffness.clone())?;
         } else if self.stiffness.as_ref() != Some(&stiffness) {
-            let blocks = InterfaceBlocks {
-                pattern: fixed.interface,
-                blocks: &stiffness,
-            };
-            let operator = self.operator(fixed, blocks)?;
-            self.solver()?.set_operator(operator)?;
+            self.update_operator(fixed, &stiffness)?;
         }
         self.stiffness = Some(stiffness);
         Ok(())
@@ -221,8 +272,10 @@ impl TangentSolver for Distributed {
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
         let stiffness = self.stiffness.clone().unwrap_or_default();
-        let multiply =
-            |vector: &[DVec3], product: &mut [DVec3]| fixed.multiply(&stiffness, vector, product);
+        let (world, partition) = (Arc::clone(&self.world), Arc::clone(&self.partition));
+        let multiply = |vector: &[DVec3], product: &mut [DVec3]| {
+            partition.multiply(&world, fixed, &stiffness, (vector, product));
+        };
         let mut failure = None;
         let alone = |rest: &[DVec3]| {
             let alone = self.clusters_alone(rest);
@@ -284,6 +337,17 @@ impl TangentSolver for Distributed {
             }
             _ => Ok(false),
         }
+    }
+
+    fn multiply(
+        &self,
+        fixed: FixedPart<'_>,
+        stiffness: &[DMat3],
+        vector: &[DVec3],
+        product: &mut [DVec3],
+    ) {
+        let (world, both) = (&self.world, (vector, product));
+        self.partition.multiply(world, fixed, stiffness, both);
     }
 
     fn precondition(

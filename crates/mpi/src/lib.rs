@@ -6,17 +6,19 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `petsc`, `shim.c` | PETSc and MPI behind safe types |
+//! | `rows` | rows of blocks on their way to PETSc |
 //! | `partition` | which rank owns which unknowns |
-//! | `next_level` | the second level, put together from what the rows of all ranks give to it |
+//! | `levels` | the levels below the finest one, the rows of this rank |
 //! | `distributed` | the linear solver |
 //! | `run`, `args`, `memory`, `traffic` | the program |
 
 mod answers;
 pub mod args;
 pub mod distributed;
+pub mod levels;
 mod memory;
-pub mod next_level;
 pub mod partition;
 pub mod petsc;
+mod rows;
 pub mod run;
 mod traffic;

@@ -3,10 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use glam::DVec3;
-use kluft_solver::{Lists, System};
+use glam::{DMat3, DVec3};
+use kluft_solver::small::rows_of;
+use kluft_solver::{FixedPart, InterfaceBlocks, Lists, System};
 
-use crate::petsc::World;
+use crate::petsc::{PetscFailure, World};
 
 /// Rows and their owners. The rows of a rank have consecutive global numbers, rank by rank, in the
 /// order of the rows.
@@ -64,6 +65,75 @@ impl Partition {
             owner,
             number,
         }
+    }
+
+    /// Adds the blocks of a row of the sum of rock and fractures, by the global numbers of their
+    /// columns.
+    pub fn add_row(
+        &self,
+        fixed: FixedPart<'_>,
+        blocks: InterfaceBlocks<'_>,
+        row: u32,
+        entries: &mut Vec<(i64, [[f64; 3]; 3])>,
+    ) {
+        let index = blocks.pattern.rows.binary_search(&row);
+        let added = index.into_iter().flat_map(|index| blocks.row(index));
+        let mut added = added.peekable();
+        for (column, block) in fixed.matrix.row(row as usize) {
+            let other = added.next_if(|(at, _)| *at == column);
+            let sum = other.map_or(*block, |(_, other)| *block + *other);
+            entries.push((self.number[column as usize], rows_of(&sum)));
+        }
+    }
+
+    /// Sets a vector to the entries of all ranks, each in its place.
+    ///
+    /// # Errors
+    /// Those of MPI.
+    pub fn gather(
+        &self,
+        world: &World,
+        own: &[[f64; 3]],
+        vector: &mut [DVec3],
+    ) -> Result<(), PetscFailure> {
+        let gathered = world.gather_records(own, &self.counts)?;
+        for (&row, entry) in self.all.iter().zip(gathered) {
+            vector[row as usize] = DVec3::from_array(entry);
+        }
+        Ok(())
+    }
+
+    /// Sets the second of two vectors to the product of the tangent with the first one, each rank
+    /// its own entries. A rank that cannot be asked any more ends the run.
+    pub fn multiply(
+        &self,
+        world: &World,
+        fixed: FixedPart<'_>,
+        stiffness: &[DMat3],
+        (vector, product): (&[DVec3], &mut [DVec3]),
+    ) {
+        let own = fixed.products(stiffness, &self.own, vector);
+        let own: Vec<[f64; 3]> = own.into_iter().map(|entry| entry.to_array()).collect();
+        if let Err(failure) = self.gather(world, &own, product) {
+            crate::run::machine(failure).print();
+            World::abort(1);
+        }
+    }
+
+    /// Replaces the entries of a vector that other ranks own by what they have there.
+    ///
+    /// # Errors
+    /// Those of MPI.
+    pub fn complete(&self, world: &World, vector: &mut [[f32; 3]]) -> Result<(), PetscFailure> {
+        let own = self.own.iter();
+        let own: Vec<[f64; 3]> = own
+            .map(|&row| vector[row as usize].map(f64::from))
+            .collect();
+        let gathered = world.gather_records(&own, &self.counts)?;
+        for (&row, entry) in self.all.iter().zip(gathered) {
+            vector[row as usize] = entry.map(|x| x as f32);
+        }
+        Ok(())
     }
 
     /// Largest number of rows of a rank against the mean.

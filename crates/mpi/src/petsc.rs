@@ -14,7 +14,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ThreadId;
 use std::time::Duration;
 
-use kluft_solver::multigrid::BlockList;
+use crate::levels::SolverParts;
+use crate::rows::{checked, in_lines};
 
 pub use crate::answers::{PetscFailure, Solved, Traffic};
 
@@ -27,37 +28,50 @@ unsafe extern "C" {
     fn km_on_machine(count: *mut c_int) -> c_int;
     fn km_all_arrive(seconds: c_double, arrived: *mut c_int) -> c_int;
     fn km_gather(own: *const u64, count: c_int, all: *mut u64) -> c_int;
-    fn km_gather_triples(own: *const c_double, counts: *const c_int, all: *mut c_double) -> c_int;
-    fn km_exchange_counts(out: *const c_int, into: *mut c_int) -> c_int;
-    fn km_exchange(
+    fn km_gather_records(
         size: c_int,
-        out: *const c_int,
-        sent: *const c_void,
-        into: *const c_int,
-        received: *mut c_void,
+        own: *const c_void,
+        counts: *const c_int,
+        all: *mut c_void,
     ) -> c_int;
     fn km_matrix(
         rows: i64,
         columns: i64,
         m: c_int,
         l: c_int,
-        offset: *const i64,
-        column: *const i64,
-        blocks: *const c_double,
+        own: *const c_int,
+        others: *const c_int,
         out: *mut *mut c_void,
     ) -> c_int;
+    fn km_matrix_row(
+        matrix: *mut c_void,
+        row: i64,
+        count: c_int,
+        columns: *const i64,
+        lines: *const c_double,
+    ) -> c_int;
+    fn km_matrix_end(matrix: *mut c_void) -> c_int;
     fn km_free_matrix(matrix: *mut c_void) -> c_int;
     fn km_solver(
         operator: *mut c_void,
         inverse: *mut c_void,
-        prolongator: *mut c_void,
-        next: *mut c_void,
-        modes: *const c_double,
+        count: c_int,
+        prolongators: *const *mut c_void,
+        matrices: *const *mut c_void,
+        coarsest: *mut c_void,
+        largest: *const c_double,
         is_small: c_int,
-        margin: c_double,
         out: *mut *mut c_void,
     ) -> c_int;
-    fn km_set_operator(solver: *mut c_void, operator: *mut c_void) -> c_int;
+    fn km_begin_update(solver: *mut c_void) -> c_int;
+    fn km_update_row(
+        solver: *mut c_void,
+        row: i64,
+        count: c_int,
+        columns: *const i64,
+        lines: *const c_double,
+    ) -> c_int;
+    fn km_end_update(solver: *mut c_void) -> c_int;
     fn km_solve(
         solver: *mut c_void,
         right: *const c_double,
@@ -175,55 +189,29 @@ impl World {
         Ok(all)
     }
 
-    /// The 3-vectors of all ranks, rank by rank, rank `r` giving `counts[r]`.
+    /// The records of all ranks, rank by rank, rank `r` giving `counts[r]`.
     ///
     /// # Errors
     /// Those of MPI.
     ///
     /// # Panics
     /// If `own` has not the length of this rank.
-    pub fn gather_vectors(
+    pub fn gather_records<const N: usize>(
         &self,
-        own: &[[f64; 3]],
+        own: &[[f64; N]],
         counts: &[i32],
-    ) -> Result<Vec<[f64; 3]>, PetscFailure> {
+    ) -> Result<Vec<[f64; N]>, PetscFailure> {
         self.here();
         assert_eq!(counts.len(), self.ranks, "one length a rank");
         assert_eq!(own.len(), counts[self.rank] as usize, "own length");
         let sum: usize = counts.iter().map(|&count| count as usize).sum();
-        let mut all = vec![[0.0; 3]; sum];
-        let (from, to) = (own.as_ptr().cast(), all.as_mut_ptr().cast());
-        // SAFETY: PETSc runs on this thread; both arrays have the lengths that `counts` says.
-        done(unsafe { km_gather_triples(from, counts.as_ptr(), to) })?;
-        Ok(all)
-    }
-
-    /// Sends a list to each rank, and returns those that came, in the order of the ranks.
-    ///
-    /// # Errors
-    /// Those of MPI.
-    ///
-    /// # Panics
-    /// If there is not one list a rank.
-    pub fn exchange<const N: usize>(
-        &self,
-        lists: &[Vec<[f64; N]>],
-    ) -> Result<Vec<[f64; N]>, PetscFailure> {
-        self.here();
-        assert_eq!(lists.len(), self.ranks, "one list a rank");
-        let out: Vec<c_int> = lists.iter().map(|list| list.len() as c_int).collect();
-        let mut into: Vec<c_int> = vec![0; self.ranks];
-        // SAFETY: PETSc runs on this thread; both arrays have one number a rank.
-        done(unsafe { km_exchange_counts(out.as_ptr(), into.as_mut_ptr()) })?;
-        let sent = lists.concat();
-        let sum: usize = into.iter().map(|&count| count as usize).sum();
-        let mut received = vec![[0.0; N]; sum];
+        let mut all = vec![[0.0; N]; sum];
         let size = size_of::<[f64; N]>() as c_int;
-        let (from, to) = (sent.as_ptr().cast(), received.as_mut_ptr().cast());
-        // SAFETY: as above; the records are plain numbers of `size` bytes, and both arrays have as
-        // many as the counts say.
-        done(unsafe { km_exchange(size, out.as_ptr(), from, into.as_ptr(), to) })?;
-        Ok(received)
+        let (from, to) = (own.as_ptr().cast(), all.as_mut_ptr().cast());
+        // SAFETY: PETSc runs on this thread; the records are plain numbers of `size` bytes, and
+        // both arrays have the lengths that `counts` says.
+        done(unsafe { km_gather_records(size, from, counts.as_ptr(), to) })?;
+        Ok(all)
     }
 
     /// What was counted on this rank so far.
@@ -232,16 +220,17 @@ impl World {
     /// Those of PETSc.
     pub fn traffic(&self) -> Result<Traffic, PetscFailure> {
         self.here();
-        let mut counts = [0.0; 5];
-        // SAFETY: PETSc runs on this thread; the shim writes five numbers.
+        let mut counts = [0.0; 6];
+        // SAFETY: PETSc runs on this thread; the shim writes six numbers.
         done(unsafe { km_counts(counts.as_mut_ptr()) })?;
-        let [iterations, exchanges, messages, bytes, reductions] = counts;
+        let [iterations, exchanges, messages, bytes, reductions, levels] = counts;
         Ok(Traffic {
             iterations,
             exchanges,
             messages,
             bytes,
             reductions,
+            levels,
         })
     }
 }
@@ -259,6 +248,8 @@ impl Drop for World {
 #[derive(Debug)]
 pub struct Matrix {
     pointer: *mut c_void,
+    /// Numbers of a block.
+    block: usize,
     world: Arc<World>,
 }
 
@@ -268,49 +259,62 @@ unsafe impl Send for Matrix {}
 unsafe impl Sync for Matrix {}
 
 impl Matrix {
-    /// The matrix whose rows of this rank are given in blocks; `number` gives a column its global
-    /// number, and `columns` of all of them are this rank's own.
+    /// A matrix of blocks of `M` lines of `L` numbers, without entries, with the numbers of blocks
+    /// in each row of this rank: in its own `columns`, and in those of others.
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn new<const M: usize, const L: usize>(
+    ///
+    /// # Panics
+    /// If there are not both numbers of each row.
+    pub(crate) fn allocated<const M: usize, const L: usize>(
         world: &Arc<World>,
-        rows: &BlockList<M, L>,
         columns: usize,
-        number: impl Fn(u32) -> i64,
+        [own, others]: [&[i32]; 2],
     ) -> Result<Self, PetscFailure> {
         world.here();
-        let offset: Vec<i64> = rows.offset.iter().map(|&at| at as i64).collect();
-        let mut order: Vec<(i64, usize)> = Vec::new();
-        let mut numbers = Vec::with_capacity(rows.columns.len());
-        let mut blocks = Vec::with_capacity(rows.blocks.len());
-        for row in rows.offset.windows(2) {
-            order.clear();
-            order.extend((row[0]..row[1]).map(|at| (number(rows.columns[at]), at)));
-            order.sort_unstable();
-            numbers.extend(order.iter().map(|(number, _)| *number));
-            blocks.extend(order.iter().map(|&(_, at)| rows.blocks[at]));
-        }
-        assert_eq!(offset.last(), Some(&(blocks.len() as i64)), "the end");
-        let mut pointer = null_mut();
-        // SAFETY: PETSc runs on this thread; the arrays have the lengths that `offset` says, and
-        // PETSc copies them.
-        done(unsafe {
-            km_matrix(
-                rows.rows() as i64,
-                columns as i64,
-                M as c_int,
-                L as c_int,
-                offset.as_ptr(),
-                numbers.as_ptr(),
-                blocks.as_ptr().cast(),
-                &mut pointer,
-            )
-        })?;
-        Ok(Self {
-            pointer,
+        assert_eq!(own.len(), others.len(), "both numbers of each row");
+        let mut matrix = Self {
+            pointer: null_mut(),
+            block: M * L,
             world: Arc::clone(world),
-        })
+        };
+        let (rows, columns) = (own.len() as i64, columns as i64);
+        let (own, others) = (own.as_ptr(), others.as_ptr());
+        let out = &mut matrix.pointer;
+        // SAFETY: PETSc runs on this thread; both arrays have one number a row.
+        done(unsafe { km_matrix(rows, columns, M as c_int, L as c_int, own, others, out) })?;
+        Ok(matrix)
+    }
+
+    /// Sets blocks of a row: columns, ascending, and all numbers line by line.
+    ///
+    /// # Errors
+    /// Those of PETSc.
+    ///
+    /// # Panics
+    /// If there are more than there is room for, or not as many numbers.
+    pub(crate) fn set_row(
+        &self,
+        row: i64,
+        columns: &[i64],
+        lines: &[f64],
+    ) -> Result<(), PetscFailure> {
+        self.world.here();
+        let count = checked(columns, lines, self.block);
+        let (columns, lines) = (columns.as_ptr(), lines.as_ptr());
+        // SAFETY: PETSc runs on this thread, the matrix lives, and both arrays were checked.
+        done(unsafe { km_matrix_row(self.pointer, row, count, columns, lines) })
+    }
+
+    /// Ends the setting of rows on all ranks.
+    ///
+    /// # Errors
+    /// Those of PETSc.
+    pub(crate) fn end(&self) -> Result<(), PetscFailure> {
+        self.world.here();
+        // SAFETY: PETSc runs on this thread, and the matrix lives.
+        done(unsafe { km_matrix_end(self.pointer) })
     }
 
     /// Hands it over.
@@ -326,21 +330,6 @@ impl Drop for Matrix {
             unsafe { km_free_matrix(self.pointer) };
         }
     }
-}
-
-/// The matrices of a solver.
-pub struct SolverParts {
-    /// The tangent.
-    pub operator: Matrix,
-    /// The inverses of its diagonal blocks of clusters.
-    pub inverse: Matrix,
-    /// Prolongator and matrix of the next level, with six modes for each scalar unknown of this
-    /// rank, if there is a next level.
-    pub next: Option<(Matrix, Matrix, Vec<[f64; 6]>)>,
-    /// Whether the whole is small enough for each rank to factorise.
-    pub is_small: bool,
-    /// Factor on the bounds of spectra.
-    pub margin: f64,
 }
 
 /// Conjugate gradients with multigrid.
@@ -363,43 +352,62 @@ impl Solver {
     /// Those of PETSc.
     pub fn new(world: &Arc<World>, rows: usize, parts: SolverParts) -> Result<Self, PetscFailure> {
         world.here();
-        let (prolongator, next, modes) = match parts.next {
-            Some((prolongator, next, modes)) => {
-                (prolongator.into_pointer(), next.into_pointer(), modes)
-            }
-            None => (null_mut(), null_mut(), Vec::new()),
-        };
+        let levels = parts.below.len();
+        assert!(
+            levels == 0 || parts.largest_eigenvalues.len() > levels,
+            "one bound a level"
+        );
+        let pairs = parts.below.into_iter().map(|level| {
+            let prolongator = level.prolongator.into_pointer();
+            (prolongator, level.matrix.into_pointer())
+        });
+        let (prolongators, matrices): (Vec<*mut c_void>, Vec<*mut c_void>) = pairs.unzip();
+        let coarsest = parts.coarsest.map_or(null_mut(), Matrix::into_pointer);
         let mut solver = Self {
             pointer: null_mut(),
             rows,
             world: Arc::clone(world),
         };
         // SAFETY: PETSc runs on this thread; the shim takes the matrices over, whose pointers
-        // nobody else has, and reads six modes for each row of `next`, as the caller promises.
+        // nobody else has. It reads as many of them as there are levels, and a bound more.
         done(unsafe {
             km_solver(
                 parts.operator.into_pointer(),
                 parts.inverse.into_pointer(),
-                prolongator,
-                next,
-                modes.as_ptr().cast(),
+                levels as c_int,
+                prolongators.as_ptr(),
+                matrices.as_ptr(),
+                coarsest,
+                parts.largest_eigenvalues.as_ptr(),
                 c_int::from(parts.is_small),
-                parts.margin,
                 &mut solver.pointer,
             )
         })?;
         Ok(solver)
     }
 
-    /// Solves with another operator from now on, on the levels as they are.
+    /// Changes rows of the operator, given by their global numbers and all their blocks, and lets
+    /// the levels be as they are. All ranks must call it.
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn set_operator(&mut self, operator: Matrix) -> Result<(), PetscFailure> {
+    pub fn update(
+        &mut self,
+        rows: impl Iterator<Item = (i64, Vec<(i64, [[f64; 3]; 3])>)>,
+    ) -> Result<(), PetscFailure> {
         self.world.here();
-        // SAFETY: PETSc runs on this thread, the solver lives; it takes the matrix over, whose
-        // pointer nobody else has.
-        done(unsafe { km_set_operator(self.pointer, operator.into_pointer()) })
+        // SAFETY: PETSc runs on this thread, and the solver lives.
+        done(unsafe { km_begin_update(self.pointer) })?;
+        for (row, mut blocks) in rows {
+            in_lines(&mut blocks, |columns, lines| {
+                let count = checked(columns, lines, 9);
+                let (columns, lines) = (columns.as_ptr(), lines.as_ptr());
+                // SAFETY: as above, and both arrays were checked.
+                done(unsafe { km_update_row(self.pointer, row, count, columns, lines) })
+            })?;
+        }
+        // SAFETY: as above.
+        done(unsafe { km_end_update(self.pointer) })
     }
 
     fn check(&self, right: &[[f64; 3]]) {
@@ -454,12 +462,7 @@ impl Solver {
     /// # Panics
     /// If `right` has not one entry a row of this rank.
     pub fn precondition(&mut self, right: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, PetscFailure> {
-        self.check(right);
-        let mut out = vec![[0.0; 3]; self.rows];
-        let (from, to) = (right.as_ptr().cast(), out.as_mut_ptr().cast());
-        // SAFETY: PETSc runs on this thread, the solver lives; both vectors have its length.
-        done(unsafe { km_precondition(self.pointer, from, to) })?;
-        Ok(out)
+        self.applied(km_precondition, right)
     }
 
     /// The inverses of the diagonal blocks alone.
@@ -470,11 +473,19 @@ impl Solver {
     /// # Panics
     /// If `right` has not one entry a row of this rank.
     pub fn clusters_alone(&mut self, right: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, PetscFailure> {
+        self.applied(km_smooth, right)
+    }
+
+    fn applied(
+        &mut self,
+        map: unsafe extern "C" fn(*mut c_void, *const c_double, *mut c_double) -> c_int,
+        right: &[[f64; 3]],
+    ) -> Result<Vec<[f64; 3]>, PetscFailure> {
         self.check(right);
         let mut out = vec![[0.0; 3]; self.rows];
         let (from, to) = (right.as_ptr().cast(), out.as_mut_ptr().cast());
         // SAFETY: PETSc runs on this thread, the solver lives; both vectors have its length.
-        done(unsafe { km_smooth(self.pointer, from, to) })?;
+        done(unsafe { map(self.pointer, from, to) })?;
         Ok(out)
     }
 }

@@ -9,35 +9,33 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <time.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+/* Lower end of what a smoother damps, as a share of the upper one; the levels below do the rest. */
+#define LOWER_END 0.1
+
+/* Most blocks of a row that are given at once. */
+#define MOST_AT_ONCE 256
 
 /* A group of its own for what must not meet other messages: the arrival of all ranks at the end. */
 static MPI_Comm at_the_end = MPI_COMM_NULL;
-
-/* A default that PETSC_OPTIONS may replace. */
-static int preset(const char *name, const char *value) {
-  PetscBool set;
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &set));
-  if (!set) PetscCall(PetscOptionsSetValue(NULL, name, value));
-  return 0;
-}
-
-int km_ranks(void);
 
 int km_start(void) {
   /* No file that lies about shall change results; PETSC_OPTIONS may. */
   static char name[] = "kluft-mpi", skip[] = "-skip_petscrc";
   char *list[] = {name, skip, NULL}, **arguments = list;
   int count = 2;
+#ifdef __GLIBC__
+  /* Arrays of levels come and go: in maps of their own they leave no holes. */
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
   PetscCall(PetscInitialize(&count, &arguments, NULL, NULL));
   PetscCall(PetscPopSignalHandler());
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   PetscCall(PetscLogDefaultBegin());
-  if (MPI_Comm_dup(PETSC_COMM_WORLD, &at_the_end)) return PETSC_ERR_MPI;
-  /* Strong couplings only: see docs/design/mpi.md. */
-  PetscCall(preset("-kluft_mg_coarse_pc_gamg_threshold", "0.02"));
-  /* The usual triple product adds what other ranks send in the order in which it comes; one rank
-     has no other. */
-  return km_ranks() > 1 ? preset("-matptap_via", "allatonce") : 0;
+  return MPI_Comm_dup(PETSC_COMM_WORLD, &at_the_end) ? PETSC_ERR_MPI : 0;
 }
 int km_end(void) {
   if (MPI_Comm_free(&at_the_end)) return PETSC_ERR_MPI;
@@ -71,83 +69,55 @@ int km_all_arrive(double seconds, int *arrived) {
 int km_gather(const uint64_t *own, int count, uint64_t *all) {
   return MPI_Allgather(own, count, MPI_UINT64_T, all, count, MPI_UINT64_T, PETSC_COMM_WORLD) ? PETSC_ERR_MPI : 0;
 }
-/* `counts[r]` triples of rank r, one rank behind the other. */
-int km_gather_triples(const double *own, const int *counts, double *all) {
+/* `counts[r]` records of `size` bytes of rank r, one rank behind the other. */
+int km_gather_records(int size, const void *own, const int *counts, void *all) {
   int rank = km_rank(), ranks = km_ranks(), *starts, failed;
-  MPI_Datatype triple;
+  MPI_Datatype record;
   int64_t sum = 0;
   PetscCall(PetscMalloc1(ranks, &starts));
   for (int r = 0; r < ranks; r++) { starts[r] = (int)sum; sum += counts[r]; }
   if (sum > INT_MAX) return PETSC_ERR_ARG_OUTOFRANGE;
-  MPI_Type_contiguous(3, MPI_DOUBLE, &triple);
-  MPI_Type_commit(&triple);
-  failed = MPI_Allgatherv(own, counts[rank], triple, all, counts, starts, triple, PETSC_COMM_WORLD);
-  MPI_Type_free(&triple);
-  PetscCall(PetscFree(starts));
-  return failed ? PETSC_ERR_MPI : 0;
-}
-/* Records of `size` bytes to each rank, and from each: first how many, then what. */
-int km_exchange_counts(const int *out, int *in) {
-  return MPI_Alltoall(out, 1, MPI_INT, in, 1, MPI_INT, PETSC_COMM_WORLD) ? PETSC_ERR_MPI : 0;
-}
-int km_exchange(int size, const int *out, const void *sent, const int *in, void *received) {
-  int ranks = km_ranks(), *starts, failed;
-  int64_t sums[2] = {0, 0};
-  MPI_Datatype record;
-  PetscCall(PetscMalloc1(2 * ranks, &starts));
-  for (int r = 0; r < ranks; r++) {
-    starts[r] = (int)sums[0]; sums[0] += out[r];
-    starts[ranks + r] = (int)sums[1]; sums[1] += in[r];
-  }
-  if (sums[0] > INT_MAX || sums[1] > INT_MAX) return PETSC_ERR_ARG_OUTOFRANGE;
   MPI_Type_contiguous(size, MPI_BYTE, &record);
   MPI_Type_commit(&record);
-  failed = MPI_Alltoallv(sent, out, starts, record, received, in, starts + ranks, record, PETSC_COMM_WORLD);
+  failed = MPI_Allgatherv(own, counts[rank], record, all, counts, starts, record, PETSC_COMM_WORLD);
   MPI_Type_free(&record);
   PetscCall(PetscFree(starts));
   return failed ? PETSC_ERR_MPI : 0;
 }
-
-static int indices(const int64_t *from, size_t count, PetscInt **to) {
-  PetscCall(PetscMalloc1(count + 1, to));
-  for (size_t k = 0; k < count; k++) (*to)[k] = (PetscInt)from[k];
-  return 0;
-}
-
-/* A distributed matrix of the rows of each rank, in blocks of m lines of l numbers, each block line
-   by line; columns are global numbers of blocks. Square blocks of three stay blocks. */
-int km_matrix(int64_t rows, int64_t columns, int m, int l, const int64_t *offset, const int64_t *column, const double *blocks, void **out) {
+/* A distributed matrix with as many block rows and columns of this rank, in blocks of m lines of l
+   numbers; square blocks stay blocks. Of each row the number of blocks in columns of this rank, and
+   in those of others. Then come the rows, then the end. */
+int km_matrix(int64_t rows, int64_t columns, int m, int l, const int *own, const int *others, void **out) {
   Mat a;
-  PetscInt *o, *c;
+  PetscInt *counts[2];
+  int lines = m == l ? 1 : m, wide = m == l ? 1 : l;
   PetscCall(MatCreate(PETSC_COMM_WORLD, &a));
+  *out = a;
   PetscCall(MatSetSizes(a, m * rows, l * columns, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetBlockSizes(a, m, l));
-  if (m == 3 && l == 3) {
+  PetscCall(PetscMalloc2(lines * rows + 1, &counts[0], lines * rows + 1, &counts[1]));
+  for (int64_t r = 0; r < lines * rows; r++) { counts[0][r] = wide * own[r / lines]; counts[1][r] = wide * others[r / lines]; }
+  if (m == l) {
     PetscCall(MatSetType(a, MATBAIJ));
-    PetscCall(indices(offset, rows + 1, &o));
-    PetscCall(indices(column, offset[rows], &c));
-    PetscCall(MatMPIBAIJSetPreallocationCSR(a, m, o, c, blocks));
-    PetscCall(MatSeqBAIJSetPreallocationCSR(a, m, o, c, blocks));
-    PetscCall(PetscFree(o));
-    PetscCall(PetscFree(c));
+    PetscCall(MatSeqBAIJSetPreallocation(a, m, 0, counts[0]));
+    PetscCall(MatMPIBAIJSetPreallocation(a, m, 0, counts[0], 0, counts[1]));
   } else {
-    size_t n = offset[rows] * m * l, at = 0;
-    double *v;
     PetscCall(MatSetType(a, MATAIJ));
-    PetscCall(PetscMalloc3(m * rows + 1, &o, n + 1, &c, n + 1, &v));
-    for (int64_t r = 0; r < rows; r++)
-      for (int i = 0; i < m; i++) {
-        o[m * r + i] = at;
-        for (int64_t k = offset[r]; k < offset[r + 1]; k++)
-          for (int j = 0; j < l; j++) { c[at] = l * column[k] + j; v[at++] = blocks[(k * m + i) * l + j]; }
-      }
-    o[m * rows] = at;
-    PetscCall(MatMPIAIJSetPreallocationCSR(a, o, c, v));
-    PetscCall(MatSeqAIJSetPreallocationCSR(a, o, c, v));
-    PetscCall(PetscFree3(o, c, v));
+    PetscCall(MatSeqAIJSetPreallocation(a, 0, counts[0]));
+    PetscCall(MatMPIAIJSetPreallocation(a, 0, counts[0], 0, counts[1]));
   }
-  *out = a;
-  return 0;
+  PetscCall(PetscFree2(counts[0], counts[1]));
+  return MatSetOption(a, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE);
+}
+/* A block row by its global number: columns, and all numbers line by line; called by any rank. */
+int km_matrix_row(void *matrix, int64_t row, int count, const int64_t *columns, const double *lines) {
+  PetscInt at = (PetscInt)row, where[MOST_AT_ONCE];
+  for (int k = 0; k < count; k++) where[k] = (PetscInt)columns[k];
+  return MatSetValuesBlocked(matrix, 1, &at, count, where, lines, INSERT_VALUES);
+}
+int km_matrix_end(void *matrix) {
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  return MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY);
 }
 int km_free_matrix(void *matrix) {
   Mat a = matrix;
@@ -155,8 +125,8 @@ int km_free_matrix(void *matrix) {
 }
 
 /* What one rank exchanges in iterations, and their number. The first iteration of each solve is left
-   out, because smoothers look for the bounds of their spectra in it. */
-typedef struct { double iterations, exchanges, messages, bytes, reductions; } Counts;
+   out, because vectors are made in it. */
+typedef struct { double iterations, exchanges, messages, bytes, reductions, levels; } Counts;
 static Counts counted;
 
 static int count(Counts *now) {
@@ -189,39 +159,14 @@ static PetscErrorCode count_iteration(KSP solver, PetscInt iteration, PetscReal 
   return 0;
 }
 
-/* `operator` is what the levels were made of; `current`, if any, what is solved with. */
-typedef struct { KSP solver; Mat operator, current, inverse, prolongator, next; Vec right, solution; } Solver;
-
-/* Motions of the next level that cost next to nothing, six numbers an unknown. */
-static int set_near_null_space(Mat next, const double *modes) {
-  Vec mode[6];
-  PetscInt n;
-  PetscScalar *v;
-  PetscReal norm;
-  MatNullSpace space;
-  int kept = 0;
-  for (int q = 0; q < 6; q++) {
-    PetscCall(MatCreateVecs(next, &mode[kept], NULL));
-    PetscCall(VecGetLocalSize(mode[kept], &n));
-    PetscCall(VecGetArray(mode[kept], &v));
-    for (PetscInt k = 0; k < n; k++) v[k] = modes[6 * k + q];
-    PetscCall(VecRestoreArray(mode[kept], &v));
-    PetscCall(VecNormalize(mode[kept], &norm));
-    if (norm > 0) for (int twice = 0; twice < 2; twice++) for (int p = 0; p < kept; p++) {
-      PetscScalar dot;
-      PetscCall(VecDot(mode[kept], mode[p], &dot));
-      PetscCall(VecAXPY(mode[kept], -dot, mode[p]));
-    }
-    PetscCall(VecNorm(mode[kept], NORM_2, &norm));
-    if (norm > 1e-8) { PetscCall(VecNormalize(mode[kept], NULL)); kept++; }
-    else PetscCall(VecDestroy(&mode[kept]));
-  }
-  PetscCall(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_FALSE, kept, mode, &space));
-  PetscCall(MatSetNearNullSpace(next, space));
-  PetscCall(MatNullSpaceDestroy(&space));
-  for (int q = 0; q < kept; q++) PetscCall(VecDestroy(&mode[q]));
-  return 0;
-}
+/* `operator` is what the levels were made of; `current`, if any, what is solved with. Prolongators
+   and matrices of `count` levels below, the largest first, and the inverse of the last one. */
+typedef struct {
+  KSP solver;
+  Mat operator, current, inverse, *prolongators, *matrices, coarsest;
+  int count;
+  Vec right, solution;
+} Solver;
 
 /* One solve of the whole by each rank, for what is too small to be coarsened. */
 static int set_redundant(Solver *s, PC pc) {
@@ -232,41 +177,58 @@ static int set_redundant(Solver *s, PC pc) {
   return PCSetType(pc, PCREDUNDANT);
 }
 
-/* `margin` widens the bounds of the spectra that PETSc estimates for the smoothers. */
-static int set_two_levels(Solver *s, PC pc, double margin) {
-  KSP smoother, coarse;
-  PC smooth_pc, coarse_pc;
-  char bounds[64];
-  PetscCall(PetscSNPrintf(bounds, sizeof bounds, "0,0.1,0,%g", 1.1 * margin));
-  PetscCall(PetscOptionsSetValue(NULL, "-kluft_mg_coarse_mg_levels_ksp_chebyshev_esteig", bounds));
-  PetscCall(PCSetType(pc, PCMG));
-  PetscCall(PCMGSetLevels(pc, 2, NULL));
-  PetscCall(PCMGSetGalerkin(pc, PC_MG_GALERKIN_NONE));
-  PetscCall(PCMGSetInterpolation(pc, 1, s->prolongator));
-  PetscCall(PCMGGetSmoother(pc, 1, &smoother));
+/* Chebyshev of degree two for a spectrum that ends at `largest`. */
+static int set_smoother(KSP smoother, PCType type, Mat matrix, Mat preconditioner, double largest) {
+  PC pc;
   PetscCall(KSPSetType(smoother, KSPCHEBYSHEV));
-  PetscCall(KSPChebyshevEstEigSet(smoother, 0.0, 0.1, 0.0, 1.1 * margin));
+  PetscCall(KSPChebyshevSetEigenvalues(smoother, largest, LOWER_END * largest));
   PetscCall(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 2));
-  PetscCall(KSPSetOperators(smoother, s->operator, s->inverse));
-  PetscCall(KSPGetPC(smoother, &smooth_pc));
-  PetscCall(PCSetType(smooth_pc, PCMAT));
-  PetscCall(PCMGGetCoarseSolve(pc, &coarse));
-  PetscCall(KSPSetType(coarse, KSPPREONLY));
-  PetscCall(KSPSetOperators(coarse, s->next, s->next));
-  PetscCall(KSPGetPC(coarse, &coarse_pc));
-  return PCSetType(coarse_pc, PCGAMG);
+  PetscCall(KSPSetConvergenceTest(smoother, KSPConvergedSkip, NULL, NULL));
+  PetscCall(KSPSetNormType(smoother, KSP_NORM_NONE));
+  PetscCall(KSPSetOperators(smoother, matrix, preconditioner));
+  PetscCall(KSPGetPC(smoother, &pc));
+  return PCSetType(pc, type);
 }
 
-/* Conjugate gradients; on the finest level Chebyshev on the inverse diagonal blocks and the given
-   prolongator, below it GAMG with the given six modes of each node. Without a next level: `small`
-   systems are solved by each rank as a whole, others smoothed only. Takes the matrices over, also
-   upon an error. */
-int km_solver(void *operator, void *inverse, void *prolongator, void *next, const double *modes, int is_small, double margin, void **out) {
+static int set_levels(Solver *s, PC pc, const double *largest) {
+  KSP smoother, coarsest;
+  PC inverse;
+  PetscCall(PCSetType(pc, PCMG));
+  PetscCall(PCMGSetLevels(pc, s->count + 1, NULL));
+  PetscCall(PCMGSetGalerkin(pc, PC_MG_GALERKIN_NONE));
+  for (int below = 0; below < s->count; below++) PetscCall(PCMGSetInterpolation(pc, s->count - below, s->prolongators[below]));
+  PetscCall(PCMGGetSmoother(pc, s->count, &smoother));
+  PetscCall(set_smoother(smoother, PCMAT, s->operator, s->inverse, largest[0]));
+  for (int at = 1; at < s->count; at++) {
+    Mat matrix = s->matrices[at - 1];
+    PetscCall(PCMGGetSmoother(pc, s->count - at, &smoother));
+    PetscCall(set_smoother(smoother, PCNONE, matrix, matrix, largest[at]));
+  }
+  PetscCall(PCMGGetCoarseSolve(pc, &coarsest));
+  if (!s->coarsest) return set_smoother(coarsest, PCNONE, s->matrices[s->count - 1], s->matrices[s->count - 1], largest[s->count]);
+  PetscCall(KSPSetType(coarsest, KSPPREONLY));
+  PetscCall(KSPSetOperators(coarsest, s->matrices[s->count - 1], s->coarsest));
+  PetscCall(KSPGetPC(coarsest, &inverse));
+  return PCSetType(inverse, PCMAT);
+}
+
+/* Conjugate gradients; on the finest level Chebyshev on the inverse diagonal blocks, on `count`
+   levels below Chebyshev on matrices whose diagonal is the identity, on the last one its inverse, if
+   there is one. `largest` bounds the spectra of all levels, the finest first. Without a level below:
+   `small` systems are solved by each rank as a whole, others smoothed only. Takes the matrices over,
+   also upon an error. */
+int km_solver(void *operator, void *inverse, int count, void *const *prolongators, void *const *matrices, void *coarsest, const double *largest, int is_small, void **out) {
   Solver *s = calloc(1, sizeof *s);
   PC pc;
   if (!s) return PETSC_ERR_MEM;
-  s->operator = operator; s->inverse = inverse; s->prolongator = prolongator; s->next = next;
+  s->operator = operator; s->inverse = inverse; s->coarsest = coarsest;
   *out = s;
+  counted.levels = count + 1;
+  PetscCall(PetscMalloc2(count + 1, &s->prolongators, count + 1, &s->matrices));
+  for (s->count = 0; s->count < count; s->count++) {
+    s->prolongators[s->count] = prolongators[s->count];
+    s->matrices[s->count] = matrices[s->count];
+  }
   PetscCall(MatCreateVecs(s->operator, &s->solution, &s->right));
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &s->solver));
   PetscCall(KSPSetOptionsPrefix(s->solver, "kluft_"));
@@ -274,9 +236,8 @@ int km_solver(void *operator, void *inverse, void *prolongator, void *next, cons
   PetscCall(KSPSetNormType(s->solver, KSP_NORM_UNPRECONDITIONED));
   PetscCall(KSPSetOperators(s->solver, s->operator, s->operator));
   PetscCall(KSPGetPC(s->solver, &pc));
-  if (next) {
-    PetscCall(set_near_null_space(s->next, modes));
-    PetscCall(set_two_levels(s, pc, margin));
+  if (count) {
+    PetscCall(set_levels(s, pc, largest));
   } else if (is_small) {
     PetscCall(set_redundant(s, pc));
   } else {
@@ -289,15 +250,24 @@ int km_solver(void *operator, void *inverse, void *prolongator, void *next, cons
   return 0;
 }
 
-/* Solves with another operator, on the levels as they are; takes it over. */
-int km_set_operator(void *solver, void *operator) {
+/* Some rows of the operator change, the levels stay as they are: first this, then the rows, then the
+   end. What the levels were made of stays too, because the finest one is smoothed with it. */
+int km_begin_update(void *solver) {
   Solver *s = solver;
-  Mat former = s->current, levels;
-  s->current = operator;
+  Mat levels;
+  if (s->current) return 0;
+  PetscCall(MatDuplicate(s->operator, MAT_COPY_VALUES, &s->current));
   PetscCall(KSPGetOperators(s->solver, NULL, &levels));
   PetscCall(KSPSetReusePreconditioner(s->solver, PETSC_TRUE));
-  PetscCall(KSPSetOperators(s->solver, s->current, levels));
-  return MatDestroy(&former);
+  return KSPSetOperators(s->solver, s->current, levels);
+}
+int km_update_row(void *solver, int64_t row, int count, const int64_t *columns, const double *lines) {
+  Solver *s = solver;
+  return km_matrix_row(s->current, row, count, columns, lines);
+}
+int km_end_update(void *solver) {
+  Solver *s = solver;
+  return km_matrix_end(s->current);
 }
 
 static int put(Vec to, const double *from) {
@@ -360,8 +330,12 @@ int km_free(void *solver) {
   PetscCall(MatDestroy(&s->operator));
   PetscCall(MatDestroy(&s->current));
   PetscCall(MatDestroy(&s->inverse));
-  PetscCall(MatDestroy(&s->prolongator));
-  PetscCall(MatDestroy(&s->next));
+  for (int at = 0; at < s->count; at++) {
+    PetscCall(MatDestroy(&s->prolongators[at]));
+    PetscCall(MatDestroy(&s->matrices[at]));
+  }
+  PetscCall(PetscFree2(s->prolongators, s->matrices));
+  PetscCall(MatDestroy(&s->coarsest));
   PetscCall(VecDestroy(&s->right));
   PetscCall(VecDestroy(&s->solution));
   free(s);
@@ -369,9 +343,9 @@ int km_free(void *solver) {
 }
 
 /* What was counted of this rank: iterations, and in them halo exchanges, messages sent, their bytes,
-   and reductions; called by any rank. */
+   and reductions; then the levels of the last solver. Called by any rank. */
 int km_counts(double *counts) {
-  const double all[] = {counted.iterations, counted.exchanges, counted.messages, counted.bytes, counted.reductions};
-  for (int k = 0; k < 5; k++) counts[k] = all[k];
+  const double all[] = {counted.iterations, counted.exchanges, counted.messages, counted.bytes, counted.reductions, counted.levels};
+  for (int k = 0; k < 6; k++) counts[k] = all[k];
   return 0;
 }

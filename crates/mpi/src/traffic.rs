@@ -17,10 +17,11 @@ pub fn told(world: &World, partition: Option<&Partition>) -> Result<Vec<String>,
     };
     Ok(vec![
         format!(
-            "an iteration of the linear solver takes {:.1} reductions and {:.1} halo exchanges; a \
-             rank sends {:.1} messages of {:.2} kB in it",
+            "an iteration of the linear solver takes {:.1} reductions and {:.1} halo exchanges over \
+             {:.0} levels; a rank sends {:.1} messages of {:.2} kB in it",
             own.reductions * each,
             own.exchanges * each,
+            own.levels,
             mean(0),
             1e-3 * mean(1) / mean(0).max(1.0)
         ),

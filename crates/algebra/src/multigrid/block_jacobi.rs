@@ -21,7 +21,7 @@ const PER_TASK: usize = 1024;
 
 /// The diagonal blocks `R` of the clusters in the fixed matrix, and the inverses `L^-1` of the
 /// Cholesky factors of those of the whole one: lower triangles, row by row, one cluster behind the
-/// other.
+/// other. Clusters that are not wanted have none.
 pub(super) struct Factors {
     offset: Vec<usize>,
     /// `R`.
@@ -55,13 +55,25 @@ fn symmetric_block(triangle: &[f64], row: usize, column: usize) -> [[f64; 3]; 3]
 }
 
 impl Factors {
-    /// Factorises the clusters.
+    /// Factorises all clusters.
     ///
     /// # Errors
     /// If one is not positive definite; the row that shows it.
     pub(super) fn of(rows: &SumRows<'_>, clusters: &Clusters) -> Result<Self, MultigridFailure> {
+        Self::of_some(rows, clusters, |_| true)
+    }
+
+    /// Factorises the clusters that are wanted.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub(super) fn of_some(
+        rows: &SumRows<'_>,
+        clusters: &Clusters,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Result<Self, MultigridFailure> {
         let mut offset = vec![0; clusters.count() + 1];
-        for cluster in 0..clusters.count() {
+        for cluster in (0..clusters.count()).filter(|&cluster| is_wanted(cluster)) {
             offset[cluster + 1] = entries(clusters.members.of(cluster).len());
         }
         sum_up(&mut offset);
@@ -76,6 +88,9 @@ impl Factors {
                 let mut factor = Vec::new();
                 for cluster in own {
                     let length = offset[cluster + 1] - offset[cluster];
+                    if length == 0 {
+                        continue;
+                    }
                     let (fixed, inverse);
                     (fixed, fixed_parts) = fixed_parts.split_at_mut(length);
                     (inverse, inverses) = inverses.split_at_mut(length);
@@ -101,6 +116,11 @@ impl Factors {
             fixed,
             inverse,
         })
+    }
+
+    /// Whether a cluster was factorised.
+    fn has(&self, cluster: u32) -> bool {
+        !self.inverse_of(cluster).is_empty()
     }
 
     fn inverse_of(&self, cluster: u32) -> &[f64] {
@@ -280,6 +300,8 @@ fn single_neighbours(rows: &SumRows<'_>, clusters: &Clusters, row: usize) -> Opt
 /// `A = R + S = L L^T` and `R` of the fixed matrix, hence `L^T P' = L^-1 R P`. Motions that would
 /// strain a stiff interface strain what lies beside it instead, so that the next level is as stiff
 /// as the fixed matrix, however stiff the interface is. Rigid motions, where `S P = 0`, stay.
+///
+/// Rows of clusters that were not factorised are empty.
 pub(super) fn smooth_by_blocks(
     prolongator: &mut Sparse<3, 6>,
     basis: &Sparse<3, 6>,
@@ -292,7 +314,11 @@ pub(super) fn smooth_by_blocks(
         rows_per_task::<3>(),
         || Accumulator::<3, 6>::new(columns),
         |sums, row| {
-            for &member in clusters.members.of(clusters.place[row].0 as usize) {
+            let (own, _) = clusters.place[row];
+            if !factors.has(own) {
+                return 0;
+            }
+            for &member in clusters.members.of(own as usize) {
                 let columns = &basis.columns[basis.range(member as usize)];
                 columns.iter().for_each(|&column| sums.touch(column));
             }
@@ -300,6 +326,9 @@ pub(super) fn smooth_by_blocks(
         },
         #[inline(always)]
         |sums, row, columns, blocks| {
+            if columns.is_empty() {
+                return;
+            }
             let (own, at) = clusters.place[row];
             for (place, &member) in clusters.members.of(own as usize).iter().enumerate() {
                 let left = factors.smoothing_block(own, at as usize, place);

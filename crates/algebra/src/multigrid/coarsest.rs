@@ -47,6 +47,11 @@ impl Dense {
         }
     }
 
+    /// A row of `A^+`.
+    pub(super) fn row(&self, row: usize, size: usize) -> &[f32] {
+        &self.inverse[row * size..(row + 1) * size]
+    }
+
     /// Bytes of storage.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.inverse[..])

@@ -2,30 +2,29 @@
 //! needs of the rows of one of them, in unknowns that are not scaled.
 //!
 //! With the clusters `C` of unknowns, `A = R + S` of a fixed matrix and an interface, and the basis
-//! `P` of the fixed one, that is the inverse `A_CC^-1` for a smoother, the prolongator
-//! `A_CC^-1 R_CC P`, and what the rows give to the matrix of the next level.
+//! `P` of the fixed one, that is the inverse `A_CC^-1` for a smoother and a bound of the spectrum of
+//! `A_CC^-1 A`, the prolongator `A_CC^-1 R_CC P`, and what the rows give to the matrix of the next
+//! level. What all of them give makes the [`LowerLevels`].
 
 use glam::DVec3;
 
 use super::block_jacobi::{self, Factors};
+use super::lower_levels::LowerLevels;
 use super::mean_field::{CoarseBasis, MeanField};
 use super::setup::{FixedHierarchy, NodeMatrix};
 use super::sparse::{Sparse, Transpose};
+use super::spectrum;
 use super::sum_rows::SumRows;
-use super::triple_product::PartialProduct;
 use crate::block_rows::BlockRows;
 use crate::failure::MultigridFailure;
 use crate::interface::InterfaceBlocks;
 use crate::lists::Lists;
-use crate::small::{Modes, add, product, transpose, widen};
+use crate::small::{add, product, transpose, widen};
 
 /// Clusters and basis, made once for a fixed matrix.
 #[derive(Debug, Clone)]
 pub struct FirstCoarsening {
     fixed: FixedHierarchy,
-    /// The scaled rows and prolongator of the last part, whose storage serves the next one.
-    matrix: Sparse<3, 3>,
-    prolongator: Sparse<3, 6>,
 }
 
 /// Blocks of `M` lines of `L` numbers, row by row.
@@ -39,9 +38,20 @@ pub struct BlockList<const M: usize, const L: usize> {
     pub blocks: Vec<[[f64; L]; M]>,
 }
 
+/// Rows of some whole clusters, those of one process, with the clusters factorised that they couple
+/// to.
+pub struct OwnRows<'a> {
+    rows: SumRows<'a>,
+    own: &'a [u32],
+    is_own: Vec<bool>,
+    factors: Factors,
+}
+
 /// What some rows give to a hierarchy. All lists but the last have one row for each of them.
 #[derive(Debug, Clone)]
 pub struct LevelPart {
+    /// Upper bound of the eigenvalues of `A_CC^-1 A`.
+    pub largest_eigenvalue: f64,
     /// `A_CC^-1`; columns are rows of the matrix.
     pub inverse: BlockList<3, 3>,
     /// `A_CC^-1 R_CC P`; columns are nodes of the next level.
@@ -52,19 +62,20 @@ pub struct LevelPart {
 }
 
 impl<const M: usize, const L: usize> BlockList<M, L> {
-    fn new() -> Self {
+    /// No rows.
+    pub(super) fn new() -> Self {
         Self {
             offset: vec![0],
             ..Self::default()
         }
     }
 
-    fn push(&mut self, column: u32, block: [[f64; L]; M]) {
+    pub(super) fn push(&mut self, column: u32, block: [[f64; L]; M]) {
         self.columns.push(column);
         self.blocks.push(block);
     }
 
-    fn end_row(&mut self) {
+    pub(super) fn end_row(&mut self) {
         self.offset.push(self.columns.len());
     }
 
@@ -99,11 +110,7 @@ impl FirstCoarsening {
             modes,
         };
         let (fixed, _) = FixedHierarchy::of(nodes, |means| basis(&means))?;
-        Ok(Self {
-            fixed,
-            matrix: Sparse::default(),
-            prolongator: Sparse::default(),
-        })
+        Ok(Self { fixed })
     }
 
     /// Rows of each cluster. The rows of a part are those of whole clusters.
@@ -121,62 +128,75 @@ impl FirstCoarsening {
         self.fixed.has_next(rows)
     }
 
-    /// What the rows `own`, ascending, give to the hierarchy. The matrix needs the blocks of these
-    /// rows, and the diagonal blocks of the clusters that they couple to.
+    /// Factorises the clusters of the rows `own`, ascending, and those that they couple to. The
+    /// matrix needs the blocks of these clusters' rows.
     ///
     /// # Errors
     /// If a diagonal block is not positive definite.
-    pub fn part(
-        &mut self,
-        matrix: BlockRows<'_>,
-        interface: InterfaceBlocks<'_>,
-        own: &[u32],
-    ) -> Result<LevelPart, MultigridFailure> {
+    pub fn factorised<'a>(
+        &self,
+        matrix: BlockRows<'a>,
+        interface: InterfaceBlocks<'a>,
+        own: &'a [u32],
+    ) -> Result<OwnRows<'a>, MultigridFailure> {
         let rows = SumRows {
             interface: Some(interface),
             ..SumRows::of_fixed(matrix)
         };
-        let factors = Factors::of(&rows, &self.fixed.clusters)?;
+        let clusters = &self.fixed.clusters;
+        let mut is_own = vec![false; rows.count()];
+        let mut is_wanted = vec![false; clusters.count()];
+        for &row in own {
+            is_own[row as usize] = true;
+            rows.for_each(row as usize, |column, _| {
+                is_wanted[clusters.place[column as usize].0 as usize] = true;
+            });
+        }
+        Ok(OwnRows {
+            factors: Factors::of_some(&rows, clusters, |cluster| is_wanted[cluster])?,
+            rows,
+            own,
+            is_own,
+        })
+    }
+
+    /// What rows give to the hierarchy. `complete` replaces the entries of a vector that belong to
+    /// other rows by what their owners have there.
+    pub fn part(&mut self, rows: &OwnRows<'_>, complete: impl FnMut(&mut [[f32; 3]])) -> LevelPart {
         let columns = self.fixed.basis.modes.len();
-        let mut prolongator = std::mem::take(&mut self.prolongator);
+        let mut prolongator = Sparse::default();
         block_jacobi::smooth_by_blocks(
             &mut prolongator,
             &self.fixed.basis.prolongator,
             columns,
             &self.fixed.clusters,
-            &factors,
+            &rows.factors,
         );
-        let next = self.next(&rows, &factors, &prolongator, own);
-        let part = LevelPart {
-            inverse: self.inverse(&factors, own),
-            prolongator: self.unscaled(&factors, &prolongator, own),
-            next: blocks_of(&next),
-        };
-        self.prolongator = prolongator;
-        Ok(part)
-    }
-
-    fn next(
-        &mut self,
-        rows: &SumRows<'_>,
-        factors: &Factors,
-        prolongator: &Sparse<3, 6>,
-        own: &[u32],
-    ) -> PartialProduct {
-        let mut is_own = vec![false; rows.count()];
-        for &row in own {
-            is_own[row as usize] = true;
-        }
-        let mut matrix = std::mem::take(&mut self.matrix);
+        let mut matrix = Sparse::default();
+        let is_own = |row: usize| rows.is_own[row];
         let clusters = &self.fixed.clusters;
-        block_jacobi::set_matrix(&mut matrix, rows, clusters, factors, |row| is_own[row]);
-        let transpose = Transpose::of(prolongator, self.fixed.basis.modes.len());
-        let is_own = |row: usize| is_own[row];
+        block_jacobi::set_matrix(&mut matrix, &rows.rows, clusters, &rows.factors, is_own);
+        let transpose = Transpose::of(&prolongator, columns);
         let next = self
             .fixed
-            .product(rows, &matrix, prolongator, &transpose, is_own);
-        self.matrix = matrix;
-        next
+            .product(&rows.rows, &matrix, &prolongator, &transpose, is_own);
+        drop(transpose);
+        let largest_eigenvalue = bound(&matrix, complete);
+        drop(matrix);
+        LevelPart {
+            largest_eigenvalue,
+            inverse: self.inverse(&rows.factors, rows.own),
+            prolongator: self.unscaled(&rows.factors, &prolongator, rows.own),
+            next: next.into_blocks(),
+        }
+    }
+
+    /// The levels below, from what the rows of all processes give to the next one.
+    ///
+    /// # Errors
+    /// If an entry is not finite.
+    pub fn levels_below(&self, parts: &[BlockList<6, 6>]) -> Result<LowerLevels, MultigridFailure> {
+        LowerLevels::of(parts, &self.fixed.basis.modes)
     }
 
     /// `A_CC^-1 = L^-T L^-1`.
@@ -222,24 +242,13 @@ impl FirstCoarsening {
         }
         prolongator
     }
-
-    /// Modes of the nodes of the next level.
-    pub fn modes(&self) -> &[Modes<6>] {
-        &self.fixed.basis.modes
-    }
 }
 
-fn blocks_of(product: &PartialProduct) -> BlockList<6, 6> {
-    let mut blocks = BlockList::new();
-    for (row, diagonal) in product.diagonal.iter().enumerate() {
-        let right = product.upper.row(row);
-        if *diagonal != [[0.0; 6]; 6] {
-            blocks.push(row as u32, *diagonal);
-        }
-        for (column, block) in right {
-            blocks.push(column as u32, widen(block));
-        }
-        blocks.end_row();
-    }
-    blocks
+/// Bound of the spectrum of a scaled matrix of which some rows are known.
+fn bound(matrix: &Sparse<3, 3>, mut complete: impl FnMut(&mut [[f32; 3]])) -> f64 {
+    spectrum::largest_eigenvalue_by(matrix.rows(), |vector, before, factor| {
+        let mut image = spectrum::image(matrix, vector, before, factor);
+        complete(&mut image);
+        image
+    })
 }

@@ -23,17 +23,27 @@ pub(super) fn coarse<const N: usize>(
     prolongator: &mut Sparse<N, 6>,
     modes: &[Modes<6>],
 ) -> Coarse {
-    let diagonal = whole.diagonal.par_iter();
-    let factors: Vec<Block6> = diagonal
-        .map(|block| inverse_factor(block, COSTS_NOTHING).0)
-        .collect();
+    let factors = factors(whole);
     scale_prolongator(prolongator, &factors);
+    scaled(whole, &factors, modes)
+}
+
+/// `L^-1` of the diagonal blocks.
+pub(super) fn factors(whole: &PartialProduct) -> Vec<Block6> {
+    let diagonal = whole.diagonal.par_iter();
+    diagonal
+        .map(|block| inverse_factor(block, COSTS_NOTHING).0)
+        .collect()
+}
+
+/// The next level in unknowns that scale its diagonal, whose factors are given.
+pub(super) fn scaled(whole: &PartialProduct, factors: &[Block6], modes: &[Modes<6>]) -> Coarse {
     // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
     let scaled = factors.par_iter().zip(&whole.diagonal).zip(modes);
     let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
     Coarse {
         modes: modes.collect(),
-        matrix: scaled_matrix(&whole.upper, &factors),
+        matrix: scaled_matrix(&whole.upper, factors),
     }
 }
 

@@ -15,6 +15,7 @@ mod coarsest;
 mod cycle;
 mod first_coarsening;
 mod galerkin;
+mod lower_levels;
 mod mean_field;
 mod prolongation;
 mod setup;
@@ -38,10 +39,11 @@ use sparse::Sparse;
 use sum_rows::SumRows;
 
 use crate::block_rows::BlockRows;
-use crate::failure::MultigridFailure;
 use crate::interface::InterfaceBlocks;
 
-pub use first_coarsening::{BlockList, FirstCoarsening, LevelPart};
+pub use crate::failure::MultigridFailure;
+pub use first_coarsening::{BlockList, FirstCoarsening, LevelPart, OwnRows};
+pub use lower_levels::{CoarsestSolve, LowerLevels};
 pub use mean_field::{CoarseBasis, MeanField};
 
 /// A hierarchy of levels, and the V-cycle over them.

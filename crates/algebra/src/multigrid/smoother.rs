@@ -77,6 +77,11 @@ impl Smoother {
         }
     }
 
+    /// The bound.
+    pub(super) fn largest_eigenvalue(&self) -> f64 {
+        self.largest_eigenvalue
+    }
+
     /// For a spectrum that reaches further by `margin` than the bound says.
     pub(super) fn with_margin(&self, margin: f64) -> Self {
         Self {

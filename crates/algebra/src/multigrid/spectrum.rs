@@ -1,4 +1,4 @@
-//! An upper bound of the largest eigenvalue of a level matrix.
+//! An upper bound of the largest eigenvalue of a level matrix, known as a whole or by its products.
 
 use faer::{Mat, Side};
 use rayon::prelude::*;
@@ -15,18 +15,24 @@ const INVARIANT: f64 = 1e-6;
 /// vector (Zhou and Li 2011), from a fixed start vector. At least 1, which the largest eigenvalue
 /// of a matrix with unit diagonal never falls below.
 pub(super) fn largest_eigenvalue<const N: usize>(matrix: &Sparse<N, N>) -> f64 {
-    let mut vector = start_vector::<N>(matrix.rows());
-    let mut before = vec![[0.0; N]; matrix.rows()];
+    largest_eigenvalue_by(matrix.rows(), |vector, before, factor| {
+        image(matrix, vector, before, factor)
+    })
+}
+
+/// The same of a matrix of so many rows whose products `A v - factor b` are given.
+pub(super) fn largest_eigenvalue_by<const N: usize>(
+    rows: usize,
+    mut image: impl FnMut(&[[f32; N]], &[[f32; N]], f64) -> Vec<[f32; N]>,
+) -> f64 {
+    let mut vector = start_vector::<N>(rows);
+    let mut before = vec![[0.0; N]; rows];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     let mut length = dot(&vector, &vector).sqrt();
     scale(&mut vector, length);
-    for _ in 0..STEPS.min(N * matrix.rows()) {
-        let mut next = image(
-            matrix,
-            &vector,
-            &before,
-            if beside.is_empty() { 0.0 } else { length },
-        );
+    for _ in 0..STEPS.min(N * rows) {
+        let factor = if beside.is_empty() { 0.0 } else { length };
+        let mut next = image(&vector, &before, factor);
         let share = dot(&next, &vector);
         subtract(&mut next, share, &vector);
         diagonal.push(share);
@@ -71,7 +77,7 @@ fn start_vector<const N: usize>(rows: usize) -> Vec<[f32; N]> {
 }
 
 /// `A v - factor b`.
-fn image<const N: usize>(
+pub(super) fn image<const N: usize>(
     matrix: &Sparse<N, N>,
     vector: &[[f32; N]],
     before: &[[f32; N]],

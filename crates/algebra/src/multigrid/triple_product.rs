@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::first_coarsening::BlockList;
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
 use crate::lists::sum_up;
-use crate::small::{add, add_columns, add_product, widen};
+use crate::small::{add, add_columns, add_product, narrow, widen};
 
 /// Rows of a batch, fixed so that no result depends on the number of threads. `A P` of one is kept.
 const fn batch<const N: usize>() -> usize {
@@ -130,6 +131,44 @@ impl PartialProduct {
         Self {
             aggregates: (0..aggregates as u32).collect(),
             diagonal: diagonal.collect(),
+            upper,
+        }
+    }
+
+    /// The diagonal blocks and those right of them, one row for each aggregate, if it has all.
+    pub(super) fn into_blocks(self) -> BlockList<6, 6> {
+        let mut blocks = BlockList::new();
+        for (row, diagonal) in self.diagonal.iter().enumerate() {
+            if *diagonal != [[0.0; 6]; 6] {
+                blocks.push(row as u32, *diagonal);
+            }
+            for (column, block) in self.upper.row(row) {
+                blocks.push(column as u32, widen(block));
+            }
+            blocks.end_row();
+        }
+        blocks
+    }
+
+    /// The part that such blocks came from.
+    pub(super) fn of_blocks(blocks: &BlockList<6, 6>) -> Self {
+        let mut diagonal = vec![[[0.0; 6]; 6]; blocks.rows()];
+        let mut upper = Sparse::empty();
+        for (row, diagonal) in diagonal.iter_mut().enumerate() {
+            for (column, block) in blocks.row(row) {
+                match column as usize == row {
+                    true => *diagonal = *block,
+                    false => {
+                        upper.columns.push(column);
+                        upper.blocks.push(narrow(block));
+                    }
+                }
+            }
+            upper.offset.push(upper.columns.len());
+        }
+        Self {
+            aggregates: (0..blocks.rows() as u32).collect(),
+            diagonal,
             upper,
         }
     }

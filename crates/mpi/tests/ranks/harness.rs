@@ -7,6 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use kluft_io::{GmshOptions, load_msh};
 use kluft_run::{Ending, MESH, MeshInput, Outcome, Request, run};
 use kluft_scene::Scene;
+use kluft_solver::LinearMethod;
 
 /// The root of the project.
 pub fn root() -> PathBuf {
@@ -60,7 +61,13 @@ pub fn solved(ranks: usize, scene: &Path, out: &Path, more: &[&str]) {
 /// The serial run, all results in memory, on the mesh that a run on ranks has made in its folder,
 /// if it made one.
 pub fn serial(scene: &Path, out: &Path) -> Outcome {
-    let scene = Scene::read(scene).expect("a scene");
+    serial_by(scene, out, None)
+}
+
+/// The same by one linear solver.
+pub fn serial_by(scene: &Path, out: &Path, method: Option<LinearMethod>) -> Outcome {
+    let mut scene = Scene::read(scene).expect("a scene");
+    scene.solver.linear = method.or(scene.solver.linear);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.expect("a thread");
     let mesh = out.join(MESH);

@@ -13,13 +13,16 @@ use crate::harness::number;
 fn list(seed: u64) -> String {
     let mut random = Stream::new(seed, "fractures");
     let mut between = |low: f64, high: f64| random.between(low, high);
-    let mut text = String::from("name,x,y,z,dip,dip_direction,radius\n");
+    let mut text = String::from("name,shape,x,y,z,dip,dip_direction,radius\n");
     for number in 0..3 + seed % 7 {
         let centre = [between(1.0, 9.0), between(1.0, 8.0), between(1.0, 7.0)];
         let [x, y, z] = centre;
         let (dip, direction) = (between(0.0, 90.0), between(0.0, 360.0));
         let radius = between(1.5, 5.0);
-        let _ = writeln!(text, "f-{number},{x},{y},{z},{dip},{direction},{radius}");
+        let _ = writeln!(
+            text,
+            "f-{number},disc,{x},{y},{z},{dip},{direction},{radius}"
+        );
     }
     text
 }

@@ -1,5 +1,7 @@
 //! Any tangent of the fractures, on top of a solver for symmetric positive definite ones.
 
+use std::cell::RefCell;
+
 use glam::{DMat3, DVec3};
 use kluft_algebra::{
     ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, ScalarCholesky, gmres,
@@ -177,10 +179,11 @@ impl NonsymmetricSolver {
         let fixed = system.fixed_part();
         let mut failure = None;
         let mut unknowns = vec![DVec3::ZERO; rhs.len()];
-        let inner = &mut self.inner;
+        // The iteration asks for one of them at a time.
+        let inner = RefCell::new(&mut self.inner);
         let report = gmres(
-            |vector, product| fixed.multiply(exact, vector, product),
-            |residual, correction| match inner.precondition(fixed, residual) {
+            |vector, product| inner.borrow().multiply(fixed, exact, vector, product),
+            |residual, correction| match inner.borrow_mut().precondition(fixed, residual) {
                 Ok(approximation) => correction.copy_from_slice(&approximation),
                 Err(error) => failure = Some(error),
             },

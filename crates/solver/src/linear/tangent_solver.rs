@@ -99,6 +99,17 @@ pub trait TangentSolver: Send + Sync {
         Ok(false)
     }
 
+    /// `product = (fixed + stiffness) vector`, for any blocks of the fractures.
+    fn multiply(
+        &self,
+        fixed: FixedPart<'_>,
+        stiffness: &[DMat3],
+        vector: &[DVec3],
+        product: &mut [DVec3],
+    ) {
+        fixed.multiply(stiffness, vector, product);
+    }
+
     /// An approximate solution for the forces `rhs` (N), in one go.
     ///
     /// # Errors

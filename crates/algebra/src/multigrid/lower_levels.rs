@@ -1,0 +1,141 @@
+//! The levels below a finest one whose rows many processes share. They are much smaller than it, so
+//! every process makes all of them, alike; what it works with are the rows that it owns.
+
+use super::cycle::{Below, Level};
+use super::first_coarsening::BlockList;
+use super::galerkin;
+use super::setup;
+use super::triple_product::{Block6, PartialProduct};
+use crate::failure::MultigridFailure;
+use crate::small::{Modes, transpose, widen};
+
+/// All levels but the finest, the largest of them first; never none.
+#[derive(Debug, Clone)]
+pub struct LowerLevels {
+    factors: Vec<Block6>,
+    levels: Vec<Level<6>>,
+}
+
+/// What stands for the inverse of the coarsest matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CoarsestSolve {
+    /// Its pseudo-inverse.
+    Inverse,
+    /// Smoothing: nothing couples any more, or hardly.
+    Smoothing,
+}
+
+impl LowerLevels {
+    /// From parts of the matrix of the first of them, the diagonal blocks and those right of them,
+    /// which are summed in their order; and the modes of its nodes.
+    pub(super) fn of(
+        parts: &[BlockList<6, 6>],
+        modes: &[Modes<6>],
+    ) -> Result<Self, MultigridFailure> {
+        let parts: Vec<PartialProduct> = parts.iter().map(PartialProduct::of_blocks).collect();
+        let whole = PartialProduct::sum(modes.len(), &parts);
+        drop(parts);
+        let factors = galerkin::factors(&whole);
+        let mut next = Some(galerkin::scaled(&whole, &factors, modes));
+        drop(whole);
+        let mut levels = Vec::new();
+        while let Some(galerkin::Coarse { matrix, modes }) = next {
+            let (level, below) = setup::level(matrix, &modes)?;
+            levels.push(level);
+            next = below;
+        }
+        Ok(Self { factors, levels })
+    }
+
+    /// Number of levels.
+    pub fn count(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// `L^-1` of the diagonal blocks of the first level before it was scaled: the prolongator to it
+    /// is `P L^-T`.
+    pub fn factors(&self) -> &[Block6] {
+        &self.factors
+    }
+
+    /// Number of nodes of a level.
+    pub fn nodes(&self, level: usize) -> usize {
+        self.levels[level].matrix.rows()
+    }
+
+    /// Upper bound of the eigenvalues of the matrix of a level, whose diagonal is the identity.
+    pub fn largest_eigenvalue(&self, level: usize) -> f64 {
+        self.levels[level].smoother.largest_eigenvalue()
+    }
+
+    /// What the coarsest level is solved by.
+    pub fn coarsest_solve(&self) -> CoarsestSolve {
+        match self.levels.last().map(|level| &level.below) {
+            Some(Below::Inverse(_)) => CoarsestSolve::Inverse,
+            _ => CoarsestSolve::Smoothing,
+        }
+    }
+
+    /// Nodes of the level below which move a node, ascending; none on the coarsest level.
+    pub fn movers(&self, level: usize, node: usize) -> &[u32] {
+        match &self.levels[level].below {
+            Below::Level(transfer) => {
+                &transfer.prolongator.columns[transfer.prolongator.range(node)]
+            }
+            _ => &[],
+        }
+    }
+
+    /// Rows of the matrix of a level.
+    pub fn matrix(&self, level: usize, own: &[u32]) -> BlockList<6, 6> {
+        let matrix = &self.levels[level].matrix;
+        let identity =
+            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
+        let mut rows = BlockList::new();
+        for &node in own {
+            rows.push(node, identity);
+            for (column, block) in matrix.row(node as usize) {
+                rows.push(column as u32, transpose(&widen(block)));
+            }
+            rows.end_row();
+        }
+        rows
+    }
+
+    /// Rows of the prolongator from the level below; empty ones on the coarsest level.
+    pub fn prolongator(&self, level: usize, own: &[u32]) -> BlockList<6, 6> {
+        let mut rows = BlockList::new();
+        for &node in own {
+            if let Below::Level(transfer) = &self.levels[level].below {
+                for (column, block) in transfer.prolongator.row(node as usize) {
+                    rows.push(column as u32, widen(block));
+                }
+            }
+            rows.end_row();
+        }
+        rows
+    }
+
+    /// Rows of the pseudo-inverse of the coarsest matrix, if it is solved by that.
+    pub fn inverse(&self, own: &[u32]) -> BlockList<6, 6> {
+        let mut rows = BlockList::new();
+        let Some((Below::Inverse(dense), nodes)) = self
+            .levels
+            .last()
+            .map(|level| (&level.below, level.matrix.rows()))
+        else {
+            return rows;
+        };
+        for &node in own {
+            let line = |i: usize| dense.row(6 * node as usize + i, 6 * nodes);
+            for column in 0..nodes {
+                let block = std::array::from_fn(|i| {
+                    std::array::from_fn(|j| f64::from(line(i)[6 * column + j]))
+                });
+                rows.push(column as u32, block);
+            }
+            rows.end_row();
+        }
+        rows
+    }
+}
