@@ -222,3 +222,55 @@ fn a_block_that_is_not_positive_is_named() {
     let failure = Multigrid::new(case.rows(), &case.modes).map(|_| ());
     assert_eq!(failure, Err(MultigridFailure::NotPositive(3)));
 }
+
+#[test]
+fn parts_of_the_rows_make_the_levels_of_the_whole() {
+    let case = lattice(12);
+    let rows = case.modes.len() as u32;
+    let offset: Vec<u32> = (0..=rows).collect();
+    let means = |means: &MeanField| {
+        CoarseBasis::new(rows as usize, means.modes().to_vec(), |node| {
+            let motions = means.motions_of(node);
+            motions
+                .map(|(aggregate, block)| (aggregate as u32, small::widen(block)))
+                .collect()
+        })
+    };
+    let mut coarsening = FirstCoarsening::of(case.rows(), &offset, &case.modes, means).unwrap();
+    let nothing = crate::Lists::default();
+    let interface = InterfaceBlocks {
+        pattern: crate::InterfacePattern {
+            rows: &[],
+            columns: &nothing,
+        },
+        blocks: &[],
+    };
+    let mut levels_of = |cuts: &[u32]| {
+        let ranges = cuts.windows(2);
+        let parts = ranges.map(|cut| {
+            let own: Vec<u32> = (cut[0]..cut[1]).collect();
+            let rows = coarsening.factorised(case.rows(), interface, &own).unwrap();
+            coarsening.part(&rows, |_| {}).next
+        });
+        let parts: Vec<BlockList<6, 6>> = parts.collect();
+        coarsening.levels_below(&parts).unwrap()
+    };
+    let (whole, of_three) = (levels_of(&[0, rows]), levels_of(&[0, 300, 301, rows]));
+    let multigrid = Multigrid::new(case.rows(), &case.modes).unwrap();
+    let sizes: Vec<usize> = multigrid.level_sizes()[1..]
+        .iter()
+        .map(|size| size.nodes)
+        .collect();
+    for (level, &nodes) in sizes.iter().enumerate() {
+        let own: Vec<u32> = (0..nodes as u32).collect();
+        let [one, other] = [&whole, &of_three].map(|levels| levels.matrix(level, &own));
+        assert_eq!((one.rows(), &one.columns), (nodes, &other.columns));
+        let entries = std::iter::zip(one.blocks.as_flattened(), other.blocks.as_flattened());
+        for (one, other) in entries.flat_map(|(one, other)| std::iter::zip(one, other)) {
+            // Single precision.
+            assert!((one - other).abs() < 1e-4, "{one} and {other}");
+        }
+    }
+    assert_eq!(whole.count(), sizes.len());
+    assert_eq!(whole.coarsest_solve(), CoarsestSolve::Inverse);
+}

@@ -11,6 +11,8 @@ use crate::pieces::{Cells, field, field_of, field_of_one};
 
 /// Largest difference against the largest value; what the iterations leave is smaller.
 pub const EQUAL: f64 = 1e-9;
+/// Factor within which two differences have the same size.
+const SAME_SIZE: f64 = 4.0;
 /// Fields that are compared, of rock and of fractures.
 const ROCK: [&str; 2] = ["displacement", "stress"];
 const FRACTURES: [&str; 4] = ["aperture", "jump", "slip", "traction"];
@@ -115,8 +117,9 @@ fn is_equal(name: &str) {
     }
 }
 
-/// A scene whose walls slide or whose joint fills: where iterations end leaves more there. Ranks differ
-/// from the serial run by no more than its direct and its iterative solver do from each other.
+/// A scene whose walls slide or whose joint fills, where the end of the iterations leaves more than in
+/// others. The direct solver, which leaves nothing of a linear system, is compared with ranks and
+/// with the serial iterative solver: what both leave has the same cause, so the same size.
 fn is_as_equal_as_solvers(name: &str) {
     let scene = geometry(name);
     let folder = tempfile::tempdir().expect("a folder");
@@ -128,7 +131,7 @@ fn is_as_equal_as_solvers(name: &str) {
         let difference = compared(&scene, ranks, &mut reference);
         assert!(left < 1e-5, "{name}: solvers differ by {left:e}");
         assert!(
-            difference < EQUAL.max(left),
+            difference < EQUAL.max(SAME_SIZE * left),
             "{name} on {ranks} ranks: {difference:e}, solvers {left:e}"
         );
     }
