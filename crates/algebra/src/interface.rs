@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::block_rows::BlockRows;
 use crate::lists::Lists;
+use crate::vectors::add_at;
 
 /// Where an interface adds blocks to a matrix.
 #[derive(Debug, Clone, Copy)]
@@ -36,23 +37,24 @@ impl<'a> InterfaceBlocks<'a> {
 
     /// The product with `vector`, for each of its rows.
     pub fn products(&self, vector: &[DVec3]) -> Vec<DVec3> {
-        (0..self.pattern.rows.len())
-            .into_par_iter()
-            .map(|index| {
-                let blocks = self.row(index);
-                blocks
-                    .map(|(column, block)| *block * vector[column as usize])
-                    .sum()
-            })
-            .collect()
+        let rows = (0..self.pattern.rows.len()).into_par_iter();
+        rows.map(|index| self.product(index, vector)).collect()
+    }
+
+    fn product(&self, index: usize, vector: &[DVec3]) -> DVec3 {
+        let blocks = self.row(index);
+        blocks
+            .map(|(column, block)| *block * vector[column as usize])
+            .sum()
     }
 
     /// Adds the product with `vector` to `product`.
     pub fn add_product(&self, vector: &[DVec3], product: &mut [DVec3]) {
-        let sums = self.products(vector);
-        for (&row, sum) in self.pattern.rows.iter().zip(sums) {
-            product[row as usize] += sum;
-        }
+        add_at(
+            self.pattern.rows,
+            |index| self.product(index, vector),
+            product,
+        );
     }
 }
 

@@ -90,4 +90,4 @@ pub use interface::{FixedPart, InterfaceBlocks, InterfacePattern};
 pub use lists::{Lists, sum_up};
 pub use ownership::RowOwnership;
 pub use schur::SchurComplement;
-pub use vectors::{dot, largest, norm, trace};
+pub use vectors::{add_at, dot, largest, norm, trace};

@@ -62,6 +62,18 @@ pub(crate) fn add_shares(shares: &[f64], vectors: &[Vec<DVec3>], to: &mut [DVec3
     });
 }
 
+/// Adds `sum(i)` to the entry of a vector at each `rows[i]`; these ascend.
+pub fn add_at(rows: &[u32], sum: impl Fn(usize) -> DVec3 + Sync, to: &mut [DVec3]) {
+    let tasks = to.par_chunks_mut(PER_TASK).enumerate();
+    tasks.for_each(|(task, own)| {
+        let start = task * PER_TASK;
+        let before = |end: usize| rows.partition_point(|&row| (row as usize) < end);
+        for number in before(start)..before(start + own.len()) {
+            own[rows[number] as usize - start] += sum(number);
+        }
+    });
+}
+
 /// Sum of the diagonal of a block.
 pub fn trace(block: DMat3) -> f64 {
     block.x_axis.x + block.y_axis.y + block.z_axis.z

@@ -61,8 +61,9 @@ pub(crate) struct EncodedArray {
     components: u32,
     /// Smallest and largest value; none without values.
     range: Option<[String; 2]>,
-    /// Sizes and blocks in base64.
-    text: String,
+    /// Number and sizes of the blocks.
+    header: Vec<u8>,
+    blocks: Vec<Vec<u8>>,
 }
 
 impl EncodedArray {
@@ -89,7 +90,8 @@ impl EncodedArray {
             name,
             components,
             range: range(values),
-            text: text(size_of_val(values), &blocks),
+            header: header(size_of_val(values), &blocks),
+            blocks,
         })
     }
 
@@ -106,7 +108,10 @@ impl EncodedArray {
         if let Some([min, max]) = &self.range {
             write!(out, r#" RangeMin="{min}" RangeMax="{max}""#)?;
         }
-        write!(out, ">{}</DataArray>", self.text)
+        write!(out, ">")?;
+        write_base64(out, std::slice::from_ref(&self.header))?;
+        write_base64(out, &self.blocks)?;
+        write!(out, "</DataArray>")
     }
 }
 
@@ -131,15 +136,34 @@ fn deflated(bytes: &[u8], level: Compression) -> io::Result<Vec<u8>> {
 }
 
 /// Number of blocks, their size before compression, that of the last one if it is smaller, and the
-/// compressed size of each, as a base64 text of its own; then that of the blocks
+/// compressed size of each. They are a base64 text of their own before that of the blocks
 /// (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>).
-fn text(bytes: usize, blocks: &[Vec<u8>]) -> String {
+fn header(bytes: usize, blocks: &[Vec<u8>]) -> Vec<u8> {
     let sizes = blocks.iter().map(Vec::len);
     let header = [blocks.len(), BLOCK, bytes % BLOCK]
         .into_iter()
         .chain(sizes);
-    let header: Vec<u8> = header.flat_map(|n| (n as u64).to_le_bytes()).collect();
-    BASE64_STANDARD.encode(header) + &BASE64_STANDARD.encode(blocks.concat())
+    header.flat_map(|n| (n as u64).to_le_bytes()).collect()
+}
+
+/// Writes blocks, one behind the other, as one base64 text. Large ones would take as much memory
+/// again if they were made a text first.
+fn write_base64(out: &mut impl Write, blocks: &[Vec<u8>]) -> io::Result<()> {
+    let mut bytes = Vec::new();
+    let mut text = String::new();
+    for (number, block) in (1..).zip(blocks) {
+        bytes.extend_from_slice(block);
+        // Three bytes are four letters; only the end of all of them is filled up.
+        let ready = match number == blocks.len() {
+            true => bytes.len(),
+            false => bytes.len() - bytes.len() % 3,
+        };
+        text.clear();
+        BASE64_STANDARD.encode_string(&bytes[..ready], &mut text);
+        out.write_all(text.as_bytes())?;
+        bytes.drain(..ready);
+    }
+    Ok(())
 }
 
 /// The smallest and the largest of the numbers; what is not a number counts for neither.
@@ -163,9 +187,13 @@ mod tests {
 
     /// What the format says of an array, read back with the sizes its header names.
     fn decoded(array: &EncodedArray, blocks: usize) -> Vec<f64> {
+        let mut text = Vec::new();
+        for part in [std::slice::from_ref(&array.header), &array.blocks] {
+            write_base64(&mut text, part).expect("written");
+        }
         let header = (3 + blocks) * 8;
         let split = header.div_ceil(3) * 4;
-        let (head, data) = array.text.split_at(split);
+        let (head, data) = text.split_at(split);
         let sizes: Vec<usize> = BASE64_STANDARD
             .decode(head)
             .expect("a header")

@@ -6,7 +6,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 use kluft_io::{Fingerprint, write_atomically};
@@ -26,6 +26,8 @@ const HEAD: &[u8] = b"kluft checkpoint 11\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
+/// Bytes that are summed up and written at a time.
+const BUFFER: usize = 1 << 16;
 /// What helps against any checkpoint that does not serve.
 const AFRESH: &str = "run without --resume: it starts from the beginning";
 
@@ -109,30 +111,41 @@ impl<W: Write> Write for Summing<W> {
     }
 }
 
+impl<W: Write> Summing<W> {
+    /// Behind a buffer: postcard writes number by number, and a sum of few bytes at a time takes
+    /// long.
+    fn buffered(inner: W) -> BufWriter<Self> {
+        let summing = Self {
+            inner,
+            sum: XxHash3_128::new(),
+            error: None,
+        };
+        BufWriter::with_capacity(BUFFER, summing)
+    }
+}
+
 /// Writes a checkpoint, whole or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub fn write(path: &Path, identity: &Identity, progress: &Progress<'_>) -> Result<(), Defect> {
     write_atomically(path, |out| {
-        let mut out = Summing {
-            inner: out,
-            sum: XxHash3_128::new(),
-            error: None,
-        };
+        let mut out = Summing::buffered(out);
         out.write_all(HEAD)?;
         encode(identity, &mut out)?;
         encode(progress, &mut out)?;
-        let sum = out.sum.finish_128();
-        out.inner.write_all(&sum.to_le_bytes())
+        let summed = out.get_mut();
+        let sum = summed.sum.finish_128();
+        summed.inner.write_all(&sum.to_le_bytes())
     })
 }
 
-fn encode<W: Write>(value: &impl Serialize, out: &mut Summing<W>) -> io::Result<()> {
-    match postcard::to_io(value, &mut *out) {
-        Ok(_) => Ok(()),
-        Err(error) => Err(out.error.take().unwrap_or_else(|| io::Error::other(error))),
-    }
+fn encode<W: Write>(value: &impl Serialize, out: &mut BufWriter<Summing<W>>) -> io::Result<()> {
+    let encoded = postcard::to_io(value, &mut *out)
+        .map(drop)
+        .map_err(io::Error::other);
+    let written = encoded.and_then(|()| out.flush());
+    written.map_err(|error| out.get_mut().error.take().unwrap_or(error))
 }
 
 /// Whether a file begins as checkpoints of any format do.
@@ -365,11 +378,7 @@ mod tests {
                 Ok(())
             }
         }
-        let mut out = Summing {
-            inner: Full,
-            sum: XxHash3_128::new(),
-            error: None,
-        };
+        let mut out = Summing::buffered(Full);
         let error = encode(&identity(), &mut out).expect_err("full");
         assert_eq!(error.kind(), io::ErrorKind::StorageFull);
     }

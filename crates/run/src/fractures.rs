@@ -1,7 +1,8 @@
 //! Each fracture of a solution, summed up.
 
 use glam::DVec3;
-use kluft_solver::{FacetPoint, FacetResult, FacetState, Interface, Problem, Solution};
+use kluft_solver::{FacetPoint, FacetResult, FacetState, Interface, Lists, Problem, Solution};
+use rayon::prelude::*;
 
 use crate::spread::Spread;
 use crate::summary::{FractureSummary, Undetermined};
@@ -13,11 +14,17 @@ pub fn fractures(
     solution: &Solution,
     nodes: &[FacetResult],
 ) -> Vec<(String, FractureSummary)> {
-    let names = problem.mesh.fractures.iter().enumerate();
-    names
+    let names = &problem.mesh.fractures;
+    let facets = problem.mesh.facets.fracture.iter().copied();
+    let points = interface.points().iter().map(|point| point.fracture);
+    let facets = Lists::group(facets, names.len());
+    let points = Lists::group(points, names.len());
+    let numbered = names.par_iter().enumerate();
+    numbered
         .map(|(fracture, name)| {
-            let own = Fracture::of(interface, [&solution.facet_points, nodes], fracture as u32);
-            (name.clone(), own.summary(problem, fracture as u32))
+            let results = [&solution.facet_points, nodes];
+            let own = Fracture::of(interface, points.of(fracture), results);
+            (name.clone(), own.summary(problem, facets.of(fracture)))
         })
         .collect()
 }
@@ -42,12 +49,15 @@ struct Fracture<'a> {
 }
 
 impl<'a> Fracture<'a> {
-    fn of(interface: &'a Interface, [results, nodes]: [&'a [FacetResult]; 2], own: u32) -> Self {
-        let all = interface.points().iter().enumerate();
-        let points = all.filter(|(_, point)| point.fracture == own);
+    fn of(
+        interface: &'a Interface,
+        points: &[u32],
+        [results, nodes]: [&'a [FacetResult]; 2],
+    ) -> Self {
+        let points = points.iter().map(|&i| i as usize);
         let points: Vec<Point> = points
-            .map(|(i, at)| Point {
-                at,
+            .map(|i| Point {
+                at: &interface.points()[i],
                 result: &results[i],
                 wall: nodes.get(i).unwrap_or(&results[i]),
             })
@@ -78,12 +88,12 @@ impl<'a> Fracture<'a> {
         }
     }
 
-    fn summary(&self, problem: &Problem, own: u32) -> FractureSummary {
-        let facets = &problem.mesh.facets;
-        let of_fracture = (0..facets.elements.len()).filter(|&f| facets.fracture[f] == own);
+    /// `facets` are those of the fracture.
+    fn summary(&self, problem: &Problem, facets: &[u32]) -> FractureSummary {
+        let elements = &problem.mesh.facets.elements;
         let is_below = |i: usize| self.results[i].state == FacetState::BelowCutoff;
-        let below = of_fracture.clone();
-        let below = below.filter(|&facet| facets.elements.range(facet).any(is_below));
+        let below = facets.iter();
+        let below = below.filter(|&&facet| elements.range(facet as usize).any(is_below));
         let slip = self.spread(|result, _| result.slip.length());
         let open_area = self.area_where(|result| result.state == FacetState::Open);
         let forces = self.points.iter();
@@ -91,7 +101,7 @@ impl<'a> Fracture<'a> {
             .map(|point| point.at.area * point.result.traction)
             .sum();
         FractureSummary {
-            facets: of_fracture.count(),
+            facets: facets.len(),
             area: self.area,
             aperture: self.spread(|result, _| result.aperture),
             normal_traction: self.spread(|result, _| result.normal_traction),

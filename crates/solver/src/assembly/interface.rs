@@ -9,7 +9,7 @@
 //! jumps alone.
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists};
+use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists, add_at};
 use lie_core::{FacetQuadrature, FractureLaw};
 use rayon::prelude::*;
 
@@ -222,15 +222,26 @@ impl Interface {
     pub fn jumps(&self, unknowns: &[DVec3], load: &Load) -> Vec<DVec3> {
         let mut jumps: Vec<DVec3> = (0..self.points.len())
             .into_par_iter()
-            .map(|point| {
-                let terms = self.terms_of(point).iter();
-                terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum()
-            })
+            .map(|point| self.jump(point, unknowns))
             .collect();
         for entry in &self.prescribed {
             jumps[entry.point as usize] += load.factor(entry.case as usize) * entry.jump;
         }
         jumps
+    }
+
+    /// Openings of the facet points (m) by a change of the unknowns (m).
+    pub(crate) fn openings(&self, unknowns: &[DVec3]) -> Vec<f64> {
+        let points = self.points.par_iter().enumerate();
+        let opening =
+            |(number, point): (usize, &FacetPoint)| self.jump(number, unknowns).dot(point.normal);
+        points.map(opening).collect()
+    }
+
+    /// What the unknowns make of the jump at a facet point.
+    fn jump(&self, point: usize, unknowns: &[DVec3]) -> DVec3 {
+        let terms = self.terms_of(point).iter();
+        terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum()
     }
 
     /// By how much the prescribed displacements change the jumps from one load to another (m).
@@ -246,21 +257,16 @@ impl Interface {
     /// Adds `sign` times the forces (N) by which `tractions` (Pa) resist to the forces on all
     /// unknowns: `sum A J_i^T t`.
     pub fn add_forces(&self, tractions: &[DVec3], sign: f64, forces: &mut [DVec3]) {
-        let sums: Vec<DVec3> = (0..self.unknowns.len())
-            .into_par_iter()
-            .map(|row| {
-                let terms = self.terms_of_unknown.of(row).iter();
-                let force = |&term: &u32| {
-                    let point = self.point_of_term[term as usize] as usize;
-                    let factor = self.terms[term as usize].factor.transpose();
-                    self.points[point].area * (factor * tractions[point])
-                };
-                terms.map(force).sum()
-            })
-            .collect();
-        for (&unknown, sum) in self.unknowns.iter().zip(sums) {
-            forces[unknown as usize] += sign * sum;
-        }
+        let sum = |row: usize| {
+            let terms = self.terms_of_unknown.of(row).iter();
+            let force = |&term: &u32| {
+                let point = self.point_of_term[term as usize] as usize;
+                let factor = self.terms[term as usize].factor.transpose();
+                self.points[point].area * (factor * tractions[point])
+            };
+            sign * terms.map(force).sum::<DVec3>()
+        };
+        add_at(&self.unknowns, sum, forces);
     }
 
     /// Adds the forces (N) of a fluid with these pressures (Pa), one for each facet point, to those

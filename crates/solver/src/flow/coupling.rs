@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 use kluft_mesh::Defect;
 use lie_core::{ClosureKind, FacetQuadrature, HydraulicAperture};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::balance::{ConditionFlow, FlowBalance};
@@ -295,7 +296,7 @@ impl<'a> Coupling<'a> {
     /// Apertures to conduct with after an iteration that has led to `reached` from where fractures
     /// conducted with `before` (m).
     pub(crate) fn conducting(&self, before: &[f64], reached: &[f64]) -> Vec<f64> {
-        let pairs = before.iter().zip(reached);
+        let pairs = before.par_iter().zip(reached);
         pairs
             .map(|(before, reached)| reached.max(LEAST_SHARE * before))
             .collect()
@@ -353,7 +354,10 @@ impl<'a> Coupling<'a> {
         let missing = loaded.missing(&operator, potentials);
         let state = loaded.state(&operator, potentials.clone());
         FlowAtWalls {
-            slopes: (0..self.hydraulic.len()).map(slope).collect(),
+            slopes: (0..self.hydraulic.len())
+                .into_par_iter()
+                .map(slope)
+                .collect(),
             keeping,
             balance: state.balance,
             conditions: state.conditions,

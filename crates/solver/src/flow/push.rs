@@ -5,7 +5,7 @@
 //! own node alone, whatever the number of facets around it.
 
 use glam::DVec3;
-use kluft_algebra::Lists;
+use kluft_algebra::{Lists, add_at};
 use rayon::prelude::*;
 
 use super::wall_points::WallPoints;
@@ -42,7 +42,6 @@ impl Push {
 
     /// Adds the forces (N) under the pressures of the rows (Pa) to those on all unknowns.
     pub(super) fn add(&self, of_row: impl Fn(usize) -> f64 + Sync, forces: &mut [DVec3]) {
-        let numbers = (0..self.unknowns.len()).into_par_iter();
         let sum = |number: usize| {
             let range = self.rows.offset[number]..self.rows.offset[number + 1];
             let entries = self.rows.entries[range.clone()].iter();
@@ -51,10 +50,7 @@ impl Push {
                 .map(|(&row, force)| of_row(row as usize) * *force)
                 .sum()
         };
-        let sums: Vec<DVec3> = numbers.map(sum).collect();
-        for (&unknown, sum) in self.unknowns.iter().zip(sums) {
-            forces[unknown as usize] += sum;
-        }
+        add_at(&self.unknowns, sum, forces);
     }
 }
 

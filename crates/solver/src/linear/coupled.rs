@@ -22,7 +22,6 @@ use rayon::prelude::*;
 use crate::assembly::interface::Interface;
 use crate::flow::LinearisedFlow;
 use crate::linear::tangent_solver::TangentSolver;
-use crate::problem::Load;
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 240;
@@ -84,7 +83,7 @@ impl CoupledTangent<'_, '_> {
     fn compliance(&self) -> Vec<f64> {
         let mut forces = vec![DVec3::ZERO; self.fixed.matrix.rows()];
         self.flow.add_unit_push(&mut forces);
-        self.openings(&self.alone(&forces))
+        self.interface.openings(&self.alone(&forces))
     }
 
     /// What forces (N) move the unknowns by (m) if every one answers by itself; those away from
@@ -110,13 +109,6 @@ impl CoupledTangent<'_, '_> {
             moved[unknown as usize] = answer;
         }
         moved
-    }
-
-    /// Openings of the facet points (m) by a change of the unknowns (m).
-    fn openings(&self, unknowns: &[DVec3]) -> Vec<f64> {
-        let jumps = self.interface.jumps(unknowns, &Load::NONE);
-        let points = self.interface.points.iter().zip(jumps);
-        points.map(|(point, jump)| jump.dot(point.normal)).collect()
     }
 
     /// Solves, preconditioned by a solver for the stiffness and by the factor of
@@ -146,8 +138,10 @@ impl CoupledTangent<'_, '_> {
         let report = gmres(
             |vector, image| {
                 let (unknowns, pressures) = packing.split(vector);
-                let (forces, rates) = self.product(unknowns, &pressures);
-                image.copy_from_slice(&packing.scaled(&forces, &rates));
+                let (forces, rest) = image.split_at_mut(packing.unknowns);
+                let rates = self.product(unknowns, &pressures, forces);
+                pack_scalars(&rates, rest);
+                packing.scale(image);
             },
             |residual, correction| {
                 let (forces, missing) = packing.unscaled(residual);
@@ -198,7 +192,8 @@ impl CoupledTangent<'_, '_> {
         factor: Option<&ScalarCholesky>,
         rhs: &CoupledRhs<'_>,
     ) -> Result<[f64; 2], LinearFailure> {
-        let openings = self.openings(&inner.precondition(self.fixed, rhs.forces)?);
+        let moved = inner.precondition(self.fixed, rhs.forces)?;
+        let openings = self.interface.openings(&moved);
         let rates = self.flow.answer(&openings, &vec![0.0; rhs.missing.len()]);
         let pressures = factor.map_or_else(Vec::new, |factor| factor.solve(rhs.missing));
         let mut push = vec![DVec3::ZERO; rhs.forces.len()];
@@ -211,12 +206,11 @@ impl CoupledTangent<'_, '_> {
     }
 
     /// Forces (N) and rates (m^3/s) that changes of the unknowns (m) and pressures (Pa) ask for.
-    fn product(&self, unknowns: &[DVec3], pressures: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
-        let mut forces = vec![DVec3::ZERO; unknowns.len()];
-        self.fixed.multiply(self.stiffness, unknowns, &mut forces);
-        self.flow.add_push(pressures, -1.0, &mut forces);
-        let rates = self.flow.answer(&self.openings(unknowns), pressures);
-        (forces, rates)
+    fn product(&self, unknowns: &[DVec3], pressures: &[f64], forces: &mut [DVec3]) -> Vec<f64> {
+        self.fixed.multiply(self.stiffness, unknowns, forces);
+        self.flow.add_push(pressures, -1.0, forces);
+        let openings = self.interface.openings(unknowns);
+        self.flow.answer(&openings, pressures)
     }
 
     fn precondition(
@@ -245,24 +239,32 @@ struct Packing {
     scales: [f64; 2],
 }
 
+fn pack_scalars(scalars: &[f64], blocks: &mut [DVec3]) {
+    for (block, three) in blocks.iter_mut().zip(scalars.chunks(3)) {
+        let of = |index: usize| three.get(index).copied().unwrap_or(0.0);
+        *block = DVec3::new(of(0), of(1), of(2));
+    }
+}
+
 impl Packing {
     fn pack(&self, vectors: &[DVec3], scalars: &[f64], packed: &mut [DVec3]) {
         let (first, rest) = packed.split_at_mut(self.unknowns);
         first.copy_from_slice(vectors);
-        for (block, three) in rest.iter_mut().zip(scalars.chunks(3)) {
-            let of = |index: usize| three.get(index).copied().unwrap_or(0.0);
-            *block = DVec3::new(of(0), of(1), of(2));
-        }
+        pack_scalars(scalars, rest);
     }
 
     fn scaled(&self, forces: &[DVec3], rates: &[f64]) -> Vec<DVec3> {
         let mut packed = vec![DVec3::ZERO; self.unknowns + self.pressures.div_ceil(3)];
         self.pack(forces, rates, &mut packed);
+        self.scale(&mut packed);
+        packed
+    }
+
+    fn scale(&self, packed: &mut [DVec3]) {
         let (first, rest) = packed.split_at_mut(self.unknowns);
         let [of_forces, of_rates] = self.scales;
         first.par_iter_mut().for_each(|force| *force *= of_forces);
         rest.iter_mut().for_each(|rate| *rate *= of_rates);
-        packed
     }
 
     fn split<'v>(&self, packed: &'v [DVec3]) -> (&'v [DVec3], Vec<f64>) {

@@ -8,6 +8,7 @@ use kluft_algebra::{
     ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks, LinearFailure,
     conjugate_gradients, norm, trace,
 };
+use rayon::prelude::*;
 
 use crate::linear::split_aggregates::SplitAggregates;
 use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver};
@@ -91,7 +92,7 @@ impl Iterative {
 /// another one that is much like it.
 pub fn serves(fixed: FixedPart<'_>, built_for: &[DMat3], stiffness: &[DMat3]) -> bool {
     let FixedPart { matrix, interface } = fixed;
-    let numbered = interface.rows.iter().enumerate();
+    let numbered = interface.rows.par_iter().enumerate();
     let changed = numbered.filter(|&(row, unknown)| {
         let columns = interface.columns.of(row);
         let place = columns.partition_point(|column| column < unknown);

@@ -137,17 +137,12 @@ impl Path {
         fluid::set_potentials(state, potentials);
         state.load = continued;
         let after = interface.jumps(&state.unknowns, &state.load);
-        for (index, point) in interface.points.iter().enumerate() {
+        let points = interface.points.par_iter().zip(&mut state.facet_points);
+        points.enumerate().for_each(|(index, (point, state))| {
             let moved = after[index] - before[index];
-            let state = &mut state.facet_points[index];
-            follow(
-                system.law(point),
-                point.normal,
-                state,
-                moved,
-                tractions[index],
-            );
-        }
+            let law = system.law(point);
+            follow(law, point.normal, state, moved, tractions[index]);
+        });
         fluid::conduct(system, state);
         weights.former.len()
     }

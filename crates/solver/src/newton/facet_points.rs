@@ -46,18 +46,18 @@ impl LastTrial {
 pub(super) fn move_supports(system: &System<'_>, state: &mut State, load: &Load) {
     let jumps = interface(system).prescribed_change(&state.load, load);
     state.load.clone_from(load);
-    for (jump, state) in jumps.into_iter().zip(&mut state.facet_points) {
-        state.jump_residual += jump;
-    }
+    let pairs = jumps.par_iter().zip(&mut state.facet_points);
+    pairs.for_each(|(jump, state)| state.jump_residual += *jump);
 }
 
 /// Makes a converged state the one that the next increment starts from.
 pub(super) fn commit(system: &System<'_>, state: &mut State) {
-    let points = &interface(system).points;
-    for (point, state) in points.iter().zip(&mut state.facet_points) {
+    let points = interface(system).points.par_iter();
+    let pairs = points.zip(&mut state.facet_points);
+    pairs.for_each(|(point, state)| {
         let law = system.law(point);
         law.commit(&mut state.joint, &mut state.history);
-    }
+    });
 }
 
 /// What stands for the laws in a linear solve.
@@ -88,16 +88,15 @@ pub(super) fn linearised(system: &System<'_>, state: &State, by: Linearisation) 
 
 /// Tangents of the laws at the state (Pa/m).
 pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
-    let points = interface(system).points.par_iter();
-    let all: Vec<Tangent> = points
-        .zip(&state.facet_points)
-        .map(|(point, state)| tangent(system.law(point), point, state))
-        .collect();
-    let exact: Vec<DMat3> = all.iter().map(|tangent| tangent.exact).collect();
+    let points = interface(system).points.par_iter().zip(&state.facet_points);
+    let tangents = points.map(|(point, state)| tangent(system.law(point), point, state));
     if system.is_smooth() {
+        let exact: Vec<DMat3> = tangents.map(|tangent| tangent.exact).collect();
         return exact.into();
     }
-    let positive: Vec<DMat3> = all.iter().map(|tangent| tangent.positive).collect();
+    let (exact, positive): (Vec<DMat3>, Vec<DMat3>) = tangents
+        .map(|tangent| (tangent.exact, tangent.positive))
+        .unzip();
     Tangents {
         positive: (positive != exact).then_some(positive),
         exact,

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::facet_points::interface;
 use crate::flow::{Coupling, FlowAtWalls, FlowIncrement, FluidState, LinearisedFlow};
@@ -35,20 +36,33 @@ pub(super) struct FlowIterate {
 /// without a flow that follows the walls.
 pub(super) fn begin(system: &System<'_>, from: &State, guess: &mut State) -> Option<FlowIterate> {
     let coupling = system.coupling()?;
-    let fluid = guess.fluid.as_mut()?;
-    let increment = coupling.increment(fluid, &from.load, &guess.load);
-    if let Some(steady) = coupling.steady(fluid, &guess.load) {
-        fluid.potentials = steady;
-    }
+    let mut fluid = guess.fluid.take()?;
+    let (increment, at) = first(system, coupling, [from, guess], &mut fluid);
+    guess.fluid = Some(fluid);
     let start = from.fluid.as_ref();
     let start = start.map_or_else(Vec::new, |fluid| coupling.pressures(fluid, &from.load));
-    let at = at(system, coupling, guess, &increment)?;
     Some(FlowIterate {
         increment: Arc::new(increment),
         start: Arc::new(start),
         at: Arc::new(at),
         change: 0.0,
     })
+}
+
+/// The increment between two states, and where the flow of the second one stands, whose fluid is
+/// given.
+fn first(
+    system: &System<'_>,
+    coupling: &Coupling<'_>,
+    [from, guess]: [&State; 2],
+    fluid: &mut FluidState,
+) -> (FlowIncrement, FlowAtWalls) {
+    let increment = coupling.increment(fluid, &from.load, &guess.load);
+    if let Some(steady) = coupling.steady(fluid, &guess.load) {
+        fluid.potentials = steady;
+    }
+    let at = coupling.at(fluid, &apertures(system, guess), (&increment, &guess.load));
+    (increment, at)
 }
 
 /// Moves the fluid of a state to another load: pressures stay, but those that are given.
@@ -76,42 +90,38 @@ pub(super) fn set_potentials(state: &mut State, [potentials, references]: [Vec<f
 /// Lets the fluid of a state conduct where the walls are.
 pub(super) fn conduct(system: &System<'_>, state: &mut State) {
     let reached = apertures(system, state);
+    conduct_at(system, state, &reached);
+}
+
+fn conduct_at(system: &System<'_>, state: &mut State, reached: &[f64]) {
     if let Some((coupling, fluid)) = system.coupling().zip(state.fluid.as_mut()) {
-        fluid.apertures = coupling.conducting(&fluid.apertures, &reached);
+        fluid.apertures = coupling.conducting(&fluid.apertures, reached);
     }
 }
 
 /// Mass error of a guess for an increment from a state.
 pub(super) fn mass_error(system: &System<'_>, from: &State, guess: &State) -> f64 {
-    let begun = begin(system, from, &mut guess.clone());
-    begun.map_or(f64::INFINITY, |flow| flow.at.balance.mass_error)
+    let parts = system.coupling().zip(guess.fluid.clone());
+    parts.map_or(f64::INFINITY, |(coupling, mut fluid)| {
+        let (_, at) = first(system, coupling, [from, guess], &mut fluid);
+        at.balance.mass_error
+    })
 }
 
 /// Apertures at the jumps of the walls (m).
 fn apertures(system: &System<'_>, state: &State) -> Vec<f64> {
-    let points = interface(system).points.iter().zip(&state.facet_points);
+    let points = interface(system).points.par_iter().zip(&state.facet_points);
     points
         .map(|(point, state)| state.aperture(point.normal))
         .collect()
-}
-
-/// The flow at a state.
-fn at(
-    system: &System<'_>,
-    coupling: &Coupling<'_>,
-    state: &State,
-    increment: &FlowIncrement,
-) -> Option<FlowAtWalls> {
-    let fluid = state.fluid.as_ref()?;
-    let storing = apertures(system, state);
-    Some(coupling.at(fluid, &storing, (increment, &state.load)))
 }
 
 impl FlowIterate {
     /// Adds changes of the pressures that are not given (Pa), and follows the walls of a state to
     /// where they are.
     pub(super) fn follow(&mut self, system: &System<'_>, state: &mut State, changes: &[f64]) {
-        conduct(system, state);
+        let reached = apertures(system, state);
+        conduct_at(system, state, &reached);
         let (Some(coupling), Some(fluid)) = (system.coupling(), state.fluid.as_mut()) else {
             return;
         };
@@ -119,9 +129,8 @@ impl FlowIterate {
         self.change = changes
             .iter()
             .fold(0.0, |most, change| most.max(change.abs()));
-        if let Some(at) = at(system, coupling, state, &self.increment) {
-            self.at = Arc::new(at);
-        }
+        let at = coupling.at(fluid, &reached, (&self.increment, &state.load));
+        self.at = Arc::new(at);
     }
 
     /// The flow at the iterate, linearised.
@@ -159,10 +168,9 @@ pub(super) fn total_tractions(
 ) -> Vec<DVec3> {
     if let (Some(coupling), Some(fluid)) = (system.coupling(), &state.fluid) {
         let pressures = coupling.point_pressures(fluid, &state.load);
-        let points = interface(system).points.iter().zip(pressures);
-        for (traction, (point, pressure)) in tractions.iter_mut().zip(points) {
-            *traction -= pressure * point.normal;
-        }
+        let points = interface(system).points.par_iter().zip(&pressures);
+        let pairs = tractions.par_iter_mut().zip(points);
+        pairs.for_each(|(traction, (point, pressure))| *traction -= *pressure * point.normal);
     }
     tractions
 }

@@ -18,8 +18,7 @@ use crate::system::{State, StateScales, System};
 impl Newton {
     /// The iterate that an increment from `state` to `load` begins with.
     pub(super) fn predict(&mut self, system: &System<'_>, state: &State, load: &Load) -> Iterate {
-        let mut from = state.clone();
-        system.restate(&mut from);
+        let from = system.restated(state);
         let recycled = self.recycled.as_mut();
         let guess = recycled.and_then(|space| space.solve(system, &from, load));
         let (mut state, last_trials, guess) = match guess {
@@ -62,14 +61,14 @@ impl Newton {
     /// ways to continue the path the one with the least mass error is taken, if none but the
     /// present state. Where there is no path a joint may open wide.
     fn continued(&self, system: &System<'_>, from: &State, load: &Load) -> State {
-        let guess = |most: usize| {
-            let mut state = from.clone();
-            let used = self.path.continue_through(system, &mut state, load, most);
-            fluid::move_load(system, &mut state, load);
-            facet_points::move_supports(system, &mut state, load);
-            (state, used)
+        let guess = |state: &mut State, most: usize| {
+            let used = self.path.continue_through(system, state, load, most);
+            fluid::move_load(system, state, load);
+            facet_points::move_supports(system, state, load);
+            used
         };
-        let (mut best, mut most) = guess(self.path.len());
+        let mut best = from.clone();
+        let mut most = guess(&mut best, self.path.len());
         if system.coupling().is_none() {
             return best;
         }
@@ -78,15 +77,19 @@ impl Newton {
         }
         let error = |state: &State| fluid::mass_error(system, from, state);
         let mut least = error(&best);
-        while most > 0 {
-            let (other, used) = guess(most - 1);
+        let mut other = from.clone();
+        loop {
+            most = guess(&mut other, most - 1);
             let own = error(&other);
             if own < least {
-                (best, least) = (other, own);
+                std::mem::swap(&mut best, &mut other);
+                least = own;
             }
-            most = used;
+            if most == 0 {
+                return best;
+            }
+            other.copy_from(from);
         }
-        best
     }
 
     /// The last iteration of a guess in the recycled space, if it leaves nothing to do: no more

@@ -6,6 +6,8 @@ mod spread_displacements;
 mod stage;
 mod state;
 
+use std::borrow::Cow;
+
 use glam::{DMat3, DVec3};
 use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, LinearFailure, norm};
 use kluft_mesh::{Defect, Mesh};
@@ -200,12 +202,18 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Restates a state that was reached with other laws: apertures stay, the rest follows from the
+    /// A state that was reached with other laws, restated: apertures stay, the rest follows from the
     /// jumps and the present laws.
-    pub(crate) fn restate(&self, state: &mut State) {
+    pub(crate) fn restated<'s>(&self, state: &'s State) -> Cow<'s, State> {
         if state.generation == self.generation {
-            return;
+            return Cow::Borrowed(state);
         }
+        let mut restated = state.clone();
+        self.restate(&mut restated);
+        Cow::Owned(restated)
+    }
+
+    fn restate(&self, state: &mut State) {
         state.generation = self.generation;
         let interface = &self.discretisation.interface;
         let jumps = self.seen_jumps(state);

@@ -41,6 +41,18 @@ pub(crate) struct StateScales {
     pub(crate) pressure: f64,
 }
 
+impl State {
+    /// Becomes a copy of another state, in the memory that it has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.load.clone_from(&other.load);
+        self.unknowns.clone_from(&other.unknowns);
+        self.facet_points.clone_from(&other.facet_points);
+        self.fluid.clone_from(&other.fluid);
+        self.reached = other.reached;
+        self.generation = other.generation;
+    }
+}
+
 impl StateScales {
     /// The larger of each, where the other counts with a `share`.
     pub(crate) fn or_share(self, share: f64, other: Self) -> Self {
