@@ -154,9 +154,16 @@ fn what_acts(entry: &BoundaryEntry) -> String {
     let support = entry.support.map(|support| match support {
         Support::Symmetry => "symmetry".to_owned(),
         Support::Displacement(components) => {
-            let named = ["x", "y", "z"].into_iter().zip(components);
-            let parts = named.filter_map(|(axis, value)| Some(format!("{axis} = {}", value?)));
-            format!("displacement {} m", parts.collect::<Vec<_>>().join(", "))
+            let varies = |axis: usize| {
+                let mut fields = entry.displacement_fields.iter();
+                fields.find(|(own, _)| *own == axis).map(|(_, field)| field)
+            };
+            let named = ["x", "y", "z"].into_iter().zip(components).enumerate();
+            let parts = named.filter_map(|(index, (axis, value))| match varies(index) {
+                Some(field) => Some(format!("{axis} by {}", field.origin)),
+                None => Some(format!("{axis} = {} m", value?)),
+            });
+            format!("displacement {}", parts.collect::<Vec<_>>().join(", "))
         }
     });
     let springs = entry.springs.as_ref().map(|springs| {

@@ -130,12 +130,14 @@ fn prescribes_displacement(problem: &Problem) -> bool {
         }
         _ => None,
     });
+    let varying = problem.varying.displacements.iter();
+    let mut varying = varying.map(|own| schedule.largest_factor(own.case));
     let fixed = problem.fixed_points.iter().enumerate();
     let fixed = fixed.map(|(index, point)| {
         let case = schedule.cases.of_fixed_point(index);
         (case, point.displacement)
     });
-    of_conditions.chain(fixed).any(moves)
+    varying.any(|factor| factor != 0.0) || of_conditions.chain(fixed).any(moves)
 }
 
 /// Largest compression (Pa) beside a loaded face: for a traction with normal part `s` and

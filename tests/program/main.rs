@@ -6,6 +6,7 @@ mod bad_input;
 mod book;
 mod boreholes;
 mod coupled_flow;
+mod displacements;
 mod documents;
 mod doubled;
 mod doubts;

@@ -60,7 +60,7 @@ fn kill(mut child: Child) -> bool {
 }
 
 /// Resumes where gmsh is not to be found.
-fn resume_without_gmsh(workshop: &Workshop, out: &str) -> Run {
+pub fn resume_without_gmsh(workshop: &Workshop, out: &str) -> Run {
     let environment = [("KLUFT_GMSH", "/no/gmsh/here")];
     kluft_with(&arguments(workshop, out, &["--resume", "-v"]), &environment)
 }
@@ -87,7 +87,7 @@ pub fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
 }
 
 /// Starts a run and kills it as soon as there is a checkpoint.
-fn kill_after_a_step(workshop: &Workshop) {
+pub fn kill_after_a_step(workshop: &Workshop) {
     let child = start(workshop, "out", &[]);
     let checkpoint = workshop.path("out/resume.bin");
     let begin = Instant::now();

@@ -138,7 +138,9 @@ fn nothing_acts(problem: &Problem) -> bool {
         .iter()
         .any(|fracture| fracture.fluid_pressure != 0.0);
     let varying = &problem.varying;
-    let varies = !varying.loads.is_empty() || !varying.pressures.is_empty();
+    let varies = !varying.loads.is_empty()
+        || !varying.pressures.is_empty()
+        || !varying.displacements.is_empty();
     let fixed = problem
         .fixed_points
         .iter()

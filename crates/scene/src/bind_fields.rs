@@ -5,6 +5,7 @@ use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{LawParameter, Problem, Schedule, VaryingLaw, VaryingLoad, VaryingPressure};
 use lie_core::{ClosureKind, FacetQuadrature, FractureLaw, Tension, facet_points};
 
+use crate::bind_displacements::bind_displacements;
 use crate::cases::Bound;
 use crate::conditions::FractureEntry;
 use crate::field::FieldEntry;
@@ -32,6 +33,7 @@ pub(crate) fn bind_fields(
     }
     let mut conditions = bound.boundaries.iter().enumerate();
     conditions.try_for_each(|(index, _)| bind_load(problem, bound, index, &mut look));
+    bind_displacements(problem, bound, &mut look);
     look_at_springs(problem, bound, &mut look);
     bind_rocks(problem, &mut look);
     bind_initial_stress(problem, &mut look);
@@ -262,7 +264,7 @@ fn places_of_boundary(mesh: &Mesh, boundary: usize) -> Vec<DVec3> {
 /// The times for which a value is taken, each with its load case. One that changes with time is
 /// what it is at the end of each load step, and linear between: each end is a load case that acts
 /// there alone.
-fn cases(
+pub(crate) fn cases(
     problem: &mut Problem,
     (in_time, own): (bool, usize),
     history: &Option<LoadHistory>,

@@ -1,9 +1,9 @@
 //! Conditions with the same history are one load case.
 
 use kluft_keys::section_head;
-use kluft_solver::{Cases, Load, Schedule, Step, Support};
+use kluft_solver::{Cases, Load, Schedule, Step};
 
-use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, is_moved};
+use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry};
 use crate::fluid::SourceEntry;
 use crate::history::{LoadHistory, StepEnd, Timetable};
 use crate::scene::{Named, Scene};
@@ -68,13 +68,12 @@ impl Found {
     fn collect(&mut self, scene: &Scene, bound: &Bound<'_>) -> Cases {
         let conditions = bound.boundaries.iter().map(|entry| {
             let value = &entry.value;
-            let moves = matches!(value.support, Some(Support::Displacement(d)) if is_moved(&d));
             let name = section_head("boundary", &entry.name);
             let is_loaded = match &value.load {
                 Some(LoadEntry::Varying(load)) => !load.load.depends_on_time(),
                 load => load.is_some(),
             };
-            let acts = is_loaded || moves || value.fluid.is_some();
+            let acts = is_loaded || value.moves() || value.fluid.is_some();
             self.case(acts, &value.history, name)
         });
         let conditions = conditions.collect();
@@ -89,8 +88,11 @@ impl Found {
         });
         let fractures = fractures.collect();
         let fixed_points = bound.fixed_points.iter().map(|entry| {
-            let acts = is_moved(&entry.value.displacement);
-            self.case(acts, &entry.value.history, entry.name.clone())
+            self.case(
+                entry.value.moves(),
+                &entry.value.history,
+                entry.name.clone(),
+            )
         });
         let fixed_points = fixed_points.collect();
         let sources = bound.sources.iter();

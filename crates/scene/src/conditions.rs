@@ -22,8 +22,10 @@ pub struct BoundaryEntry {
     pub place: Option<SurfacePlace>,
     /// Its load.
     pub load: Option<LoadEntry>,
-    /// Its support.
+    /// Its support; displacements that vary are 0 in it.
     pub support: Option<Support>,
+    /// Components of its displacement that vary, by axis.
+    pub displacement_fields: Vec<(usize, FieldEntry)>,
     /// Its springs.
     pub springs: Option<SpringEntry>,
     /// What drives the fluid there.
@@ -78,12 +80,21 @@ impl BoundaryEntry {
         }
     }
 
-    /// Values of its load and its springs that vary.
+    /// All of its values that vary.
     pub(crate) fn fields(&self) -> impl Iterator<Item = &FieldEntry> {
         let load = self.varying_load().map_or(&[][..], |load| &load.fields);
+        let displacement = self.displacement_fields.iter().map(|(_, field)| field);
         load.iter()
+            .chain(displacement)
             .chain(self.spring_fields())
             .chain(&self.fluid_pressure.field)
+    }
+
+    /// Whether it prescribes displacements that grow with its load case: other than 0, and without
+    /// the time in them.
+    pub(crate) fn moves(&self) -> bool {
+        let plain = matches!(self.support, Some(Support::Displacement(own)) if is_moved(&own));
+        plain || grows(&self.displacement_fields)
     }
 
     /// Values of its springs that vary.
@@ -142,20 +153,30 @@ pub struct BodyEntry {
 pub struct FixedPointEntry {
     /// Where the node is (m).
     pub at: DVec3,
-    /// Prescribed components (m).
+    /// Prescribed components (m); 0 for those that vary.
     pub displacement: [Option<f64>; 3],
+    /// Components that vary, by axis.
+    pub fields: Vec<(usize, FieldEntry)>,
     /// How they change with time.
     pub history: Option<LoadHistory>,
+}
+
+impl FixedPointEntry {
+    /// Whether it prescribes displacements that grow with its load case: other than 0, and without
+    /// the time in them.
+    pub(crate) fn moves(&self) -> bool {
+        is_moved(&self.displacement) || grows(&self.fields)
+    }
 }
 
 /// Reads what acts on a part of the outer surface; rigid rock has no use for loads and supports.
 pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Option<BoundaryEntry> {
     let (fluid, fluid_pressure) = read_boundary_fluid(section, setting);
-    let (load, support, springs) = match setting.is_rigid() {
-        true => (None, None, None),
+    let (load, held, springs) = match setting.is_rigid() {
+        true => (None, Held::default(), None),
         false => (
             read_load(section, setting),
-            read_support(section),
+            read_support(section, setting.clock),
             read_springs(section),
         ),
     };
@@ -182,7 +203,8 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
              remove the section",
         );
     }
-    let moves = matches!(support, Some(Support::Displacement(components)) if is_moved(&components));
+    let moves = matches!(held.support, Some(Support::Displacement(own)) if is_moved(&own));
+    let moves = moves || !held.fields.is_empty();
     let scaled = Scaled {
         is_there: load.is_some() || moves || fluid.is_some(),
         what: "a traction, a pressure, a displacement other than 0 or a fluid_pressure",
@@ -190,7 +212,8 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
     Some(BoundaryEntry {
         place: read_place(section),
         load,
-        support,
+        support: held.support,
+        displacement_fields: held.fields,
         springs,
         fluid,
         fluid_pressure,
@@ -253,21 +276,35 @@ fn traction_of(components: [Value; 3]) -> LoadEntry {
     }))
 }
 
-fn read_support(section: &Section<'_, '_>) -> Option<Support> {
+/// A support, and which of its components vary.
+#[derive(Default)]
+struct Held {
+    support: Option<Support>,
+    fields: Vec<(usize, FieldEntry)>,
+}
+
+fn read_support(section: &Section<'_, '_>, clock: Clock) -> Held {
     let symmetry = section.flag("symmetry");
-    let displacement = section.section("displacement").map(read_components);
-    match (symmetry, displacement) {
-        (Some(true), None) => Some(Support::Symmetry),
-        (Some(true), Some(_)) => {
-            let remedy = "keep one; symmetry already holds the normal direction";
-            section.refuse(
-                "symmetry",
-                "both symmetry and displacement are given".into(),
-                remedy,
-            );
-            None
-        }
-        (_, components) => components.map(Support::Displacement),
+    let displacement = section.section("displacement");
+    let displacement = displacement.map(|own| read_components(own, clock));
+    if symmetry == Some(true) && displacement.is_some() {
+        let remedy = "keep one; symmetry already holds the normal direction";
+        section.refuse(
+            "symmetry",
+            "both symmetry and displacement are given".into(),
+            remedy,
+        );
+        return Held::default();
+    }
+    match displacement {
+        Some((components, fields)) => Held {
+            support: Some(Support::Displacement(components)),
+            fields,
+        },
+        None => Held {
+            support: (symmetry == Some(true)).then_some(Support::Symmetry),
+            fields: Vec::new(),
+        },
     }
 }
 
@@ -317,9 +354,25 @@ fn field_of(value: Value) -> (Field, Option<FieldEntry>) {
     }
 }
 
-fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
-    let components = ["x", "y", "z"].map(|axis| section.number(axis));
-    if !["x", "y", "z"].into_iter().any(|axis| section.has(axis)) {
+/// Prescribed components (m), 0 where they vary, and those that vary.
+fn read_components(
+    section: Section<'_, '_>,
+    clock: Clock,
+) -> ([Option<f64>; 3], Vec<(usize, FieldEntry)>) {
+    let axes = ["x", "y", "z"];
+    let mut components = [None; 3];
+    let mut fields = Vec::new();
+    for (axis, key) in axes.into_iter().enumerate() {
+        components[axis] = match read_value(&section, key, InTime::By(clock)) {
+            Some(Value::Number(number)) => Some(number),
+            Some(Value::Varying(entry)) => {
+                fields.push((axis, *entry));
+                Some(0.0)
+            }
+            None => None,
+        };
+    }
+    if !axes.into_iter().any(|axis| section.has(axis)) {
         section.refuse(
             "x",
             format!("{} names no component", section.title),
@@ -327,7 +380,7 @@ fn read_components(section: Section<'_, '_>) -> [Option<f64>; 3] {
         );
     }
     section.finish();
-    components
+    (components, fields)
 }
 
 /// Reads a node held by itself.
@@ -335,15 +388,20 @@ pub(crate) fn read_fixed_point(section: &Section<'_, '_>, clock: Clock) -> Optio
     section.require("at");
     section.require("displacement");
     let at = section.vector("at");
-    let displacement = section.section("displacement").map(read_components);
+    let displacement = section.section("displacement");
+    let displacement = displacement.map(|own| read_components(own, clock));
+    let moved = displacement.as_ref();
+    let moved = moved.map(|(components, fields)| is_moved(components) || !fields.is_empty());
     let scaled = Scaled {
-        is_there: displacement.is_none_or(|components| is_moved(&components)),
+        is_there: moved.unwrap_or(true),
         what: "a displacement other than 0",
     };
     let history = read_history(section, clock, scaled);
+    let (displacement, fields) = displacement?;
     Some(FixedPointEntry {
         at: at?.into(),
-        displacement: displacement?,
+        displacement,
+        fields,
         history,
     })
 }
@@ -367,7 +425,13 @@ pub(crate) fn read_body(root: &Section<'_, '_>, clock: Clock) -> BodyEntry {
     }
 }
 
+/// Whether any value has no time in it, and so grows with a load case.
+fn grows(fields: &[(usize, FieldEntry)]) -> bool {
+    let mut fields = fields.iter();
+    fields.any(|(_, entry)| !entry.field.depends_on_time())
+}
+
 /// Whether any component is held elsewhere than where it is (m).
-pub(crate) fn is_moved(components: &[Option<f64>; 3]) -> bool {
+fn is_moved(components: &[Option<f64>; 3]) -> bool {
     components.iter().flatten().any(|value| *value != 0.0)
 }

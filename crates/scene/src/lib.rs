@@ -7,6 +7,7 @@
 mod anisotropy;
 mod bind;
 mod bind_conduits;
+mod bind_displacements;
 mod bind_fields;
 mod bind_flow;
 mod bind_probes;

@@ -178,6 +178,9 @@ impl Scene {
             .boundaries
             .iter()
             .flat_map(|entry| entry.value.fields());
+        let fixed = self.fixed_points.iter();
+        let fixed = fixed.flat_map(|entry| &entry.value.fields);
+        let loads = loads.chain(fixed.map(|(_, field)| field));
         let rocks = self.rocks.iter().flat_map(|entry| &entry.value.fields);
         let fractures = rocks.map(|(_, field)| field).chain(fractures);
         let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);

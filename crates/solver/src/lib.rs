@@ -64,9 +64,9 @@ pub use newton::{
 };
 pub use problem::{
     Cases, Condition, Conduit, Field, FixedPoint, Flow, FlowCondition, FlowDrive, FlowPlace, Fluid,
-    Fracture, InitialStress, LawParameter, Leakoff, LineShare, Load, LoadField, Problem, Profile,
-    RockParameter, Schedule, Spring, SpringStiffness, Step, Support, SurfaceLoad, Varying,
-    VaryingLaw, VaryingLoad, VaryingPressure,
+    Fracture, HeldPart, InitialStress, LawParameter, Leakoff, LineShare, Load, LoadField, Problem,
+    Profile, RockParameter, Schedule, Spring, SpringStiffness, Step, Support, SurfaceLoad, Varying,
+    VaryingDisplacement, VaryingLaw, VaryingLoad, VaryingPressure,
 };
 pub use resultants::{BlockMotion, SurfaceResultant, block_motions, surface_resultants};
 pub use sample::{InCell, RockSample, locate, principal, sample, surface_samples};

@@ -104,7 +104,7 @@ pub static DISPLACEMENT: KeySection = KeySection {
 const fn component(name: &'static str, says: &'static str) -> Key {
     Key {
         name,
-        kind: number(Dimension::Length, Range::Finite),
+        kind: varied(Dimension::Length, Range::Finite),
         need: Need::Without("free"),
         example: "0.0",
         says,

@@ -654,9 +654,9 @@ class Displacement(Section):
     def __init__(
         self,
         *,
-        x: Quantity | None = None,
-        y: Quantity | None = None,
-        z: Quantity | None = None,
+        x: Quantity | Varying | Mapping[str, Any] | None = None,
+        y: Quantity | Varying | Mapping[str, Any] | None = None,
+        z: Quantity | Varying | Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(
             x=x,

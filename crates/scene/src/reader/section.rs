@@ -200,10 +200,10 @@ impl<'a, 'i> Section<'a, 'i> {
     }
 
     fn child_title(&self, key: &str) -> String {
-        if self.title.is_empty() {
-            format!("[{key}]")
-        } else {
-            format!("{}.{key}]", self.title.trim_end_matches(']'))
+        match (self.title.as_str(), self.title.strip_suffix(']')) {
+            ("", _) => format!("[{key}]"),
+            (_, Some(head)) => format!("{head}.{key}]"),
+            (listed, None) => format!("{listed}, {key}"),
         }
     }
 

@@ -21,7 +21,8 @@ pub use kluft_field::{Field, Profile};
 pub use schedule::{Cases, Load, Schedule, Step};
 pub use springs::{Spring, SpringStiffness};
 pub use varying::{
-    LawParameter, LoadField, RockParameter, Varying, VaryingLaw, VaryingLoad, VaryingPressure,
+    HeldPart, LawParameter, LoadField, RockParameter, Varying, VaryingDisplacement, VaryingLaw,
+    VaryingLoad, VaryingPressure,
 };
 
 /// A fracture's law and what fills it.

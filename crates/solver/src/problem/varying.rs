@@ -16,6 +16,8 @@ pub struct Varying {
     pub pressures: Vec<VaryingPressure>,
     /// Surface loads, beside those of [`crate::Condition`].
     pub loads: Vec<VaryingLoad>,
+    /// Prescribed displacements, beside those of supports and of nodes held by themselves.
+    pub displacements: Vec<VaryingDisplacement>,
     /// Where rocks vary, each cell may have one of its own; then these are the numbers of what they
     /// are cells of, one for each cell.
     pub material_of_cell: Option<Vec<u32>>,
@@ -144,6 +146,31 @@ pub struct VaryingLoad {
     pub time: f64,
     /// Its load case.
     pub case: usize,
+}
+
+/// A prescribed displacement along one axis that varies, at load factor 1. Its values are those at
+/// the nodes; blocks on all sides of a node share them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VaryingDisplacement {
+    /// What is moved, which must hold this axis.
+    pub held: HeldPart,
+    /// The axis: 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// Its values (m).
+    pub field: Field,
+    /// The time for which they are taken.
+    pub time: f64,
+    /// Its load case.
+    pub case: usize,
+}
+
+/// What supports hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeldPart {
+    /// A part of the outer surface: index into [`crate::Problem::conditions`].
+    Condition(usize),
+    /// A node: index into [`crate::Problem::fixed_points`].
+    FixedPoint(usize),
 }
 
 /// Values of a surface load.

@@ -1,6 +1,7 @@
 //! The enriched space: points and unknowns of nodes, who couples with whom, what is held.
 
 pub(crate) mod cell;
+mod demands;
 pub(crate) mod folded;
 pub(crate) mod mechanism;
 pub(crate) mod pattern;

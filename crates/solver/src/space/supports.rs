@@ -9,16 +9,14 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
-use kluft_mesh::{Defect, Mesh, facet_area_vector};
+use kluft_mesh::{Defect, Mesh};
 
-use crate::problem::Load;
-use crate::problem::{Problem, Support};
+use crate::problem::{Load, Problem};
+use crate::space::demands::{Demand, demands};
 use crate::space::sector_nodes::SectorNodes;
 
 /// Directions closer than this to the span of others (sine of the angle) count as dependent.
 const DEPENDENT: f64 = 1e-4;
-/// Facets whose normals differ by less than 30 degrees count as one smooth face for `symmetry`.
-const SMOOTH_COSINE: f64 = 0.866;
 /// Prescribed values of one direction that differ by more than this share contradict each other.
 const CONTRADICTION: f64 = 1e-9;
 
@@ -42,17 +40,6 @@ pub struct Supports {
     pub(crate) held_directions: usize,
 }
 
-/// One prescribed direction of a point, and who prescribes it.
-struct Demand<'a> {
-    direction: DVec3,
-    /// Displacement along it (m) at load factor 1 of its case.
-    value: f64,
-    case: usize,
-    source: &'a str,
-}
-
-/// Who holds the points of a mesh of the plane.
-const PLANE: &str = "plane strain";
 const UNHELD: u32 = u32::MAX;
 
 impl Supports {
@@ -62,44 +49,7 @@ impl Supports {
     /// Conditions that prescribe different displacements for one point, each with the node and the
     /// conditions' names.
     pub fn of(problem: &Problem, points: &SectorNodes) -> Result<Self, Vec<Defect>> {
-        let mesh = &problem.mesh;
-        let mut demands: BTreeMap<u32, Vec<Demand<'_>>> = BTreeMap::new();
-        if mesh.is_plane() {
-            let wanted = Wanted {
-                values: [None, None, Some(0.0)],
-                case: 0,
-            };
-            for point in 0..points.len() as u32 {
-                demands.insert(point, components(wanted, PLANE).collect());
-            }
-        }
-        let cases = &problem.schedule.cases;
-        for (index, condition) in problem.conditions.iter().enumerate() {
-            match condition.support {
-                Some(Support::Displacement(components)) => {
-                    let wanted = Wanted {
-                        values: components,
-                        case: cases.of_condition(index),
-                    };
-                    demand_components(mesh, points, condition.boundary, wanted, &mut demands);
-                }
-                Some(Support::Symmetry) => {
-                    demand_symmetry(mesh, points, condition.boundary, &mut demands);
-                }
-                None => {}
-            }
-        }
-        for (index, fixed) in problem.fixed_points.iter().enumerate() {
-            let wanted = Wanted {
-                values: fixed.displacement,
-                case: cases.of_fixed_point(index),
-            };
-            for point in points.of_node(fixed.node as usize) {
-                let list = demands.entry(point as u32).or_default();
-                list.extend(components(wanted, &fixed.name));
-            }
-        }
-        Self::resolve(mesh, points, &demands)
+        Self::resolve(&problem.mesh, points, &demands(problem, points))
     }
 
     fn resolve(
@@ -179,90 +129,13 @@ impl Supports {
     }
 }
 
-/// Prescribed components.
-#[derive(Clone, Copy)]
-struct Wanted {
-    /// Displacements (m) along the axes, where they are prescribed.
-    values: [Option<f64>; 3],
-    /// The load case that scales them.
-    case: usize,
-}
-
-fn components(wanted: Wanted, source: &str) -> impl Iterator<Item = Demand<'_>> {
-    let Wanted { values, case } = wanted;
-    let named = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().zip(values);
-    named.filter_map(move |(direction, value)| {
-        value.map(|value| Demand {
-            direction,
-            value,
-            case,
-            source,
-        })
-    })
-}
-
-fn demand_components<'a>(
-    mesh: &'a Mesh,
-    points: &SectorNodes,
-    boundary: usize,
-    wanted: Wanted,
-    demands: &mut BTreeMap<u32, Vec<Demand<'a>>>,
-) {
-    let boundary = &mesh.boundaries[boundary];
-    let mut on_face: Vec<u32> = boundary
-        .slots
-        .iter()
-        .map(|&slot| points.of_cell_node[slot as usize])
-        .collect();
-    on_face.sort_unstable();
-    on_face.dedup();
-    for point in on_face {
-        let list = demands.entry(point).or_default();
-        list.extend(components(wanted, &boundary.name));
-    }
-}
-
-/// Facets of one smooth face share one direction at a point, their mean normal: the facets of a
-/// curved face would otherwise clamp it.
-fn demand_symmetry<'a>(
-    mesh: &'a Mesh,
-    points: &SectorNodes,
-    boundary: usize,
-    demands: &mut BTreeMap<u32, Vec<Demand<'a>>>,
-) {
-    let boundary = &mesh.boundaries[boundary];
-    let mut faces: BTreeMap<u32, Vec<DVec3>> = BTreeMap::new();
-    for facet in 0..boundary.elements.len() {
-        let area = facet_area_vector(&mesh.corners(&boundary.elements, facet));
-        for &slot in &boundary.slots[boundary.elements.range(facet)] {
-            let smooth = faces.entry(points.of_cell_node[slot as usize]).or_default();
-            let own = smooth
-                .iter_mut()
-                .find(|sum| sum.normalize().dot(area.normalize()) > SMOOTH_COSINE);
-            match own {
-                Some(sum) => *sum += area,
-                None => smooth.push(area),
-            }
-        }
-    }
-    for (point, smooth) in faces {
-        let list = demands.entry(point).or_default();
-        list.extend(smooth.iter().map(|sum| Demand {
-            direction: sum.normalize(),
-            value: 0.0,
-            case: 0,
-            source: &boundary.name,
-        }));
-    }
-}
-
 /// Two demands that contradict each other.
 type Contradiction<'a> = (&'a Demand<'a>, &'a Demand<'a>);
 
 /// Constraint that meets all demands, and the number of directions it takes.
 fn constraint<'a>(demands: &'a [Demand<'a>]) -> Result<(Constraint, usize), Contradiction<'a>> {
-    let moving = demands.iter().filter(|demand| demand.value != 0.0);
-    let mut cases: Vec<usize> = moving.map(|demand| demand.case).collect();
+    let values = demands.iter().flat_map(|demand| &demand.values);
+    let mut cases: Vec<usize> = values.map(|(case, _)| *case).collect();
     cases.sort_unstable();
     cases.dedup();
     let mut constraint = Constraint {
@@ -296,10 +169,7 @@ fn orthogonal<'a>(
 ) -> Result<Vec<(DVec3, f64)>, Contradiction<'a>> {
     let mut basis: Vec<(DVec3, f64)> = Vec::new();
     for demand in demands {
-        let (mut direction, mut value) = (demand.direction, 0.0);
-        if demand.case == case {
-            value = demand.value;
-        }
+        let (mut direction, mut value) = (demand.direction, demand.value(case));
         for (held, at) in &basis {
             let share = demand.direction.dot(*held);
             direction -= share * *held;
@@ -319,10 +189,8 @@ fn orthogonal<'a>(
 }
 
 fn largest(demands: &[Demand<'_>]) -> f64 {
-    demands
-        .iter()
-        .map(|demand| demand.value.abs())
-        .fold(0.0, f64::max)
+    let scales = demands.iter().map(|demand| demand.scale);
+    scales.fold(0.0, f64::max)
 }
 
 fn contradiction(tag: u64, first: &Demand<'_>, second: &Demand<'_>) -> Defect {
