@@ -98,8 +98,8 @@ fn what_is_no_rock_is_refused() {
             "normal_shear_modulus",
         ),
         (
-            ROCK.replace("= 40e9", "= { expression = \"40e9\" }"),
-            "cannot vary",
+            ROCK.replace("dip = 90", "dip = { expression = \"40 + 0*x\" }"),
+            "across the plane",
         ),
         (orthotropic.to_owned(), "sqrt(E_i/E_j)"),
         (format!("{orthotropic}\nyoung_modulus = 1e9"), "three axes"),

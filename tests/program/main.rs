@@ -21,6 +21,7 @@ mod import;
 mod init;
 mod inspect;
 mod kept_files;
+mod layered_anisotropy;
 mod lie_project;
 mod lines;
 mod load_paths;

@@ -3,11 +3,12 @@
 use glam::DVec3;
 use kluft_mesh::{Defect, Draft, Faces, Mesh, nearest};
 use kluft_solver::{Condition, FixedPoint, Flow, Problem, Spring, SpringStiffness, Varying};
-use lie_core::{FractureLaw, Rock};
+use lie_core::FractureLaw;
 
 use crate::bind_fields::bind_fields;
 use crate::bind_flow::bind_flow;
 use crate::bind_probes::{Probe, bind_probes};
+use crate::bind_rocks::{bind_rocks, rocks, wrong_gravity};
 use crate::cases::{Bound, schedule};
 use crate::conditions::{BoundaryEntry, FixedPointEntry, FractureEntry};
 use crate::doubts::warnings;
@@ -19,7 +20,6 @@ use crate::placed::name_places;
 use crate::point_contacts;
 use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
-use crate::rock::RockEntry;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
 use crate::surfaces::{SurfaceMesh, surface_mesh};
@@ -219,31 +219,6 @@ fn wrong_strength(scene: &Scene, mesh: &Mesh, fractures: &[&Named<FractureEntry>
     reduction.defects(&mesh.fractures, &laws.collect::<Vec<_>>())
 }
 
-/// Rocks that leave the plane of a mesh of the plane.
-fn wrong_axes(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
-    let leaves_plane = |entry: &&Named<RockEntry>| {
-        let anisotropy = entry.value.rock.anisotropy.as_ref();
-        anisotropy.is_some_and(|own| !own.is_symmetric_about_xy())
-    };
-    let rocks = scene.rocks.iter().filter(|_| mesh.is_plane());
-    let defects = rocks.filter(leaves_plane).map(|entry| {
-        let problem = "strains in the plane of the mesh shear this rock across the plane";
-        let remedy = "give a dip of 90, with which bedding stands on the plane x, y (its normal \
-                      points to dip_direction, clockwise from y), or a dip of 0, or a mesh of volumes";
-        Defect::new(&entry.place, problem, remedy)
-    });
-    defects.collect()
-}
-
-/// The rocks; rigid rock needs no section.
-fn rocks(scene: &Scene) -> Vec<Rock> {
-    let rocks = scene.rocks.iter().map(|entry| entry.value.rock.clone());
-    match scene.rocks.is_empty() {
-        true => vec![Rock::rigid(0.0)],
-        false => rocks.collect(),
-    }
-}
-
 /// What acts on and holds the outer surface.
 fn bind_boundaries<'a>(
     scene: &'a Scene,
@@ -334,64 +309,6 @@ fn bind_oracles(
         .collect()
 }
 
-/// Rock of each cell, decided once for each set of groups that cells belong to.
-fn bind_rocks(scene: &Scene, mesh: &Mesh, defects: &mut Vec<Defect>) -> Vec<u32> {
-    defects.extend(wrong_axes(scene, mesh));
-    let default = scene.rocks.iter().position(|entry| entry.name == DEFAULT);
-    let mut used = vec![false; mesh.group_sets.len()];
-    for &set in &mesh.cell_group_set {
-        used[set as usize] = true;
-    }
-    let rock_of_set: Vec<u32> = mesh
-        .group_sets
-        .iter()
-        .zip(used)
-        .map(|(set, used)| {
-            let names: Vec<&str> = set.iter().map(|&g| mesh.groups[g].name.as_str()).collect();
-            let matches = |entry: &Named<RockEntry>| names.contains(&entry.name.as_str());
-            let found: Vec<usize> = (0..scene.rocks.len())
-                .filter(|&rock| matches(&scene.rocks[rock]))
-                .collect();
-            if let (true, Some(defect)) = (used, rock_defect(scene, &names, &found, default)) {
-                defects.push(defect);
-            }
-            found.first().copied().or(default).unwrap_or(0) as u32
-        })
-        .collect();
-    let sets = mesh.cell_group_set.iter();
-    sets.map(|&set| rock_of_set[set as usize]).collect()
-}
-
-fn rock_defect(
-    scene: &Scene,
-    names: &[&str],
-    found: &[usize],
-    default: Option<usize>,
-) -> Option<Defect> {
-    let volume = match names {
-        [] => "the cells in no physical volume".to_owned(),
-        names => format!("physical volume `{}`", names.join("`, `")),
-    };
-    match (found, default) {
-        // Rigid rock needs no section.
-        ([], None) if scene.rocks.is_empty() => None,
-        ([], None) => Some(Defect::new(
-            volume,
-            "no rock is given for it",
-            "add a [rock.NAME] section for it, or [rock.default] for all volumes not named",
-        )),
-        ([first, second, ..], _) => Some(Defect::new(
-            volume,
-            format!(
-                "two rocks are given for the same cells: `{}` and `{}`",
-                scene.rocks[*first].name, scene.rocks[*second].name
-            ),
-            "name only one of the volumes that overlap in the scene",
-        )),
-        _ => None,
-    }
-}
-
 /// The entry of each fracture.
 fn bind_fractures<'a>(
     scene: &'a Scene,
@@ -414,30 +331,6 @@ fn bind_fractures<'a>(
         ));
     }
     entries
-}
-
-/// Rocks without a density where gravity acts, and gravity out of a plane.
-fn wrong_gravity(scene: &Scene, mesh: &Mesh) -> Vec<Defect> {
-    let gravity = scene.body.gravity;
-    let acts = gravity != DVec3::ZERO && !scene.is_rigid();
-    let rocks = scene.rocks.iter();
-    let without = rocks.filter(|entry| acts && entry.value.rock.density == 0.0);
-    let without = without.map(|entry| {
-        Defect::new(
-            &entry.place,
-            "gravity acts, but this rock has no density",
-            "add `density = 2700` (kg/m^3)",
-        )
-    });
-    let leaves = mesh.is_plane() && gravity.z != 0.0;
-    let out_of_plane = leaves.then(|| {
-        Defect::new(
-            "[body]",
-            "gravity has a part along z, out of the plane of the mesh",
-            "write it along y: gravity = [0, -9.81, 0]",
-        )
-    });
-    without.chain(out_of_plane).collect()
 }
 
 fn bind_fixed_points<'a>(

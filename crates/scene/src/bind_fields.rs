@@ -6,6 +6,7 @@ use kluft_solver::{LawParameter, Problem, Schedule, VaryingLaw, VaryingLoad, Var
 use lie_core::{ClosureKind, FacetQuadrature, FractureLaw, Tension, facet_points};
 
 use crate::bind_displacements::bind_displacements;
+use crate::bind_rocks::vary_rocks;
 use crate::cases::Bound;
 use crate::conditions::FractureEntry;
 use crate::field::FieldEntry;
@@ -35,56 +36,12 @@ pub(crate) fn bind_fields(
     conditions.try_for_each(|(index, _)| bind_load(problem, bound, index, &mut look));
     bind_displacements(problem, bound, &mut look);
     look_at_springs(problem, bound, &mut look);
-    bind_rocks(problem, &mut look);
+    vary_rocks(problem, &mut look);
     bind_initial_stress(problem, &mut look);
     match look.defects.is_empty() {
         true => Ok(look.warnings),
         false => Err(look.defects),
     }
-}
-
-/// Gives each cell of a rock that varies a rock of its own, by the values in the middle of the
-/// cell.
-fn bind_rocks(problem: &mut Problem, look: &mut Look<'_>) {
-    let scene = look.scene;
-    if scene
-        .rocks
-        .iter()
-        .all(|entry| entry.value.fields.is_empty())
-    {
-        return;
-    }
-    let materials = problem.rock_of_cell.clone();
-    let middle = |mesh: &Mesh, cell: usize| {
-        let corners = mesh.corners(&mesh.cells, cell);
-        corners.iter().sum::<DVec3>() / corners.len() as f64
-    };
-    for (number, entry) in scene.rocks.iter().enumerate() {
-        let own = materials.iter().enumerate();
-        let own = own.filter(|(_, material)| **material as usize == number);
-        let cells: Vec<usize> = own.map(|(cell, _)| cell).collect();
-        let places = cells.iter().map(|&cell| middle(&problem.mesh, cell));
-        let places: Vec<DVec3> = places.collect();
-        for (parameter, field) in &entry.value.fields {
-            if let Some(seen) = look.at(field, &places, &[0.0])
-                && !places.is_empty()
-            {
-                parameter.set(&mut problem.rocks[number], seen.mean);
-            }
-        }
-        if entry.value.fields.is_empty() {
-            continue;
-        }
-        for (&cell, &place) in cells.iter().zip(&places) {
-            let mut rock = problem.rocks[number].clone();
-            for (parameter, field) in &entry.value.fields {
-                parameter.set(&mut rock, field.field.at(place, 0.0));
-            }
-            problem.rock_of_cell[cell] = problem.rocks.len() as u32;
-            problem.rocks.push(rock);
-        }
-    }
-    problem.varying.material_of_cell = Some(materials);
 }
 
 fn bind_law(

@@ -11,6 +11,7 @@ mod bind_displacements;
 mod bind_fields;
 mod bind_flow;
 mod bind_probes;
+mod bind_rocks;
 mod cases;
 mod conditions;
 mod conduit;

@@ -1,9 +1,11 @@
 //! Reads rocks.
 
 use kluft_solver::RockParameter;
-use lie_core::{Orthotropy, Rock};
+use lie_core::Rock;
 
-use crate::anisotropy::{Symmetry, read_orthotropic, read_transverse};
+use crate::anisotropy::{
+    AnisotropicConstants, NoRock, Symmetry, read_orthotropic, read_transverse,
+};
 use crate::field::{FieldEntry, InTime, Value, read_value};
 use crate::reader::Section;
 use crate::setting::Setting;
@@ -15,6 +17,43 @@ pub struct RockEntry {
     pub rock: Rock,
     /// Constants that vary.
     pub fields: Vec<(RockParameter, FieldEntry)>,
+    /// Constants of rock that is not isotropic.
+    pub(crate) anisotropic: Option<AnisotropicConstants>,
+}
+
+impl RockEntry {
+    /// All of its values that vary.
+    pub(crate) fn varying(&self) -> impl Iterator<Item = &FieldEntry> {
+        let own = self.fields.iter().map(|(_, field)| field);
+        own.chain(self.anisotropic.iter().flat_map(|own| own.fields()))
+    }
+
+    /// Whether its axes or its constants along them vary.
+    pub(crate) fn has_varying_axes(&self) -> bool {
+        let mut constants = self.anisotropic.iter();
+        constants.any(|own| own.fields().next().is_some())
+    }
+
+    /// The rock with these values of what varies, in the order of [`Self::varying`].
+    pub(crate) fn with(&self, values: &[f64]) -> Rock {
+        let (own, axial) = values.split_at(self.fields.len());
+        let mut rock = self.rock.clone();
+        for ((parameter, _), value) in self.fields.iter().zip(own) {
+            parameter.set(&mut rock, *value);
+        }
+        match &self.anisotropic {
+            Some(constants) if self.has_varying_axes() => {
+                Rock::orthotropic(&constants.with(axial).orthotropy(), rock.density)
+            }
+            _ => rock,
+        }
+    }
+
+    /// Why there is no rock with these values of what varies, if there is none.
+    pub(crate) fn refusal(&self, values: &[f64]) -> Option<NoRock> {
+        let constants = self.anisotropic.as_ref()?;
+        constants.with(&values[self.fields.len()..]).refusal()
+    }
 }
 
 pub(crate) fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<RockEntry> {
@@ -23,26 +62,31 @@ pub(crate) fn read_rock(section: &Section<'_, '_>, setting: Setting) -> Option<R
         return Some(RockEntry {
             rock: Rock::rigid(density.unwrap_or(0.0)),
             fields: Vec::new(),
+            anisotropic: None,
         });
     }
     match Symmetry::of(section) {
         Symmetry::Isotropic => read_isotropic(section),
-        Symmetry::Transverse => read_transverse(section).and_then(|own| anisotropic(section, &own)),
+        Symmetry::Transverse => read_transverse(section).and_then(|own| anisotropic(section, own)),
         Symmetry::Orthotropic => {
-            read_orthotropic(section).and_then(|own| anisotropic(section, &own))
+            read_orthotropic(section).and_then(|own| anisotropic(section, own))
         }
     }
 }
 
-/// A rock with these constants, whose density alone may vary.
-fn anisotropic(section: &Section<'_, '_>, constants: &Orthotropy) -> Option<RockEntry> {
+/// A rock with these constants.
+fn anisotropic(section: &Section<'_, '_>, constants: AnisotropicConstants) -> Option<RockEntry> {
     let (density, fields) = match read_value(section, "density", InTime::Never) {
         Some(Value::Varying(entry)) => (f64::NAN, vec![(RockParameter::Density, *entry)]),
         Some(Value::Number(density)) => (density, Vec::new()),
         None => (0.0, Vec::new()),
     };
-    let rock = Rock::orthotropic(constants, density);
-    Some(RockEntry { rock, fields })
+    let rock = Rock::orthotropic(&constants.orthotropy(), density);
+    Some(RockEntry {
+        rock,
+        fields,
+        anisotropic: Some(constants),
+    })
 }
 
 fn read_isotropic(section: &Section<'_, '_>) -> Option<RockEntry> {
@@ -65,5 +109,9 @@ fn read_isotropic(section: &Section<'_, '_>) -> Option<RockEntry> {
         density: density.unwrap_or(0.0),
         anisotropy: None,
     };
-    Some(RockEntry { rock, fields })
+    Some(RockEntry {
+        rock,
+        fields,
+        anisotropic: None,
+    })
 }

@@ -181,8 +181,8 @@ impl Scene {
         let fixed = self.fixed_points.iter();
         let fixed = fixed.flat_map(|entry| &entry.value.fields);
         let loads = loads.chain(fixed.map(|(_, field)| field));
-        let rocks = self.rocks.iter().flat_map(|entry| &entry.value.fields);
-        let fractures = rocks.map(|(_, field)| field).chain(fractures);
+        let rocks = self.rocks.iter().flat_map(|entry| entry.value.varying());
+        let fractures = rocks.chain(fractures);
         let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);
         let fluid = self.fluid.iter();
         let fluid = fluid.filter_map(|entry| entry.value.initial_pressure.field.as_ref());

@@ -1,10 +1,10 @@
 //! Rocks.
 
-use super::field::watched_varied;
+use super::field::{FIELD, varied, watched_varied};
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
 use crate::range::Range;
-use crate::table::{Key, KeySection, Kind, Need, Quantity, number, quantity};
+use crate::table::{Key, KeySection, Kind, Need, Quantity, quantity};
 
 static YOUNG: Plausible = Plausible {
     low: 1e6,
@@ -56,56 +56,56 @@ pub static ROCK: KeySection = KeySection {
         },
         Key {
             name: "normal_young_modulus",
-            kind: Kind::Number(MODULUS),
+            kind: Kind::NumberOr(MODULUS, &FIELD),
             need: Need::Without("the same in all directions"),
             example: "20e9",
             says: "Young's modulus E' across the plane of isotropy (bedding, schistosity)",
         },
         Key {
             name: "normal_poisson_ratio",
-            kind: number(Dimension::One, Range::Finite),
+            kind: varied(Dimension::One, Range::Finite),
             need: Need::Without("required with `normal_young_modulus`"),
             example: "0.15",
             says: "Poisson's ratio nu': a stress s across the plane strains it by -nu' s/E'; nu'^2 < (E'/E) (1 - nu)/2",
         },
         Key {
             name: "normal_shear_modulus",
-            kind: Kind::Number(MODULUS),
+            kind: Kind::NumberOr(MODULUS, &FIELD),
             need: Need::Without("required with `normal_young_modulus`"),
             example: "9e9",
             says: "Shear modulus G' across the plane of isotropy",
         },
         Key {
             name: "young_moduli",
-            kind: Kind::Vector(MODULUS),
+            kind: Kind::VectorOr(MODULUS, &FIELD),
             need: Need::Without("`young_modulus`"),
             example: "[60e9, 45e9, 20e9]",
             says: "Young's moduli E1, E2, E3 of orthotropic rock: 1 down the dip, 2 along the strike, 3 across the plane; without dip x, y, z",
         },
         Key {
             name: "poisson_ratios",
-            kind: Kind::Vector(quantity(Dimension::One, Range::Finite)),
+            kind: Kind::VectorOr(quantity(Dimension::One, Range::Finite), &FIELD),
             need: Need::Without("required with `young_moduli`"),
             example: "[0.25, 0.2, 0.3]",
             says: "Poisson's ratios nu12, nu23, nu13: a stress s along i strains j by -nu_ij s/E_i",
         },
         Key {
             name: "shear_moduli",
-            kind: Kind::Vector(MODULUS),
+            kind: Kind::VectorOr(MODULUS, &FIELD),
             need: Need::Without("required with `young_moduli`"),
             example: "[20e9, 9e9, 9e9]",
             says: "Shear moduli G12, G23, G13",
         },
         Key {
             name: "dip",
-            kind: number(Dimension::Angle, Range::Within(0.0, 90.0)),
+            kind: varied(Dimension::Angle, Range::Within(0.0, 90.0)),
             need: Need::Default("0"),
             example: "60",
             says: "Angle between the plane of isotropy, or of the axes 1 and 2, and the horizontal",
         },
         Key {
             name: "dip_direction",
-            kind: number(Dimension::Angle, Range::Finite),
+            kind: varied(Dimension::Angle, Range::Finite),
             need: Need::Default("90"),
             example: "135",
             says: "Direction towards which that plane falls, clockwise from north (y)",
