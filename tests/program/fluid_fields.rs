@@ -6,6 +6,7 @@ use std::fs;
 use crate::fields::{assert_near, numbers, rows};
 use crate::flow::sources;
 use crate::harness::Workshop;
+use crate::plane::probes;
 
 /// In the west joint the transmissivity is `T0 (1 + x)`, so that `T0 / ln 2` conducts between its
 /// ends; the other three have one each.
@@ -193,4 +194,96 @@ fn pressures_that_do_not_vary_are_numbers() {
         plain,
         solve("fluid_pressure = { expression = \"0.9e6 + 1e5*y\" }")
     );
+}
+
+/// In a fluid too thick to flow each place loses what leaks off there, `p = p_0 - 4 C sqrt(t) / (b
+/// c)`, to the share `c p` by which the fluid gives way; the whole joint loses the integral.
+#[test]
+fn leak_off_that_varies_empties_each_place_by_its_own() {
+    let held = ["1e6\nhistory = [[0, 1]]"; 4];
+    let edits = [
+        (
+            "viscosity = 1e-3",
+            "viscosity = 1e12\ncompressibility = 4e-10\ninitial_pressure = 1e6\n\n\
+             [load]\ntimes = [1.0, 4.0]\n\n[warnings]\nsilence = [\"values\", \"fluid_times\"]\n\n\
+             [probe.west]\nfracture = \"west\"\nfrom = [0.3, 1, 0.5]\nto = [0.7, 1, 0.5]\ncount = 3",
+        ),
+        (
+            "[fracture.west]\nhydraulic_aperture = 1e-4",
+            "[fracture.west]\naperture = 1e-4\nleakoff = { expression = \"1e-9 * (1 + x)\" }",
+        ),
+    ];
+    let workshop = star_of(held, &edits);
+    let out = workshop.solve("out", &[]);
+    let rows = probes(&out);
+    assert_eq!(rows.len(), 6);
+    for row in rows {
+        let number = |column: &str| row[column].parse::<f64>().expect(column);
+        let lost = 4e-9 * (1.0 + number("x")) * number("time").sqrt() / (1e-4 * 4e-10);
+        assert_near(1e6 - number("pressure"), lost, 5e-4);
+    }
+    let text = fs::read_to_string(out.join("sources.csv")).expect("sources.csv");
+    let last = text
+        .lines()
+        .rfind(|line| line.contains("leak-off from west"));
+    let lost = last.and_then(|line| line.split(',').next_back());
+    let lost: f64 = lost.and_then(|cell| cell.parse().ok()).expect("a number");
+    assert_near(lost, -4e-9 * 1.5 * 2.0, 1e-9);
+}
+
+/// The scene of the star with a pump in the west joint in the place of a pressure at its end.
+fn pumped(rate: &str, load: &str) -> Workshop {
+    let pump = format!(
+        "[load]\n{load}\n\n[[source]]\nname = \"pump\"\nfracture = \"west\"\nrate = {rate}\n"
+    );
+    Workshop::new(
+        "flow-star",
+        &[("[boundary.left]\nfluid_pressure = 3e5\n", &pump)],
+    )
+}
+
+/// At the end of each load step, and times its history.
+#[test]
+fn a_rate_is_what_the_time_makes_of_it() {
+    let times = "times = [1.0, 2.0, 3.0]";
+    let sine = |time: f64| 1e-5 * (std::f64::consts::PI * time / 4.0).sin();
+    let linear = |time: f64| 2e-6 * time;
+    let halved = |time: f64| 1e-6 * time;
+    let table = "{ table = [[0, 0], [10, 2e-5]], over = \"time\" }";
+    let history = format!("{table}\nhistory = [[0, 0.5]]");
+    type Wanted<'a> = &'a dyn Fn(f64) -> f64;
+    let cases: [(&str, Wanted<'_>); 3] = [
+        ("{ expression = \"1e-5 * sin(PI*time/4)\" }", &sine),
+        (table, &linear),
+        (&history, &halved),
+    ];
+    for (rate, wanted) in cases {
+        let rows = sources(&pumped(rate, times).solve("out", &[]));
+        let pump: Vec<f64> = rows
+            .iter()
+            .filter(|row| row.0 == "pump")
+            .map(|row| row.2)
+            .collect();
+        assert_eq!(pump.len(), 3);
+        for (found, time) in pump.into_iter().zip([1.0, 2.0, 3.0]) {
+            assert_near(found, wanted(time), 1e-14);
+        }
+    }
+    for (rate, load, says) in [
+        ("{ expression = \"1e-5 * x * time\" }", times, "time alone"),
+        (
+            "{ expression = \"1e-5 * time\" }",
+            "steps = [1.0]",
+            "no times",
+        ),
+        (
+            "{ table = [[1, 0], [10, 2e-5]], over = \"time\" }",
+            times,
+            "no row",
+        ),
+    ] {
+        let run = pumped(rate, load).run("out", &[]);
+        assert_eq!(run.code, Some(2), "{}", run.err);
+        assert!(run.err.contains(says), "{says}: {}", run.err);
+    }
 }

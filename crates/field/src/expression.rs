@@ -103,6 +103,11 @@ impl Expression {
     pub fn depends_on_time(&self) -> bool {
         self.variables.contains(&Coordinate::Time)
     }
+
+    /// Whether it has a coordinate in it.
+    pub fn depends_on_place(&self) -> bool {
+        self.variables.iter().any(|own| *own != Coordinate::Time)
+    }
 }
 
 /// What an expression may be made of.
@@ -158,6 +163,8 @@ mod tests {
         }
         let moves = |text: &str| Expression::read(text, 1.0, 0.0).map(|e| e.depends_on_time());
         assert_eq!((moves("x + time"), moves("x")), (Ok(true), Ok(false)));
+        let spread = |text: &str| Expression::read(text, 1.0, 0.0).map(|e| e.depends_on_place());
+        assert_eq!((spread("depth"), spread("2*time")), (Ok(true), Ok(false)));
     }
 
     /// Whatever a slip makes of an expression, it is refused or has a value, and nothing panics.

@@ -62,6 +62,16 @@ impl Field {
         }
     }
 
+    /// Whether the value differs from place to place, as far as its form says.
+    pub fn depends_on_place(&self) -> bool {
+        match self {
+            Self::Profile(profile) => profile.per_metre != 0.0,
+            Self::Table(table) => table.over() != Coordinate::Time,
+            Self::Expression(expression) => expression.depends_on_place(),
+            Self::Samples(_) => true,
+        }
+    }
+
     /// Where the values of samples come from, and how far a position is from the nearest (m).
     pub fn reach(&self, position: DVec3) -> Option<f64> {
         match self {

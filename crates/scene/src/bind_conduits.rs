@@ -9,6 +9,7 @@ use kluft_solver::Conduit;
 use crate::cases::Bound;
 use crate::conduit::HydraulicParameter;
 use crate::field::FieldEntry;
+use crate::history::Timetable;
 use crate::look::Look;
 use crate::scene::Scene;
 
@@ -33,6 +34,7 @@ impl Conduits {
         let mut look = Look::of(scene, decisions);
         let conduits = Self::looked_at(mesh, bound, &mut look);
         look_at_pressures(mesh, bound, &mut look);
+        look_at_rates(bound, &mut look);
         let mut defects = look.defects;
         let is_sealed = |conduit: &Conduit| *conduit == Conduit::Sealed;
         if conduits.of_fractures.iter().all(is_sealed) {
@@ -101,7 +103,24 @@ impl Conduits {
     }
 }
 
-/// Looks at pressures of the fluid that vary, at the nodes where they may act.
+/// Looks at rates that the time is in, at the beginning and at the ends of the load steps.
+fn look_at_rates(bound: &Bound<'_>, look: &mut Look<'_>) {
+    let ends = match &look.scene.timetable {
+        Timetable::Times { ends, .. } => &ends[..],
+        Timetable::Factors(_) => &[],
+    };
+    let times = [0.0].into_iter().chain(ends.iter().map(|end| end.time));
+    let times: Vec<f64> = times.collect();
+    for rate in bound
+        .sources
+        .iter()
+        .filter_map(|entry| entry.value.rate.as_deref())
+    {
+        look.at(rate, &[DVec3::ZERO], &times);
+    }
+}
+
+/// Looks at pressures and leak-off of the fluid that vary, at the nodes where they may act.
 fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
     let initial = look.scene.fluid.as_ref();
     if let Some(field) = initial.and_then(|fluid| fluid.value.initial_pressure.field.as_ref()) {
@@ -114,13 +133,20 @@ fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
         is_fractured[node as usize] = true;
     }
     for (index, entry) in bound.fractures.iter().enumerate() {
-        let Some(field) = entry.value.given_field.as_deref() else {
-            continue;
-        };
-        let own = facets.clone();
-        let own = own.filter(|&facet| mesh.facets.fracture[facet] as usize == index);
-        let nodes = own.flat_map(|facet| mesh.facets.elements.nodes_of(facet));
-        look.at(field, &places(mesh, nodes), &[0.0]);
+        let leakoff = entry.value.leakoff.as_ref();
+        let leakoff = leakoff.and_then(|own| own.field.as_deref());
+        for field in entry
+            .value
+            .given_field
+            .as_deref()
+            .into_iter()
+            .chain(leakoff)
+        {
+            let own = facets.clone();
+            let own = own.filter(|&facet| mesh.facets.fracture[facet] as usize == index);
+            let nodes = own.flat_map(|facet| mesh.facets.elements.nodes_of(facet));
+            look.at(field, &places(mesh, nodes), &[0.0]);
+        }
     }
     for entry in &bound.boundaries {
         let Some(field) = &entry.value.fluid_pressure.field else {

@@ -146,7 +146,7 @@ fn leaking(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> 
         Some(FlowCondition {
             name: format!("leak-off from {name}"),
             place: FlowPlace::Fracture(index),
-            drive: FlowDrive::Leakoff(entry.value.leakoff?),
+            drive: FlowDrive::Leakoff(entry.value.leakoff.as_ref()?.leakoff.clone()),
             case: cases.of_fracture(index),
         })
     });

@@ -36,7 +36,7 @@ pub(crate) fn schedule(
         grown,
         cases: Vec::new(),
     };
-    let cases = found.collect(scene, bound);
+    let cases = found.collect(scene, bound, ends);
     found.tell(ends, decisions);
     let idle = found.idle(ends);
     warnings.extend(idle.filter_map(|text| scene.warning(Doubt::IdleHistories, &text)));
@@ -65,7 +65,7 @@ struct Found {
 }
 
 impl Found {
-    fn collect(&mut self, scene: &Scene, bound: &Bound<'_>) -> Cases {
+    fn collect(&mut self, scene: &Scene, bound: &Bound<'_>, ends: &[StepEnd]) -> Cases {
         let conditions = bound.boundaries.iter().map(|entry| {
             let value = &entry.value;
             let name = section_head("boundary", &entry.name);
@@ -97,7 +97,7 @@ impl Found {
         let fixed_points = fixed_points.collect();
         let sources = bound.sources.iter();
         let sources =
-            sources.map(|entry| self.case(true, &entry.value.history, entry.name.clone()));
+            sources.map(|entry| self.case(true, &entry.value.course(ends), entry.name.clone()));
         Cases {
             conditions,
             fractures,

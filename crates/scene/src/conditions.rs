@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 use kluft_solver::{
-    Conduit, Field, FlowDrive, Fracture, LawParameter, Leakoff, LoadField, SpringStiffness,
-    Support, SurfaceLoad,
+    Conduit, Field, FlowDrive, Fracture, LawParameter, LoadField, SpringStiffness, Support,
+    SurfaceLoad,
 };
 
 use crate::conduit::HydraulicParameter;
 use crate::field::{self, FieldEntry, InTime, Value, read_value};
-use crate::fluid::{PressureEntry, read_boundary_fluid};
+use crate::fluid::{LeakoffEntry, PressureEntry, read_boundary_fluid};
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
 use crate::place::SurfacePlace;
@@ -119,7 +119,7 @@ pub struct FractureEntry {
     /// Parameters of its hydraulic aperture that vary.
     pub hydraulic_fields: Vec<(HydraulicParameter, FieldEntry)>,
     /// What leaks off from it into the rock; none if nothing does.
-    pub leakoff: Option<Leakoff>,
+    pub leakoff: Option<LeakoffEntry>,
     /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
     pub given_pressure: Option<Field>,
     /// The same, if it varies.
@@ -133,7 +133,9 @@ impl FractureEntry {
     pub(crate) fn varying(&self) -> impl Iterator<Item = &FieldEntry> {
         let law = self.fields.iter().map(|(_, field)| field);
         let hydraulic = self.hydraulic_fields.iter().map(|(_, field)| field);
+        let leakoff = self.leakoff.iter();
         law.chain(hydraulic)
+            .chain(leakoff.filter_map(|own| own.field.as_deref()))
             .chain(self.varying_pressure.as_deref())
             .chain(self.given_field.as_deref())
     }

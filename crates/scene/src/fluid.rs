@@ -3,8 +3,8 @@
 use glam::DVec3;
 use kluft_solver::{Conduit, Field, FlowDrive, Fluid, Leakoff, Profile};
 
-use crate::field::FieldEntry;
-use crate::history::LoadHistory;
+use crate::field::{FieldEntry, InTime, Value, read_value};
+use crate::history::{LoadHistory, StepEnd};
 use crate::load::{Scaled, read_history};
 use crate::profile::{read_profile_or_field, says};
 use crate::reader::Section;
@@ -44,8 +44,37 @@ pub struct SourceEntry {
     pub place: SourcePlace,
     /// What it does.
     pub drive: FlowDrive,
+    /// The rate (m^3/s), if the time is in it; then `drive` is a rate of 1 m^3/s.
+    pub rate: Option<Box<FieldEntry>>,
     /// How that changes with time.
     pub history: Option<LoadHistory>,
+}
+
+impl SourceEntry {
+    /// The factor on what it does: its history, times a rate that the time is in, which is linear
+    /// between the ends of the load steps.
+    pub(crate) fn course(&self, ends: &[StepEnd]) -> Option<LoadHistory> {
+        let Some(rate) = &self.rate else {
+            return self.history.clone();
+        };
+        let scaled = |time: f64| {
+            let factor = self.history.as_ref().map_or(1.0, |own| own.at(time));
+            [time, factor * rate.field.at(DVec3::ZERO, time)]
+        };
+        let times = [0.0].into_iter().chain(ends.iter().map(|end| end.time));
+        Some(LoadHistory {
+            points: times.map(scaled).collect(),
+        })
+    }
+}
+
+/// What leaks off from a fracture.
+#[derive(Debug, Clone)]
+pub struct LeakoffEntry {
+    /// What the flow has of it.
+    pub leakoff: Leakoff,
+    /// Carter's coefficient, if it varies.
+    pub field: Option<Box<FieldEntry>>,
 }
 
 /// Keys of a fracture that speak of the fluid.
@@ -242,7 +271,10 @@ pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option
     refuse_without_fluid(section, setting, &["rate", "pressure"]);
     let place = read_place(section);
     let constant = || Field::constant(section.number("pressure").unwrap_or(0.0));
-    let drive = read_drive(section, ["pressure", "rate"], constant);
+    let (drive, rate) = match section.is_table("rate") && !section.has("pressure") {
+        true => (Some(FlowDrive::Rate(1.0)), read_rate(section, setting)),
+        false => (read_drive(section, ["pressure", "rate"], constant), None),
+    };
     if drive.is_none() {
         section.require("rate");
     }
@@ -254,8 +286,25 @@ pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option
     Some(SourceEntry {
         place: place?,
         drive: drive?,
+        rate,
         history,
     })
+}
+
+/// A rate that changes with time; all that a source feeds has one.
+fn read_rate(section: &Section<'_, '_>, setting: Setting) -> Option<Box<FieldEntry>> {
+    let value = read_value(section, "rate", InTime::By(setting.clock));
+    let Some(Value::Varying(entry)) = value else {
+        return None;
+    };
+    if entry.field.depends_on_place() {
+        section.refuse(
+            "rate",
+            "a source has one rate, which varies with time alone".into(),
+            "write an expression of time, or a table over = \"time\"",
+        );
+    }
+    Some(entry)
 }
 
 /// Reads what drives the fluid at a part of the outer surface, and how its pressure is given.
@@ -292,19 +341,27 @@ fn read_drive(
 }
 
 /// Reads what leaks off from a fracture; none if nothing does.
-pub(crate) fn read_leakoff(section: &Section<'_, '_>, conduit: Option<Conduit>) -> Option<Leakoff> {
-    let coefficient = section.number("leakoff");
+pub(crate) fn read_leakoff(
+    section: &Section<'_, '_>,
+    conduit: Option<Conduit>,
+) -> Option<LeakoffEntry> {
+    let coefficient = read_value(section, "leakoff", InTime::Never);
     let exposed = section.number("exposed_at");
     if section.has("exposed_at") && !section.has("leakoff") {
         let problem = "exposed_at is given, but nothing leaks off".into();
         section.refuse("exposed_at", problem, "add leakoff = 1e-5 (m/s^0.5)");
     }
     let is_open = matches!(conduit, Some(Conduit::Open(_)));
+    let (coefficient, field) = match coefficient? {
+        Value::Number(number) => (number, None),
+        Value::Varying(entry) => (1.0, Some(entry)),
+    };
     let leakoff = Leakoff {
-        coefficient: coefficient?,
+        coefficient,
+        varying: field.as_ref().map(|entry| entry.field.clone()),
         exposed: exposed.unwrap_or(0.0),
     };
-    (is_open && leakoff.coefficient > 0.0).then_some(leakoff)
+    (is_open && leakoff.coefficient > 0.0).then_some(LeakoffEntry { leakoff, field })
 }
 
 /// Refuses keys that another one leaves without effect.

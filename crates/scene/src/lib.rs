@@ -54,7 +54,7 @@ pub use conditions::{
     VaryingLoadEntry,
 };
 pub use field::FieldEntry;
-pub use fluid::{FluidEntry, PressureEntry, SourceEntry, SourcePlace};
+pub use fluid::{FluidEntry, LeakoffEntry, PressureEntry, SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, PhaseEntry, StepEnd, Timetable};
 pub use initial_stress::InitialStressEntry;

@@ -1,6 +1,6 @@
 //! What flows in fractures, and where it is driven.
 
-use super::field::{FIELD, varied};
+use super::field::{FIELD, varied, watched_varied};
 use super::shared::{GROWS_ONCE, INITIAL, INITIAL_GRADIENT};
 use crate::dimension::Dimension;
 use crate::plausible::Plausible;
@@ -145,10 +145,10 @@ pub static SOURCE: KeySection = KeySection {
         },
         Key {
             name: "rate",
-            kind: number(Dimension::VolumeRate, Range::Finite),
+            kind: varied(Dimension::VolumeRate, Range::Finite),
             need: Need::Or("pressure"),
             example: "1e-3",
-            says: "What flows in; negative where it flows out",
+            says: "What flows in; negative where it flows out; one that varies does so with time alone",
         },
         Key {
             name: "pressure",
@@ -295,7 +295,7 @@ static LEAKOFF_COEFFICIENT: Plausible = Plausible {
 /// What the rock beside a fracture takes up.
 pub(super) const LEAKOFF: Key = Key {
     name: "leakoff",
-    kind: watched(Dimension::Leakoff, Range::NotNegative, &LEAKOFF_COEFFICIENT),
+    kind: watched_varied(Dimension::Leakoff, Range::NotNegative, &LEAKOFF_COEFFICIENT),
     need: Need::Default("0"),
     example: "1e-5",
     says: "Carter's coefficient C (m/s^0.5): through each wall fluid leaks off into the rock with the velocity C / sqrt(t - t_0); where the flow takes time",

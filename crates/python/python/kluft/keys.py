@@ -386,7 +386,8 @@ class Source(Section):
             by length times transmissivity; without `radius`. Without it: `at`.
         points: Such a line by its points, straight between them; its rate needs no edges along it,
             its pressure does (m). Without it: `at`.
-        rate: What flows in; negative where it flows out (m3/s). This or `pressure` is required.
+        rate: What flows in; negative where it flows out; one that varies does so with time alone
+            (m3/s). This or `pressure` is required.
         pressure: Pressure of the fluid at its wall (Pa); -1e12 to 1e12. This or `rate` is required.
         radius: Its radius, small beside the facets around it; the pressure at its wall depends on
             it (m); > 0. Required, unless there is `fracture`, `curve` or `points`.
@@ -403,7 +404,7 @@ class Source(Section):
         fracture: str | None = None,
         curve: str | None = None,
         points: Sequence[Sequence[float]] | None = None,
-        rate: Quantity | None = None,
+        rate: Quantity | Varying | Mapping[str, Any] | None = None,
         pressure: Quantity | None = None,
         radius: Quantity | None = None,
         history: Sequence[Sequence[float]] | None = None,
@@ -795,7 +796,7 @@ class Fracture(Section):
         roughness: Quantity | Varying | Mapping[str, Any] | None = None,
         joint_roughness: Quantity | Varying | Mapping[str, Any] | None = None,
         sealed: bool | None = None,
-        leakoff: float | None = None,
+        leakoff: float | Varying | Mapping[str, Any] | None = None,
         exposed_at: float | None = None,
         history: Sequence[Sequence[float]] | None = None,
     ) -> None:

@@ -12,7 +12,7 @@ pub(super) enum Nodal {
     Given(Vec<usize>),
     /// A rate that these rows share, ascending, with shares that add up to 1.
     Shared(Vec<(usize, f64)>),
-    /// A rate per area (m/s) that these rows have (m^2), ascending.
+    /// A rate per area (m/s) that these rows have (m^2), ascending; areas are times what varies.
     PerArea(Vec<(usize, f64)>),
     /// A rate through the wall of a borehole.
     WellRate(Well),

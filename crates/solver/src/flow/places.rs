@@ -90,12 +90,21 @@ fn place(
         let well = wells::at(mesh, nodes, conductance, row, (radius, &entry.name))?;
         return Ok(Place::Well(well));
     }
-    let shares = match entry.place {
+    let mut shares = match entry.place {
         FlowPlace::Line(line) => along(nodes, &lines[line]),
         place => shares(mesh, place, nodes, stencils),
     };
     let counted = |share: &RowShare| share.weight * conductance.transmissivity[share.facet];
-    match shares.iter().map(counted).sum::<f64>() > 0.0 {
+    let is_met = shares.iter().map(counted).sum::<f64>() > 0.0;
+    if let FlowDrive::Leakoff(leakoff) = &entry.drive
+        && let Some(field) = &leakoff.varying
+    {
+        for share in &mut shares {
+            let node = nodes.node[share.row] as usize;
+            share.weight *= field.at(mesh.nodes[node], 0.0);
+        }
+    }
+    match is_met {
         true => Ok(Place::Rows(shares)),
         false => Err(meets_nothing()),
     }

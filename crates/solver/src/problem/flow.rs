@@ -68,10 +68,12 @@ pub enum FlowDrive {
 
 /// What fluid leaks off into rock through the walls of a fracture, by Carter's law: through each
 /// wall with the velocity `C / sqrt(t - t_0)` (Howard & Fast 1957).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Leakoff {
-    /// `C` (m/s^0.5).
+    /// `C` (m/s^0.5); where it varies, a factor on its values.
     pub coefficient: f64,
+    /// Values of `C` (m/s^0.5) by position, at the corners of facets.
+    pub varying: Option<Field>,
     /// `t_0`, when the walls first meet the fluid (s).
     pub exposed: f64,
 }

@@ -51,6 +51,7 @@ fn flow_of(mesh: &Mesh) -> kluft_solver::Flow {
         place: FlowPlace::Fracture(0),
         drive: FlowDrive::Leakoff(Leakoff {
             coefficient: COEFFICIENT,
+            varying: None,
             exposed: 0.0,
         }),
         case: 0,

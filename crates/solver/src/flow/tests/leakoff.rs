@@ -15,6 +15,7 @@ fn leaking(exposed: f64) -> FlowCondition {
         place: FlowPlace::Fracture(0),
         drive: FlowDrive::Leakoff(Leakoff {
             coefficient: COEFFICIENT,
+            varying: None,
             exposed,
         }),
         case: 0,
