@@ -67,6 +67,13 @@ impl FractureLaw {
         self.friction.is_none() && self.closure.is_linear()
     }
 
+    /// Whether walls may pass through each other where the law balances the rock: it resists no
+    /// more, the closer they are. A logarithmic law that goes on linearly below its cutoff stiffens
+    /// up to there, which keeps iterations from doing so on the way.
+    pub fn lets_walls_pass(&self) -> bool {
+        self.is_linear()
+    }
+
     /// Whether the tangent changes gradually: no sliding, no end of contact.
     pub fn is_smooth(&self) -> bool {
         self.friction.is_none() && self.closure.is_smooth()
@@ -75,5 +82,25 @@ impl FractureLaw {
     /// Whether the traction depends on how a jump was reached.
     pub fn is_path_dependent(&self) -> bool {
         self.friction.is_some() || matches!(self.closure.tension, Tension::Cohesive { .. })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walls_pass_where_no_law_stiffens() {
+        let cut = |cutoff| ClosureKind::Logarithmic { cutoff };
+        let law = |stiffness, kind| FractureLaw::elastic(Closure::new(1e-3, stiffness, kind), 1e9);
+        for (law, passes) in [
+            (law(1e10, ClosureKind::Linear), true),
+            (law(1e10, cut(Some(1e-3))), true),
+            (law(1e10, cut(Some(1e-5))), false),
+            (law(1e10, cut(None)), false),
+            (law(0.0, cut(None)), true),
+        ] {
+            assert_eq!(law.lets_walls_pass(), passes, "{law:?}");
+        }
     }
 }

@@ -177,9 +177,8 @@ pub(super) fn follow(
     planes: &Linearised,
 ) -> Vec<f64> {
     let flow = system.coupling().filter(|_| system.is_smooth());
-    // A law that is linear lets walls pass through each other where it balances the rock.
     let follows = |law: &FractureLaw, trial: &TrialState, state: &FacetPointState| {
-        flow.is_some_and(|flow| opens(trial, state) || (law.is_linear() && flow.traps()))
+        flow.is_some_and(|flow| opens(trial, state) || (law.lets_walls_pass() && flow.traps()))
     };
     let points = interface(system).points.par_iter();
     points

@@ -184,8 +184,8 @@ pub(super) fn goes_far(system: &System<'_>, state: &State, correction: &[DVec3])
     pairs.any(|((point, state), jump)| {
         let before = state.aperture(point.normal);
         let opens = jump.dot(point.normal);
-        // A law that is linear lets the walls close further than the slope can tell.
-        let change = match system.law(point).is_linear() {
+        // They close further then than the slope can tell.
+        let change = match system.law(point).lets_walls_pass() {
             true => opens.abs(),
             false => opens,
         };

@@ -159,13 +159,32 @@ fn a_joint_fills_as_the_similarity_solution_says() {
 /// ahead of it: a law that is linear would let its walls pass through each other on the way.
 #[test]
 fn a_linear_joint_in_stiff_rock_fills_in_one_increment() {
+    let substeps = filled_in_stiff_rock(linear());
+    assert!(substeps.len() == 1 && substeps[0] <= 8, "{substeps:?}");
+}
+
+/// A law with a cutoff goes on linearly below it, but stiffens up to there.
+#[test]
+fn a_joint_with_a_cutoff_in_stiff_rock_fills_in_one_increment() {
+    for share in [0.01, 0.3, 0.9, 1.0] {
+        let cutoff = Some(share * APERTURE);
+        let kind = ClosureKind::Logarithmic { cutoff };
+        let substeps = filled_in_stiff_rock(Closure::new(APERTURE, NORMAL_STIFFNESS, kind));
+        assert!(
+            substeps.len() == 1 && substeps[0] <= 15,
+            "{share}: {substeps:?}"
+        );
+    }
+}
+
+/// Iterations of each increment in which a joint of this law fills.
+fn filled_in_stiff_rock(closure: Closure) -> Vec<usize> {
     let mesh = bent_slab(Shape::Hex8, 50, 25.0, |x| 25.0 * (x / 25.0).powf(1.5));
-    let mut problem = problem(&mesh, linear(), times(10.0, 1));
+    let mut problem = problem(&mesh, closure, times(10.0, 1));
     problem.rocks[0].young_modulus = 60e9;
     let flow = flow(&mesh, ends(&mesh, 9e5, 0.0));
     let path = solved(&problem, &flow);
-    let substeps = &path.records[0].substeps;
-    assert!(substeps.len() == 1 && substeps[0] <= 8, "{substeps:?}");
+    path.records[0].substeps.clone()
 }
 
 /// A fluid that neither gives way nor leaves carries the whole load: no effective stress, no
