@@ -8,7 +8,7 @@
 
 use lie_core::TrialState;
 
-use super::facet_points::{self, interface};
+use super::facet_points::{self, interface, jump_beyond};
 use super::fluid;
 use crate::flow::Coupling;
 use crate::problem::Load;
@@ -51,11 +51,10 @@ fn opens_wide(system: &System<'_>, state: &mut State, rise: &[f64]) -> bool {
             normal_traction: own.joint.normal_traction + rise,
             shear: own.joint.shear,
         };
-        let jump = trial.separation.opening * point.normal + trial.slip + own.jump_residual;
         let law = system.law(point);
         own.joint = law.return_map(&trial, point.rock_stiffness(), &own.history);
         let reached = own.joint.separation;
-        own.jump_residual = jump - reached.opening * point.normal - own.joint.slip;
+        own.jump_residual += jump_beyond(point, &trial, &own.joint);
         is_wide |= before > 0.0 && reached.aperture > WIDE * before;
     }
     is_wide

@@ -2,7 +2,7 @@
 //! solves.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FractureLaw, RockStiffness, Separation, Tangent, TrialState};
+use lie_core::{FractureLaw, JointState, RockStiffness, Separation, Tangent, TrialState};
 use rayon::prelude::*;
 
 use crate::assembly::facet_point::FacetPoint;
@@ -286,18 +286,23 @@ fn update_state(
     rock: RockStiffness,
     state: &mut FacetPointState,
 ) -> f64 {
-    state.joint = if law.is_linear() {
+    let joint = if law.is_linear() {
         law.state_at(trial)
     } else {
         law.return_map(trial, rock, &state.history)
     };
-    let joint = &state.joint;
-    let opening = trial.separation.beyond(joint.separation);
-    state.jump_residual = opening * point.normal + trial.slip - joint.slip;
+    state.joint = joint;
+    state.jump_residual = jump_beyond(point, trial, &joint);
     let traction = trial.normal_traction * point.normal + trial.shear;
     (traction - joint.traction(point.normal))
         .length()
         .max(point.spring * state.jump_residual.length())
+}
+
+/// How much further apart the walls are at a trial state than a law has them (m).
+pub(super) fn jump_beyond(point: &FacetPoint, trial: &TrialState, joint: &JointState) -> DVec3 {
+    let opening = trial.separation.beyond(joint.separation);
+    opening * point.normal + trial.slip - joint.slip
 }
 
 /// The secant serves where the law is smooth. Two linear solves on different sides of a kink tell
