@@ -205,31 +205,47 @@ fn assert_near(found: f64, wanted: f64, tolerance: f64) {
 /// What OpenGeoSys stores has this many digits.
 const STORED: f64 = 1e-9;
 
-/// `coulomb_load_path`: a joint with friction and dilation between blocks that nearly nothing
-/// deforms, closed by 1e-6 m and slid to 1e-5 m and back to -1e-5 m. Blocks of 1e15 Pa instead of
-/// 2e18 Pa give way by 2e-4 at most. The closed form, with plastic slips `p`, `q` of both ways:
-/// `t = c + tan(phi) s` and `s = K (1e-6 + tan(psi) (p + q))`.
-#[test]
-fn a_joint_of_opengeosys_slides_and_opens_as_it_does_there() {
-    let story = Story {
+/// Constants of [`rubbing`] for this ratio of Poisson's.
+fn rubbing_constants(nu: &str) -> [[&str; 2]; 11] {
+    [
+        ["E", "2e18"],
+        ["nu", nu],
+        ["Kn", "20e9"],
+        ["Ks", "20e9"],
+        ["phi", "22"],
+        ["psi", "10"],
+        ["c", "1e3"],
+        ["b", "1e-5"],
+        ["zero", "0"],
+        ["one", "1"],
+        ["minus", "-1"],
+    ]
+}
+
+/// Two squares that nearly nothing deforms, and between them a joint with friction and dilation.
+fn rubbing<'a>(constants: &'a [[&'a str; 2]]) -> Story<'a> {
+    Story {
         size: [1.0, 2.0],
         law: "<type>Coulomb</type><friction_angle>phi</friction_angle>\
               <dilatancy_angle>psi</dilatancy_angle><cohesion>c</cohesion>\
               <penalty_aperture_cutoff>1e-5</penalty_aperture_cutoff>\
               <tension_cutoff>1</tension_cutoff>",
         fractures: &[7],
-        constants: &[
-            ["E", "2e18"],
-            ["nu", "0.3"],
-            ["Kn", "20e9"],
-            ["Ks", "20e9"],
-            ["phi", "22"],
-            ["psi", "10"],
-            ["c", "1e3"],
-            ["b", "1e-5"],
-            ["zero", "0"],
-            ["one", "1"],
-        ],
+        constants,
+        curves: &[],
+        conditions: &[],
+        steps: (8, 0.5),
+    }
+}
+
+/// `coulomb_load_path`: a joint with friction and dilation between blocks that nearly nothing
+/// deforms, closed by 1e-6 m and slid to 1e-5 m and back to -1e-5 m. Blocks of 1e15 Pa instead of
+/// 2e18 Pa give way by 2e-4 at most. The closed form, with plastic slips `p`, `q` of both ways:
+/// `t = c + tan(phi) s` and `s = K (1e-6 + tan(psi) (p + q))`.
+#[test]
+fn a_joint_of_opengeosys_slides_and_opens_as_it_does_there() {
+    let constants = rubbing_constants("0.3");
+    let story = Story {
         curves: &[
             ["slip", "0 1 2 4", "0 0 1e-5 -1e-5", "one"],
             ["closure", "0 1 4", "0 -1e-6 -1e-6", "one"],
@@ -240,7 +256,7 @@ fn a_joint_of_opengeosys_slides_and_opens_as_it_does_there() {
             ["displacement", "TOP", "Dirichlet", "0", "slip"],
             ["displacement", "TOP", "Dirichlet", "1", "closure"],
         ],
-        steps: (8, 0.5),
+        ..rubbing(&constants)
     };
     let (run, rows) = told(&story, GRID);
     assert!(run.out.contains("1e15"), "{}", run.out);
@@ -423,26 +439,8 @@ fn two_joints_are_pushed_and_pulled_as_in_opengeosys() {
 #[test]
 fn a_joint_under_shear_tractions_slides_both_ways() {
     let times = "0 1 2 4 10";
+    let constants = rubbing_constants("0");
     let story = Story {
-        size: [1.0, 2.0],
-        law: "<type>Coulomb</type><friction_angle>phi</friction_angle>\
-              <dilatancy_angle>psi</dilatancy_angle><cohesion>c</cohesion>\
-              <penalty_aperture_cutoff>1e-5</penalty_aperture_cutoff>\
-              <tension_cutoff>1</tension_cutoff>",
-        fractures: &[7],
-        constants: &[
-            ["E", "2e18"],
-            ["nu", "0"],
-            ["Kn", "20e9"],
-            ["Ks", "20e9"],
-            ["phi", "22"],
-            ["psi", "10"],
-            ["c", "1e3"],
-            ["b", "1e-5"],
-            ["zero", "0"],
-            ["one", "1"],
-            ["minus", "-1"],
-        ],
         curves: &[
             ["closure", "0 1 10", "0 -1e-6 -1e-6", "one"],
             ["shear", times, "0 0 20e3 -30e3 -30e3", "one"],
@@ -456,7 +454,7 @@ fn a_joint_under_shear_tractions_slides_both_ways() {
             ["displacement", "BOTTOM", "Dirichlet", "0", "zero"],
             ["displacement", "BOTTOM", "Dirichlet", "1", "zero"],
         ],
-        steps: (8, 0.5),
+        ..rubbing(&constants)
     };
     let (_, rows) = told(&story, GRID);
     let across = numbers(&rows, "surface-7", "normal_traction_mean");
