@@ -6,7 +6,7 @@ use kluft_solver::{Field, NewtonSettings};
 use lie_core::{Closure, ClosureKind};
 
 use crate::oracles::similarity::Filling;
-use crate::report::{Effort, Finding, Study, Table, largest, percent};
+use crate::report::{Effort, Finding, Study, Table, largest, missed, percent};
 use crate::scenes::EXACT;
 use crate::scenes::flow::{VISCOSITY, on_side, water};
 use crate::scenes::soft_slabs::{Path, as_given, equal_steps, extrapolated, path, problem, strip};
@@ -266,11 +266,10 @@ fn run(effort: Effort) -> Finding {
         "Volumes and apertures are of order {:.2} at least in the time step, and of order {:.2} at \
          least in the size of the cells; {left} is left at the finest mesh, where the error of the \
          steps has been extrapolated away. Errors follow `time_accuracy` down to what the mesh \
-         leaves. No part of a step takes more than {} Newton iterations, and but for rounding nodes never miss \
-         more than {:.0e} of what moves.",
+         leaves. No part of a step takes more than {} Newton iterations. {}",
         lowest_order(&times),
         lowest_order(&spaces),
         all.iter().map(|case| case.iterations).max().unwrap_or(0),
-        largest(all.iter().map(|case| case.mass_error))
+        missed(largest(all.iter().map(|case| case.mass_error)))
     ))
 }

@@ -6,7 +6,7 @@ use kluft_mesh::Shape;
 use lie_core::{Closure, ClosureKind};
 
 use crate::oracles::diffusion::theis;
-use crate::report::{Effort, Finding, Study, largest, percent};
+use crate::report::{Effort, Finding, Study, largest, missed, percent};
 use crate::scenes::flow::{VISCOSITY, fed_from_side, water};
 use crate::scenes::soft_slabs::{
     SECTOR, as_given, equal_steps, extrapolated, logarithmic, path, problem, sector,
@@ -130,10 +130,10 @@ fn run(effort: Effort) -> Finding {
     ));
     IN_SPACE.on(page, &spaces).shows(format!(
         "Pressures are of order {:.2} in the time step and of order {:.2} in the size of the cells; \
-         {} is left at the finest mesh. But for rounding, nodes never miss more than {:.0e} of what moves.",
+         {} is left at the finest mesh. {}",
         lowest_order(&times),
         lowest_order(&spaces),
         percent(left),
-        largest(all.iter().map(|found| found.mass_error))
+        missed(largest(all.iter().map(|found| found.mass_error)))
     ))
 }

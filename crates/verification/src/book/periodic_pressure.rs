@@ -6,7 +6,7 @@ use kluft_mesh::Shape;
 use lie_core::{Closure, ClosureKind};
 
 use crate::oracles::diffusion::{periodic_inflow, periodic_to_closed_end};
-use crate::report::{Effort, Finding, Study, largest, percent};
+use crate::report::{Effort, Finding, Study, largest, missed, percent};
 use crate::scenes::flow::{VISCOSITY, on_side, water};
 use crate::scenes::soft_slabs::{DRIVEN, as_given, extrapolated, path, problem, strip, times};
 
@@ -180,10 +180,9 @@ fn run(effort: Effort) -> Finding {
     ));
     IN_SPACE.on(page, &spaces).shows(format!(
         "Pressures and what enters are of order {:.2} at least in the time step and of order {:.2} \
-         at least in the size of the cells; {left} is left at the finest mesh. But for rounding, \
-         nodes never miss more than {:.0e} of what moves.",
+         at least in the size of the cells; {left} is left at the finest mesh. {}",
         lowest_order(&times),
         lowest_order(&spaces),
-        largest(all.iter().map(|found| found.mass_error))
+        missed(largest(all.iter().map(|found| found.mass_error)))
     ))
 }

@@ -5,7 +5,7 @@ use kluft_mesh::Shape;
 use lie_core::{Closure, ClosureKind};
 
 use crate::oracles::diffusion::{half_space, taken_up, to_closed_end};
-use crate::report::{Effort, Finding, Study, largest, percent};
+use crate::report::{Effort, Finding, Study, largest, missed, percent};
 use crate::scenes::flow::{VISCOSITY, on_side, water};
 use crate::scenes::soft_slabs::{self, as_given, equal_steps, path, problem, strip};
 
@@ -175,10 +175,9 @@ fn run(effort: Effort) -> Finding {
     ));
     IN_SPACE.on(page, &spaces).shows(format!(
         "Pressures and volumes are of order {:.2} at least in the time step, and of order {:.2} at \
-         least in the size of the cells; {left} is left at the finest mesh. But for rounding, nodes \
-         never miss more than {:.0e} of what moves.",
+         least in the size of the cells; {left} is left at the finest mesh. {}",
         lowest_order(&times),
         lowest_order(&spaces),
-        largest(all().map(|case| case.mass_error))
+        missed(largest(all().map(|case| case.mass_error)))
     ))
 }

@@ -10,7 +10,7 @@ mod writer;
 
 use kluft_chart::Chart;
 
-pub use numbers::{digits, largest, percent};
+pub use numbers::{digits, largest, missed, percent};
 pub use table::Table;
 pub use writer::{Layout, Report};
 

@@ -17,6 +17,14 @@ pub fn digits(value: f64) -> String {
     format!("{value:.*}", (2.0 - power).max(0.0) as usize)
 }
 
+/// What nodes miss at most of what moves, as a share, which is 0 where rounding explains all of it.
+pub fn missed(share: f64) -> String {
+    match share == 0.0 {
+        true => "What nodes miss of what moves is below rounding.".to_owned(),
+        false => format!("But for rounding, nodes never miss more than {share:.0e} of what moves."),
+    }
+}
+
 /// The largest of some numbers; not a number if one of them is not.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let larger = |most: f64, value: f64| {
@@ -27,4 +35,16 @@ pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
         }
     };
     values.into_iter().fold(0.0, larger)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rounding_explains_is_no_number() {
+        assert!(missed(0.0).contains("below rounding"));
+        assert!(missed(3.2e-12).contains("3e-12"));
+        assert!(missed(f64::NAN).contains("NaN"));
+    }
 }

@@ -170,7 +170,7 @@ impl Path {
     }
 
     /// Largest share that nodes miss of what moves, in all steps where rounding does not explain
-    /// it.
+    /// it; 0 if there are none.
     pub fn mass_error(&self) -> f64 {
         let balances = self.frames.iter().map(|frame| frame.flow.balance);
         let unexplained = balances.filter(|balance| balance.mass_error > balance.rounding);
