@@ -12,6 +12,8 @@
 //! stands, and a factor of `S = E + rho / dt B^T diag(K)^-1 B`, in which every node answers by
 //! itself.
 
+use std::cell::RefCell;
+
 use glam::{DMat3, DVec3};
 use kluft_algebra::{
     ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks, LinearFailure,
@@ -135,17 +137,20 @@ impl CoupledTangent<'_, '_> {
         let tolerance = size.recip().min(LEAST_GAIN);
         let mut solution = vec![DVec3::ZERO; packed.len()];
         let mut failure = None;
+        // The iteration asks for one of them at a time.
+        let inner = RefCell::new(inner);
         let report = gmres(
             |vector, image| {
                 let (unknowns, pressures) = packing.split(vector);
                 let (forces, rest) = image.split_at_mut(packing.unknowns);
-                let rates = self.product(unknowns, &pressures, forces);
+                let rates = self.product(&**inner.borrow(), (unknowns, &pressures), forces);
                 pack_scalars(&rates, rest);
                 packing.scale(image);
             },
             |residual, correction| {
                 let (forces, missing) = packing.unscaled(residual);
-                match self.precondition(inner, factor, (forces, &missing)) {
+                let rest = (forces, &missing[..]);
+                match self.precondition(&mut **inner.borrow_mut(), factor, rest) {
                     Ok((unknowns, pressures)) => packing.pack(&unknowns, &pressures, correction),
                     Err(error) => failure = Some(error),
                 }
@@ -206,8 +211,13 @@ impl CoupledTangent<'_, '_> {
     }
 
     /// Forces (N) and rates (m^3/s) that changes of the unknowns (m) and pressures (Pa) ask for.
-    fn product(&self, unknowns: &[DVec3], pressures: &[f64], forces: &mut [DVec3]) -> Vec<f64> {
-        self.fixed.multiply(self.stiffness, unknowns, forces);
+    fn product(
+        &self,
+        inner: &dyn TangentSolver,
+        (unknowns, pressures): (&[DVec3], &[f64]),
+        forces: &mut [DVec3],
+    ) -> Vec<f64> {
+        inner.multiply(self.fixed, self.stiffness, unknowns, forces);
         self.flow.add_push(pressures, -1.0, forces);
         let openings = self.interface.openings(unknowns);
         self.flow.answer(&openings, pressures)
