@@ -130,9 +130,13 @@ fn compressed<T: Number>(values: &[T]) -> io::Result<Vec<u8>> {
 }
 
 fn deflated(bytes: &[u8], level: Compression) -> io::Result<Vec<u8>> {
-    let mut encoder = ZlibEncoder::new(Vec::with_capacity(bytes.len()), level);
+    // What is stored grows a little, and must not double the room it has for that.
+    let room = Vec::with_capacity(bytes.len() + bytes.len() / 64 + 64);
+    let mut encoder = ZlibEncoder::new(room, level);
     encoder.write_all(bytes)?;
-    encoder.finish()
+    let mut left = encoder.finish()?;
+    left.shrink_to_fit();
+    Ok(left)
 }
 
 /// Number of blocks, their size before compression, that of the last one if it is smaller, and the
