@@ -113,6 +113,24 @@ fn a_flow_that_takes_time_is_resumed_to_the_same_bits() {
     assert_eq!(outcome(&workshop.path("out")), expected);
 }
 
+/// So does a flow alone, between walls that do not move.
+#[test]
+fn a_flow_in_rigid_rock_is_resumed_to_the_same_bits() {
+    let times: Vec<String> = (1..=400).map(|step| format!("{step}e-6")).collect();
+    let load = format!("[load]\ntimes = [{}]\n\n[boundary.left]", times.join(", "));
+    let stored = "viscosity = 1e-3\ncompressibility = 4.5e-10";
+    let edits = [("viscosity = 1e-3", stored), ("[boundary.left]", &load[..])];
+    let workshop = Workshop::new("flow-star", &edits);
+    kill_after_a_step(&workshop);
+    let run = resume_without_gmsh(&workshop, "out");
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("resumed    after step "), "{}", run.out);
+    let expected = outcome(&workshop.solve("whole", &[]));
+    assert_eq!(outcome(&workshop.path("out")), expected);
+    let again = resume_without_gmsh(&workshop, "out");
+    assert!(again.out.contains("nothing is left to do"), "{}", again.out);
+}
+
 /// Killed as soon as there is a checkpoint, a run goes on from there, without gmsh.
 #[test]
 fn a_resumed_run_does_not_mesh_again() {

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use kluft_io::{Fingerprint, write_atomically};
 use kluft_mesh::Defect;
-use kluft_solver::{RestartState, StageEnd};
+use kluft_solver::{RestartState, StageEnd, TransientState};
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
@@ -22,7 +22,7 @@ use crate::summary::{FractureSummary, Seconds, StepFracture, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 11\n";
+const HEAD: &[u8] = b"kluft checkpoint 12\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -80,8 +80,19 @@ pub struct Progress<'a> {
     pub peak_memory_bytes: u64,
     /// What the present stage of the body began with, if it is not the first.
     pub stage: Option<Cow<'a, StageEnd>>,
-    /// Where the solver stands; none after the last load step.
+    /// Where the solver stands; none after the last load step, and in rigid rock.
     pub restart: Option<RestartState<'a>>,
+    /// Where the flow in rigid rock stands; none after the last load step.
+    pub flow_restart: Option<FlowRestart>,
+}
+
+/// How a flow in rigid rock goes on.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct FlowRestart {
+    /// What the next load step starts from, if the fluid is stored.
+    pub state: Option<TransientState>,
+    /// What was warned of.
+    pub warnings: Vec<String>,
 }
 
 /// A writer that sums up what goes through it, and keeps the error that postcard does not pass on.
@@ -319,6 +330,7 @@ mod tests {
             peak_memory_bytes: 5,
             stage: None,
             restart: None,
+            flow_restart: None,
         }
     }
 

@@ -91,6 +91,11 @@ pub struct FlowHistory {
 }
 
 impl FlowHistory {
+    /// A table that a former run began.
+    pub fn from_text(text: String) -> Self {
+        Self { text }
+    }
+
     /// The table so far.
     pub fn text(&self) -> &str {
         &self.text

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use kluft_mesh::Defect;
 
-use crate::checkpoint::{self, Progress};
+use crate::checkpoint::{self, FlowRestart, Progress};
 use crate::stages::Run;
 use crate::steps::Prepared;
 
@@ -34,10 +34,29 @@ impl Run<'_> {
     /// Tells later runs that nothing is left. Only the end of a run does, once its results are
     /// whole: a run that dies before solves the last load step again.
     pub(crate) fn write_last_checkpoint(&mut self) -> Result<(), Defect> {
-        if !self.keeps_checkpoints() || self.finished.is_empty() {
+        if !self.keeps_checkpoints() || self.finished_steps() == 0 {
             return Ok(());
         }
         self.write_progress(self.progress())
+    }
+
+    /// Lets a flow in rigid rock be resumed after the load step that was solved last.
+    pub(crate) fn write_flow_checkpoint(&mut self, restart: FlowRestart) -> Result<(), Defect> {
+        if !self.keeps_checkpoints() {
+            return Ok(());
+        }
+        self.write_progress(Progress {
+            flow_restart: Some(restart),
+            ..self.progress()
+        })
+    }
+
+    /// Number of load steps whose results are there.
+    fn finished_steps(&self) -> usize {
+        match self.request.scene.is_rigid() {
+            true => self.output.sums().len(),
+            false => self.finished.len(),
+        }
     }
 
     fn keeps_checkpoints(&self) -> bool {
@@ -59,7 +78,7 @@ impl Run<'_> {
     fn progress<'a>(&self) -> Progress<'a> {
         let summary = &self.summary;
         // A step that did not converge is no finished one.
-        let steps = summary.steps.iter().take(self.finished.len());
+        let steps = summary.steps.iter().take(self.finished_steps());
         Progress {
             choice: self.choice.clone(),
             steps: self.finished.clone(),
@@ -67,7 +86,10 @@ impl Run<'_> {
             step_fractures: steps.map(|step| step.fractures.clone()).collect(),
             files: self.output.sums().to_vec(),
             fractures: summary.fractures.clone(),
-            history: self.history.text().to_owned(),
+            history: match self.request.scene.is_rigid() {
+                true => self.flow_history.text().to_owned(),
+                false => self.history.text().to_owned(),
+            },
             probes: self.probes.text.clone(),
             measures: summary.measures.clone(),
             stress_error: summary.stress_error,
@@ -75,6 +97,7 @@ impl Run<'_> {
             peak_memory_bytes: summary.peak_memory_bytes,
             stage: None,
             restart: None,
+            flow_restart: None,
         }
     }
 }

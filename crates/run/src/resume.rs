@@ -23,7 +23,7 @@ pub struct FormerRun {
 impl FormerRun {
     /// Whether all its load steps are finished.
     pub fn is_finished(&self) -> bool {
-        self.progress.restart.is_none()
+        self.progress.restart.is_none() && self.progress.flow_restart.is_none()
     }
 }
 
@@ -76,7 +76,7 @@ pub fn find(
         return Err(defects);
     }
     let progress = stored.progress(&path).map_err(|defect| vec![defect])?;
-    if progress.files.len() != progress.steps.len() {
+    if progress.files.len() != progress.flows.len() {
         return Err(vec![checkpoint::other_build(&path)]);
     }
     output.check_steps(&progress.files)?;

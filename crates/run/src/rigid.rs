@@ -7,17 +7,19 @@ use std::time::Instant;
 use kluft_io::{Grid, write_atomically};
 use kluft_mesh::{Elements, Mesh};
 use kluft_scene::in_terms_of_scene;
-use kluft_solver::{Flow, LinearFailure, Problem, Step, TransientFlow};
+use kluft_solver::{Flow, LinearFailure, Problem, Step, TransientFlow, TransientState};
 
+use crate::checkpoint::{self, FlowRestart, Progress};
 use crate::decisions;
 use crate::flow::{RunFlow, SolvedFlow};
-use crate::flow_history::FlowEntry;
+use crate::flow_history::{FlowEntry, FlowHistory};
 use crate::flow_summary;
 use crate::fluid_step::{failed, told};
 use crate::grids::{facet_grid, in_plane, integer_field, real_field};
 use crate::history;
 use crate::observer::Stage;
 use crate::probes::{Solved, SolvedFluid};
+use crate::resume::FormerRun;
 use crate::stages::{Interruption, Run, newton_settings};
 use crate::summary::StepSummary;
 use crate::unresolved;
@@ -28,7 +30,12 @@ impl Run<'_> {
     ///
     /// # Errors
     /// Conditions that make no flow, numbers that are not finite, files that cannot be written.
-    pub fn solve_flow(&mut self, problem: &Problem, flow: &Flow) -> Result<(), Interruption> {
+    pub fn solve_flow(
+        &mut self,
+        problem: &Problem,
+        flow: &Flow,
+        former: Option<FormerRun>,
+    ) -> Result<(), Interruption> {
         for decision in &self.summary.decisions {
             self.observer.note("decided", decision);
         }
@@ -42,23 +49,70 @@ impl Run<'_> {
             .then(|| self.flow_system(problem, flow, is_stored))
             .transpose()?;
         self.output.expect_steps(steps)?;
-        self.output.remove_former()?;
+        let mut restart = None;
+        match former {
+            Some(former) => restart = self.take_over(problem, former.progress),
+            None => self.output.remove_former()?,
+        }
         self.write_summary()?;
         self.permeability(problem, flow)?;
         let Some(mut made) = made else {
             return Ok(());
         };
+        let done = self.summary.steps.len();
         if !is_stored {
             let factor = self.stage(Stage::PrepareSolver, |_| made.factorise());
             factor.map_err(failed)?;
         }
         let accuracy = newton_settings(&self.request.scene.solver).time;
         let mut in_time = is_stored.then(|| made.in_time(&problem.schedule, accuracy));
-        for index in 0..steps {
+        if let (Some(flow), Some(reached)) = (&mut in_time, restart) {
+            let load = &problem.schedule.steps[done - 1].load;
+            if !flow.go_on(load, reached) {
+                let path = self.output.path(checkpoint::NAME);
+                return Err(checkpoint::other_build(&path).into());
+            }
+        }
+        for index in done..steps {
             let solved = self.flow_at(problem, (&made, in_time.as_mut()), index)?;
             self.flow_step(problem, (&made, &solved), index)?;
+            if index + 1 < steps {
+                self.write_flow_checkpoint(FlowRestart {
+                    state: in_time.as_ref().map(|flow| flow.state().clone()),
+                    warnings: self.summary.warnings.clone(),
+                })?;
+            }
         }
         Ok(())
+    }
+
+    /// Takes over what a former run has finished, and tells what the next load step starts from, if
+    /// the fluid is stored.
+    fn take_over(
+        &mut self,
+        problem: &Problem,
+        former: Progress<'static>,
+    ) -> Option<TransientState> {
+        let steps = &problem.schedule.steps;
+        let done = &steps[..former.files.len().min(steps.len())];
+        let times = done.iter().map(|step| step.load.time);
+        self.output.go_on_after(times, former.files);
+        let summaries = done
+            .iter()
+            .zip(former.flows)
+            .map(|(step, flow)| StepSummary {
+                flow,
+                ..StepSummary::without_measures(step)
+            });
+        self.summary.steps = summaries.collect();
+        self.summary.measures = former.measures;
+        self.flow_history = FlowHistory::from_text(former.history);
+        self.probes.text = former.probes;
+        let text = format!("after step {} of {}", done.len(), steps.len());
+        self.observer.note("resumed", &text);
+        let restart = former.flow_restart?;
+        self.summary.warnings = restart.warnings;
+        restart.state
     }
 
     /// The flow at the end of a load step.

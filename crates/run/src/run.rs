@@ -112,7 +112,7 @@ fn solve(
     match &binding.flow {
         Some(flow) if run.request.scene.is_rigid() => {
             run.probes.all.clone_from(&binding.probes);
-            run.solve_flow(&binding.problem, flow)
+            run.solve_flow(&binding.problem, flow, former)
         }
         _ => run.solve(&binding, former),
     }
@@ -127,11 +127,11 @@ fn what_is_left(former: Option<&FormerRun>, output: &Output) -> String {
         ),
         Some(former) if former.is_finished() => format!(
             "all {} load steps are finished: nothing is left to do",
-            former.progress.steps.len()
+            former.progress.files.len()
         ),
         Some(former) => format!(
             "{} load steps are finished{}",
-            former.progress.steps.len(),
+            former.progress.files.len(),
             if former.mesh_is_kept {
                 ", and their mesh is there"
             } else {

@@ -47,7 +47,7 @@ pub use estimate::{Estimator, MeanError, StressError, target_sizes};
 pub use flow::{
     ConditionFlow, Coupling, EquivalentPermeability, FlowBalance, FlowFields, FlowNetwork,
     FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor, TimeStep,
-    TransientFlow,
+    TransientFlow, TransientState,
 };
 pub use kluft_algebra::{
     Analysis, BlockMatrix, BlockRows, Cholesky, FixedPart, InterfaceBlocks, LinearFailure, Lists,

@@ -67,7 +67,7 @@ pub use networks::FlowNetwork;
 pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTensor};
 pub use steady::FlowSystem;
 pub use steady_state::NO_PRESSURE;
-pub use transient::{TimeStep, TransientFlow};
+pub use transient::{TimeStep, TransientFlow, TransientState};
 pub(crate) use wall_points::between_corners;
 
 #[cfg(test)]

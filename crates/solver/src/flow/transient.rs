@@ -12,6 +12,7 @@
 
 use kluft_algebra::{LinearFailure, ScalarCholesky};
 use kluft_mesh::facet_area_vector;
+use serde::{Deserialize, Serialize};
 
 use super::loaded::{FlowState, Loaded, Stored};
 use super::solve::{corrected, free_of};
@@ -37,12 +38,12 @@ pub struct TransientFlow<'s, 'a> {
     /// Factors of the matrix, each with the length of its increments (s).
     factors: Vec<(f64, Option<ScalarCholesky>)>,
     load: Load,
-    reached: Reached,
+    reached: TransientState,
 }
 
 /// What an increment starts from.
-#[derive(Clone)]
-struct Reached {
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct TransientState {
     /// Pressures (Pa).
     pressures: Vec<f64>,
     /// What has entered through each condition (m^3).
@@ -75,13 +76,29 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
             accuracy,
             factors: Vec::new(),
             load: schedule.start(),
-            reached: Reached {
+            reached: TransientState {
                 pressures: initial.clone(),
                 entered: vec![0.0; flow.conditions.len()],
             },
             initial,
             system,
         }
+    }
+
+    /// Where it stands.
+    pub fn state(&self) -> &TransientState {
+        &self.reached
+    }
+
+    /// Goes on from where another one stood under a load; whether that was one of the same system.
+    pub fn go_on(&mut self, load: &Load, reached: TransientState) -> bool {
+        let lengths = |state: &TransientState| [state.pressures.len(), state.entered.len()];
+        let fits = lengths(&reached) == lengths(&self.reached);
+        if fits {
+            self.load.clone_from(load);
+            self.reached = reached;
+        }
+        fits
     }
 
     /// The flow at the end of a time step that leads to `load`.
@@ -135,7 +152,7 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
     fn solve_part(
         &mut self,
         [start, middle, end]: &[Load; 3],
-    ) -> Result<(FlowState, Reached, f64), LinearFailure> {
+    ) -> Result<(FlowState, TransientState, f64), LinearFailure> {
         let from = self.reached.clone();
         let (whole, reached) = self.increment(&from, [start, end])?;
         if self.accuracy >= 1.0 {
@@ -163,9 +180,9 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
 
     fn increment(
         &mut self,
-        from: &Reached,
+        from: &TransientState,
         [start, end]: [&Load; 2],
-    ) -> Result<(FlowState, Reached), LinearFailure> {
+    ) -> Result<(FlowState, TransientState), LinearFailure> {
         let duration = end.time - start.time;
         let factor = self.factor(duration)?;
         let (topology, operator) = (&self.system.topology, &self.system.operator);
@@ -198,7 +215,7 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
         let state = loaded.state(operator, potentials);
         let entering = from.entered.iter().zip(&state.conditions);
         let entered = entering.map(|(so_far, flow)| so_far + flow.rate * duration);
-        let reached = Reached {
+        let reached = TransientState {
             pressures: state.pressures.clone(),
             entered: entered.collect(),
         };
