@@ -1,5 +1,7 @@
 //! What PETSc answers.
 
+use kluft_mesh::Defect;
+use kluft_program::failure::Failure;
 use kluft_solver::LinearFailure;
 
 /// PETSc's code of an allocation that failed.
@@ -18,6 +20,13 @@ impl From<PetscFailure> for LinearFailure {
     }
 }
 
+/// An error of PETSc or MPI outside of a linear solve.
+pub fn machine(PetscFailure(code): PetscFailure) -> Failure {
+    let problem = format!("MPI or PETSc reports its error {code}");
+    let remedy = "see what mpiexec says above, and the log of the batch system";
+    Failure::Machine(vec![Defect::new("ranks", problem, remedy)])
+}
+
 /// What was counted on this rank since the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Traffic {
@@ -33,6 +42,15 @@ pub struct Traffic {
     pub reductions: f64,
     /// Levels of the last solver, the finest included.
     pub levels: f64,
+}
+
+/// The preconditioner, or a part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Preconditioner {
+    /// A cycle through all levels.
+    Cycle,
+    /// The inverses of the diagonal blocks of clusters alone.
+    Clusters,
 }
 
 /// What became of a solve.

@@ -10,9 +10,9 @@ use kluft_solver::{
     TangentSolver, first_coarsening, first_guess, norm, serves,
 };
 
-use crate::levels::{Levels, SolverParts, gathered_parts};
+use crate::levels::{Levels, gathered_parts};
 use crate::partition::Partition;
-use crate::petsc::{Matrix, PetscFailure, Solver, World};
+use crate::petsc::{Matrix, PetscFailure, Preconditioner, Solver, SolverParts, World};
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 2000;
@@ -96,7 +96,8 @@ impl Distributed {
         Ok(SolverParts {
             operator: self.operator(fixed, blocks)?,
             inverse: self.matrix(&part.inverse)?,
-            below: levels.below,
+            prolongators: levels.prolongators,
+            matrices: levels.matrices,
             coarsest: levels.coarsest,
             largest_eigenvalues: bounds.map(|bound| self.margin * bound).collect(),
             is_small: 3 * rows <= LARGEST_FACTOR,
@@ -216,7 +217,7 @@ impl Distributed {
 
     fn clusters_alone(&mut self, rest: &[DVec3]) -> Result<Vec<DVec3>, LinearFailure> {
         let own = self.own(rest);
-        let alone = self.solver()?.clusters_alone(&own)?;
+        let alone = self.solver()?.apply(Preconditioner::Clusters, &own)?;
         Ok(self.all(&alone)?)
     }
 
@@ -356,7 +357,7 @@ impl TangentSolver for Distributed {
         rhs: &[DVec3],
     ) -> Result<Vec<DVec3>, LinearFailure> {
         let own = self.own(rhs);
-        let cycled = self.solver()?.precondition(&own)?;
+        let cycled = self.solver()?.apply(Preconditioner::Cycle, &own)?;
         Ok(self.all(&cycled)?)
     }
 }

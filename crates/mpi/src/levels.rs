@@ -15,30 +15,6 @@ const FEWEST_NODES: usize = 32;
 /// Row, column and entries of a block.
 type BlockRecord = [f64; 38];
 
-/// A level below the finest one.
-pub struct PetscLevel {
-    /// The prolongator from it.
-    pub prolongator: Matrix,
-    /// Its matrix, whose diagonal is the identity.
-    pub matrix: Matrix,
-}
-
-/// The matrices of a solver.
-pub struct SolverParts {
-    /// The tangent.
-    pub operator: Matrix,
-    /// The inverses of its diagonal blocks of clusters.
-    pub inverse: Matrix,
-    /// The levels below, the largest first.
-    pub below: Vec<PetscLevel>,
-    /// The inverse of the matrix of the last one; without it that one is smoothed.
-    pub coarsest: Option<Matrix>,
-    /// Upper bounds of the spectra of all levels, the finest first.
-    pub largest_eigenvalues: Vec<f64>,
-    /// Whether the whole is small enough for each rank to factorise.
-    pub is_small: bool,
-}
-
 /// The nodes of a level and the ranks that own them.
 #[derive(Debug)]
 struct LevelNodes {
@@ -105,8 +81,10 @@ impl LevelNodes {
 
 /// All levels below the finest one.
 pub struct Levels {
-    /// Prolongators and matrices, the largest level first.
-    pub below: Vec<PetscLevel>,
+    /// Prolongators from them, the largest level first.
+    pub prolongators: Vec<Matrix>,
+    /// Their matrices.
+    pub matrices: Vec<Matrix>,
     /// The inverse of the matrix of the last one, if it is solved by that.
     pub coarsest: Option<Matrix>,
     /// Upper bounds of the spectra of their matrices.
@@ -117,15 +95,16 @@ impl Levels {
     /// None: the finest level is all there is.
     pub fn none() -> Self {
         Self {
-            below: Vec::new(),
+            prolongators: Vec::new(),
+            matrices: Vec::new(),
             coarsest: None,
             largest_eigenvalues: Vec::new(),
         }
     }
 
     /// From what the rows of this rank give to the hierarchy, and the levels that those of all
-    /// ranks make. `owner` is that of the rows, `movers` tells which nodes of the next level move one.
-    /// Takes the prolongator to the first level, scaled, out of the part.
+    /// ranks make. `owner` is that of the rows, `movers` tells which nodes of the next level move
+    /// one. Takes the prolongator to the first level, scaled, out of the part.
     ///
     /// # Errors
     /// Those of PETSc.
@@ -141,20 +120,17 @@ impl Levels {
             *block = product(block, &transpose(&lower.factors()[column as usize]));
         }
         let mut nodes = LevelNodes::of(world, owner, lower.nodes(0), movers);
-        let mut below = vec![PetscLevel {
-            prolongator: nodes.matrix(world, &prolongator)?,
-            matrix: nodes.matrix(world, &lower.matrix(0, &nodes.own))?,
-        }];
+        let mut prolongators = vec![nodes.matrix(world, &prolongator)?];
         drop(prolongator);
+        let mut matrices = vec![nodes.matrix(world, &lower.matrix(0, &nodes.own))?];
         for level in 1..lower.count() {
             let above = nodes;
             nodes = LevelNodes::of(world, &above.owner, lower.nodes(level), |node| {
                 lower.movers(level - 1, node).iter().copied()
             });
-            below.push(PetscLevel {
-                prolongator: nodes.matrix(world, &lower.prolongator(level - 1, &above.own))?,
-                matrix: nodes.matrix(world, &lower.matrix(level, &nodes.own))?,
-            });
+            let rows = lower.prolongator(level - 1, &above.own);
+            prolongators.push(nodes.matrix(world, &rows)?);
+            matrices.push(nodes.matrix(world, &lower.matrix(level, &nodes.own))?);
         }
         let coarsest = match lower.coarsest_solve() {
             CoarsestSolve::Inverse => Some(nodes.matrix(world, &lower.inverse(&nodes.own))?),
@@ -162,7 +138,8 @@ impl Levels {
         };
         let bounds = (0..lower.count()).map(|level| lower.largest_eigenvalue(level));
         Ok(Self {
-            below,
+            prolongators,
+            matrices,
             coarsest,
             largest_eigenvalues: bounds.collect(),
         })

@@ -6,16 +6,17 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `petsc`, `shim.c` | PETSc and MPI behind safe types |
-//! | `rows` | rows of blocks on their way to PETSc |
+//! | `rows`, `lines` | rows of blocks on their way to PETSc |
 //! | `partition` | which rank owns which unknowns |
 //! | `levels` | the levels below the finest one, the rows of this rank |
 //! | `distributed` | the linear solver |
 //! | `run`, `args`, `memory`, `traffic` | the program |
 
-mod answers;
+pub mod answers;
 pub mod args;
 pub mod distributed;
 pub mod levels;
+mod lines;
 mod memory;
 pub mod partition;
 pub mod petsc;

@@ -8,6 +8,7 @@ use std::time::Duration;
 use clap::Parser;
 use kluft_program::failure::Failure;
 
+use kluft_mpi::answers::machine;
 use kluft_mpi::args::{Cli, Command};
 use kluft_mpi::petsc::World;
 use kluft_mpi::run;
@@ -29,7 +30,7 @@ fn main() -> ExitCode {
     let world = match World::start() {
         Ok(world) => world,
         Err(failure) => {
-            run::machine(failure).print();
+            machine(failure).print();
             return ExitCode::FAILURE;
         }
     };

@@ -2,7 +2,7 @@
 
 /// PETSc's operator, and the one that the levels were made of: a block and its column.
 const OF_BLOCK: usize = 2 * (72 + 4);
-/// Inverses of clusters, prolongator, levels below, vectors and the room to make them, for each row.
+/// Inverses of clusters, prolongator, levels below, vectors and room to make them, for each row.
 const OF_ROW: usize = 4_000;
 
 /// Bytes for `rows` block rows with `blocks` blocks, on all ranks together.

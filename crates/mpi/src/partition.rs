@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 use kluft_solver::small::rows_of;
 use kluft_solver::{FixedPart, InterfaceBlocks, Lists, System};
 
+use crate::answers::machine;
 use crate::petsc::{PetscFailure, World};
 
 /// Rows and their owners. The rows of a rank have consecutive global numbers, rank by rank, in the
@@ -115,7 +116,7 @@ impl Partition {
         let own = fixed.products(stiffness, &self.own, vector);
         let own: Vec<[f64; 3]> = own.into_iter().map(|entry| entry.to_array()).collect();
         if let Err(failure) = self.gather(world, &own, product) {
-            crate::run::machine(failure).print();
+            machine(failure).print();
             World::abort(1);
         }
     }

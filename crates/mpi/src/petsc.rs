@@ -7,17 +7,19 @@
 //! a pointer is handed over, and the shim keeps none of them.
 #![allow(unsafe_code)]
 
-use std::ffi::{c_double, c_int, c_void};
+use std::ffi::{c_int, c_void};
 use std::ptr::null_mut;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ThreadId;
 use std::time::Duration;
 
-use crate::levels::SolverParts;
-use crate::rows::{checked, in_lines};
+use crate::lines::{checked, in_lines};
 
-pub use crate::answers::{PetscFailure, Solved, Traffic};
+pub use crate::answers::{PetscFailure, Preconditioner, Solved, Traffic};
+
+/// What the shim makes.
+type Handle = *mut c_void;
 
 unsafe extern "C" {
     fn km_start() -> c_int;
@@ -26,13 +28,13 @@ unsafe extern "C" {
     fn km_rank() -> c_int;
     fn km_ranks() -> c_int;
     fn km_on_machine(count: *mut c_int) -> c_int;
-    fn km_all_arrive(seconds: c_double, arrived: *mut c_int) -> c_int;
+    fn km_all_arrive(seconds: f64, arrived: *mut c_int) -> c_int;
     fn km_gather(own: *const u64, count: c_int, all: *mut u64) -> c_int;
     fn km_gather_records(
         size: c_int,
         own: *const c_void,
         counts: *const c_int,
-        all: *mut c_void,
+        all: Handle,
     ) -> c_int;
     fn km_matrix(
         rows: i64,
@@ -41,52 +43,44 @@ unsafe extern "C" {
         l: c_int,
         own: *const c_int,
         others: *const c_int,
-        out: *mut *mut c_void,
+        out: *mut Handle,
     ) -> c_int;
     fn km_matrix_row(
-        matrix: *mut c_void,
+        matrix: Handle,
         row: i64,
         count: c_int,
         columns: *const i64,
-        lines: *const c_double,
+        lines: *const f64,
     ) -> c_int;
-    fn km_matrix_end(matrix: *mut c_void) -> c_int;
-    fn km_free_matrix(matrix: *mut c_void) -> c_int;
+    fn km_matrix_end(matrix: Handle) -> c_int;
+    fn km_free_matrix(matrix: Handle) -> c_int;
     fn km_solver(
-        operator: *mut c_void,
-        inverse: *mut c_void,
+        operator: Handle,
+        inverse: Handle,
         count: c_int,
-        prolongators: *const *mut c_void,
-        matrices: *const *mut c_void,
-        coarsest: *mut c_void,
-        largest: *const c_double,
+        prolongators: *const Handle,
+        matrices: *const Handle,
+        coarsest: Handle,
+        largest: *const f64,
         is_small: c_int,
-        out: *mut *mut c_void,
+        out: *mut Handle,
     ) -> c_int;
-    fn km_begin_update(solver: *mut c_void) -> c_int;
-    fn km_update_row(
-        solver: *mut c_void,
-        row: i64,
-        count: c_int,
-        columns: *const i64,
-        lines: *const c_double,
-    ) -> c_int;
-    fn km_end_update(solver: *mut c_void) -> c_int;
+    fn km_current_operator(solver: Handle, out: *mut Handle) -> c_int;
     fn km_solve(
-        solver: *mut c_void,
-        right: *const c_double,
-        solution: *mut c_double,
-        tolerance: c_double,
+        solver: Handle,
+        right: *const f64,
+        solution: *mut f64,
+        tolerance: f64,
         most: c_int,
         iterations: *mut c_int,
         reason: *mut c_int,
         broke: *mut c_int,
-        residual: *mut c_double,
+        residual: *mut f64,
     ) -> c_int;
-    fn km_precondition(solver: *mut c_void, right: *const c_double, out: *mut c_double) -> c_int;
-    fn km_smooth(solver: *mut c_void, right: *const c_double, out: *mut c_double) -> c_int;
-    fn km_free(solver: *mut c_void) -> c_int;
-    fn km_counts(counts: *mut c_double) -> c_int;
+    fn km_precondition(solver: Handle, right: *const f64, out: *mut f64) -> c_int;
+    fn km_smooth(solver: Handle, right: *const f64, out: *mut f64) -> c_int;
+    fn km_free(solver: Handle) -> c_int;
+    fn km_counts(counts: *mut f64) -> c_int;
 }
 
 fn done(code: c_int) -> Result<(), PetscFailure> {
@@ -247,7 +241,7 @@ impl Drop for World {
 /// A distributed matrix.
 #[derive(Debug)]
 pub struct Matrix {
-    pointer: *mut c_void,
+    pointer: Handle,
     /// Numbers of a block.
     block: usize,
     world: Arc<World>,
@@ -318,7 +312,7 @@ impl Matrix {
     }
 
     /// Hands it over.
-    fn into_pointer(mut self) -> *mut c_void {
+    fn into_pointer(mut self) -> Handle {
         std::mem::replace(&mut self.pointer, null_mut())
     }
 }
@@ -332,10 +326,28 @@ impl Drop for Matrix {
     }
 }
 
+/// The matrices of a solver.
+pub struct SolverParts {
+    /// The tangent.
+    pub operator: Matrix,
+    /// The inverses of its diagonal blocks of clusters.
+    pub inverse: Matrix,
+    /// The prolongators from the levels below, the largest first.
+    pub prolongators: Vec<Matrix>,
+    /// Their matrices, whose diagonal is the identity.
+    pub matrices: Vec<Matrix>,
+    /// The inverse of the last of them; without it that level is smoothed.
+    pub coarsest: Option<Matrix>,
+    /// Upper bounds of the spectra of all levels, the finest first.
+    pub largest_eigenvalues: Vec<f64>,
+    /// Whether the whole is small enough for each rank to factorise.
+    pub is_small: bool,
+}
+
 /// Conjugate gradients with multigrid.
 #[derive(Debug)]
 pub struct Solver {
-    pointer: *mut c_void,
+    pointer: Handle,
     rows: usize,
     world: Arc<World>,
 }
@@ -352,16 +364,12 @@ impl Solver {
     /// Those of PETSc.
     pub fn new(world: &Arc<World>, rows: usize, parts: SolverParts) -> Result<Self, PetscFailure> {
         world.here();
-        let levels = parts.below.len();
-        assert!(
-            levels == 0 || parts.largest_eigenvalues.len() > levels,
-            "one bound a level"
-        );
-        let pairs = parts.below.into_iter().map(|level| {
-            let prolongator = level.prolongator.into_pointer();
-            (prolongator, level.matrix.into_pointer())
-        });
-        let (prolongators, matrices): (Vec<*mut c_void>, Vec<*mut c_void>) = pairs.unzip();
+        let (levels, bounds) = (parts.matrices.len(), &parts.largest_eigenvalues);
+        assert_eq!(parts.prolongators.len(), levels, "a prolongator a level");
+        assert!(bounds.len() > levels, "one bound a level");
+        let pointers = |list: Vec<Matrix>| list.into_iter().map(Matrix::into_pointer).collect();
+        let prolongators: Vec<Handle> = pointers(parts.prolongators);
+        let matrices: Vec<Handle> = pointers(parts.matrices);
         let coarsest = parts.coarsest.map_or(null_mut(), Matrix::into_pointer);
         let mut solver = Self {
             pointer: null_mut(),
@@ -378,7 +386,7 @@ impl Solver {
                 prolongators.as_ptr(),
                 matrices.as_ptr(),
                 coarsest,
-                parts.largest_eigenvalues.as_ptr(),
+                bounds.as_ptr(),
                 c_int::from(parts.is_small),
                 &mut solver.pointer,
             )
@@ -393,21 +401,24 @@ impl Solver {
     /// Those of PETSc.
     pub fn update(
         &mut self,
-        rows: impl Iterator<Item = (i64, Vec<(i64, [[f64; 3]; 3])>)>,
+        mut rows: impl Iterator<Item = (i64, Vec<(i64, [[f64; 3]; 3])>)>,
     ) -> Result<(), PetscFailure> {
         self.world.here();
+        let mut pointer = null_mut();
         // SAFETY: PETSc runs on this thread, and the solver lives.
-        done(unsafe { km_begin_update(self.pointer) })?;
-        for (row, mut blocks) in rows {
-            in_lines(&mut blocks, |columns, lines| {
-                let count = checked(columns, lines, 9);
-                let (columns, lines) = (columns.as_ptr(), lines.as_ptr());
-                // SAFETY: as above, and both arrays were checked.
-                done(unsafe { km_update_row(self.pointer, row, count, columns, lines) })
-            })?;
-        }
-        // SAFETY: as above.
-        done(unsafe { km_end_update(self.pointer) })
+        done(unsafe { km_current_operator(self.pointer, &mut pointer) })?;
+        let current = Matrix {
+            pointer,
+            block: 9,
+            world: Arc::clone(&self.world),
+        };
+        let done = rows.try_for_each(|(row, mut blocks)| {
+            in_lines(&mut blocks, |at, lines| current.set_row(row, at, lines))
+        });
+        let done = done.and_then(|()| current.end());
+        // The solver keeps it.
+        current.into_pointer();
+        done
     }
 
     fn check(&self, right: &[[f64; 3]]) {
@@ -454,36 +465,25 @@ impl Solver {
         Ok((solution, solved))
     }
 
-    /// One cycle of the preconditioner.
+    /// What a part of the preconditioner makes of the entries of this rank.
     ///
     /// # Errors
     /// Those of PETSc.
     ///
     /// # Panics
     /// If `right` has not one entry a row of this rank.
-    pub fn precondition(&mut self, right: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, PetscFailure> {
-        self.applied(km_precondition, right)
-    }
-
-    /// The inverses of the diagonal blocks alone.
-    ///
-    /// # Errors
-    /// Those of PETSc.
-    ///
-    /// # Panics
-    /// If `right` has not one entry a row of this rank.
-    pub fn clusters_alone(&mut self, right: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, PetscFailure> {
-        self.applied(km_smooth, right)
-    }
-
-    fn applied(
+    pub fn apply(
         &mut self,
-        map: unsafe extern "C" fn(*mut c_void, *const c_double, *mut c_double) -> c_int,
+        part: Preconditioner,
         right: &[[f64; 3]],
     ) -> Result<Vec<[f64; 3]>, PetscFailure> {
         self.check(right);
         let mut out = vec![[0.0; 3]; self.rows];
         let (from, to) = (right.as_ptr().cast(), out.as_mut_ptr().cast());
+        let map = match part {
+            Preconditioner::Cycle => km_precondition,
+            Preconditioner::Clusters => km_smooth,
+        };
         // SAFETY: PETSc runs on this thread, the solver lives; both vectors have its length.
         done(unsafe { map(self.pointer, from, to) })?;
         Ok(out)

@@ -12,11 +12,12 @@ use kluft_run::{Caller, Ending, MeshInput, Observer, Origin, Outcome, Ranks, Req
 use kluft_scene::{MeshSource, Scene};
 use kluft_solver::{LinearFailure, LinearMethod, System, TangentSolver};
 
+use crate::answers::machine;
 use crate::args::RunArgs;
 use crate::distributed::Distributed;
 use crate::memory::solver_bytes;
 use crate::partition::Partition;
-use crate::petsc::{PetscFailure, World};
+use crate::petsc::World;
 use crate::traffic;
 
 /// Runs a scene.
@@ -89,13 +90,6 @@ fn verbosity(args: &RunArgs) -> Verbosity {
         (_, true) => Verbosity::Verbose,
         _ => Verbosity::Terminal,
     }
-}
-
-/// An error of PETSc or MPI outside of a linear solve.
-pub fn machine(PetscFailure(code): PetscFailure) -> Failure {
-    let problem = format!("MPI or PETSc reports its error {code}");
-    let remedy = "see what mpiexec says above, and the log of the batch system";
-    Failure::Machine(vec![Defect::new("ranks", problem, remedy)])
 }
 
 /// The numbers of all ranks. A rank that cannot be asked any more ends the run.

@@ -250,24 +250,19 @@ int km_solver(void *operator, void *inverse, int count, void *const *prolongator
   return 0;
 }
 
-/* Some rows of the operator change, the levels stay as they are: first this, then the rows, then the
-   end. What the levels were made of stays too, because the finest one is smoothed with it. */
-int km_begin_update(void *solver) {
+/* The operator, some rows of which may change then; what the levels were made of stays as it is,
+   because the finest one is smoothed with it. The solver keeps what it hands out. */
+int km_current_operator(void *solver, void **out) {
   Solver *s = solver;
   Mat levels;
-  if (s->current) return 0;
-  PetscCall(MatDuplicate(s->operator, MAT_COPY_VALUES, &s->current));
-  PetscCall(KSPGetOperators(s->solver, NULL, &levels));
-  PetscCall(KSPSetReusePreconditioner(s->solver, PETSC_TRUE));
-  return KSPSetOperators(s->solver, s->current, levels);
-}
-int km_update_row(void *solver, int64_t row, int count, const int64_t *columns, const double *lines) {
-  Solver *s = solver;
-  return km_matrix_row(s->current, row, count, columns, lines);
-}
-int km_end_update(void *solver) {
-  Solver *s = solver;
-  return km_matrix_end(s->current);
+  if (!s->current) {
+    PetscCall(MatDuplicate(s->operator, MAT_COPY_VALUES, &s->current));
+    PetscCall(KSPGetOperators(s->solver, NULL, &levels));
+    PetscCall(KSPSetReusePreconditioner(s->solver, PETSC_TRUE));
+    PetscCall(KSPSetOperators(s->solver, s->current, levels));
+  }
+  *out = s->current;
+  return 0;
 }
 
 static int put(Vec to, const double *from) {

@@ -4,11 +4,11 @@ use glam::DVec3;
 use kluft_mesh::Mesh;
 use kluft_solver::{HeldPart, Problem, VaryingDisplacement};
 
-use crate::bind_fields::cases;
 use crate::cases::Bound;
 use crate::field::FieldEntry;
 use crate::history::LoadHistory;
 use crate::look::Look;
+use crate::timed_cases::cases;
 
 /// What a section of the scene holds.
 struct Held<'a> {

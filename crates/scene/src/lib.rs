@@ -45,6 +45,7 @@ mod sources;
 mod stages;
 mod strength;
 mod surfaces;
+mod timed_cases;
 mod warning;
 
 pub use bind::{Binding, bind};

@@ -2,13 +2,14 @@
 //! needs of the rows of one of them, in unknowns that are not scaled.
 //!
 //! With the clusters `C` of unknowns, `A = R + S` of a fixed matrix and an interface, and the basis
-//! `P` of the fixed one, that is the inverse `A_CC^-1` for a smoother and a bound of the spectrum of
+//! `P` of the fixed one, that is the inverse `A_CC^-1` for a smoother, a bound of the spectrum of
 //! `A_CC^-1 A`, the prolongator `A_CC^-1 R_CC P`, and what the rows give to the matrix of the next
 //! level. What all of them give makes the [`LowerLevels`].
 
 use glam::DVec3;
 
 use super::block_jacobi::{self, Factors};
+use super::block_list::BlockList;
 use super::lower_levels::LowerLevels;
 use super::mean_field::{CoarseBasis, MeanField};
 use super::setup::{FixedHierarchy, NodeMatrix};
@@ -25,17 +26,6 @@ use crate::small::{add, product, transpose, widen};
 #[derive(Debug, Clone)]
 pub struct FirstCoarsening {
     fixed: FixedHierarchy,
-}
-
-/// Blocks of `M` lines of `L` numbers, row by row.
-#[derive(Debug, Clone, Default)]
-pub struct BlockList<const M: usize, const L: usize> {
-    /// Start of each row; one entry more than there are rows.
-    pub offset: Vec<usize>,
-    /// Column of each block.
-    pub columns: Vec<u32>,
-    /// The blocks, as rows.
-    pub blocks: Vec<[[f64; L]; M]>,
 }
 
 /// Rows of some whole clusters, those of one process, with the clusters factorised that they couple
@@ -59,37 +49,6 @@ pub struct LevelPart {
     /// What they add to the matrix of the next level, one row for each of its nodes: the diagonal
     /// block and those right of it.
     pub next: BlockList<6, 6>,
-}
-
-impl<const M: usize, const L: usize> BlockList<M, L> {
-    /// No rows.
-    pub(super) fn new() -> Self {
-        Self {
-            offset: vec![0],
-            ..Self::default()
-        }
-    }
-
-    pub(super) fn push(&mut self, column: u32, block: [[f64; L]; M]) {
-        self.columns.push(column);
-        self.blocks.push(block);
-    }
-
-    pub(super) fn end_row(&mut self) {
-        self.offset.push(self.columns.len());
-    }
-
-    /// Columns and blocks of a row.
-    pub fn row(&self, row: usize) -> impl Iterator<Item = (u32, &[[f64; L]; M])> {
-        let range = self.offset[row]..self.offset[row + 1];
-        let columns = self.columns[range.clone()].iter().copied();
-        columns.zip(&self.blocks[range])
-    }
-
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.offset.len() - 1
-    }
 }
 
 impl FirstCoarsening {

@@ -1,8 +1,8 @@
 //! The levels below a finest one whose rows many processes share. They are much smaller than it, so
 //! every process makes all of them, alike; what it works with are the rows that it owns.
 
+use super::block_list::BlockList;
 use super::cycle::{Below, Level};
-use super::first_coarsening::BlockList;
 use super::galerkin;
 use super::setup;
 use super::triple_product::{Block6, PartialProduct};

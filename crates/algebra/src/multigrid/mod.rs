@@ -10,6 +10,7 @@
 
 mod aggregation;
 mod block_jacobi;
+mod block_list;
 mod clusters;
 mod coarsest;
 mod cycle;
@@ -42,7 +43,8 @@ use crate::block_rows::BlockRows;
 use crate::interface::InterfaceBlocks;
 
 pub use crate::failure::MultigridFailure;
-pub use first_coarsening::{BlockList, FirstCoarsening, LevelPart, OwnRows};
+pub use block_list::BlockList;
+pub use first_coarsening::{FirstCoarsening, LevelPart, OwnRows};
 pub use lower_levels::{CoarsestSolve, LowerLevels};
 pub use mean_field::{CoarseBasis, MeanField};
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::first_coarsening::BlockList;
+use super::block_list::BlockList;
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
 use crate::lists::sum_up;
 use crate::small::{add, add_columns, add_product, narrow, widen};

@@ -49,9 +49,9 @@ fn difference(file: &Path, step: &StepResult, name: &str) -> f64 {
     share(&found, step, name)
 }
 
-/// Difference from a field of a step, against its largest value there. Apertures and jumps of scenes
-/// that have next to none of them count against the largest displacement, tractions against the
-/// largest stress.
+/// Difference from a field of a step, against its largest value there. Apertures and jumps of
+/// scenes that have next to none of them count against the largest displacement, tractions against
+/// the largest stress.
 fn share(found: &Cells, step: &StepResult, name: &str) -> f64 {
     let grid = match ROCK.contains(&name) {
         true => &step.rock,
@@ -117,9 +117,10 @@ fn is_equal(name: &str) {
     }
 }
 
-/// A scene whose walls slide or whose joint fills, where the end of the iterations leaves more than in
-/// others. The direct solver, which leaves nothing of a linear system, is compared with ranks and
-/// with the serial iterative solver: what both leave has the same cause, so the same size.
+/// A scene whose walls slide or whose joint fills, where the end of the iterations leaves more
+/// than in others. The direct solver, which leaves nothing of a linear system, is compared with
+/// ranks and with the serial iterative solver: what both leave has the same cause, so the same
+/// size.
 fn is_as_equal_as_solvers(name: &str) {
     let scene = geometry(name);
     let folder = tempfile::tempdir().expect("a folder");

@@ -202,8 +202,8 @@ impl<'a> System<'a> {
         }
     }
 
-    /// A state that was reached with other laws, restated: apertures stay, the rest follows from the
-    /// jumps and the present laws.
+    /// A state that was reached with other laws, restated: apertures stay, the rest follows from
+    /// the jumps and the present laws.
     pub(crate) fn restated<'s>(&self, state: &'s State) -> Cow<'s, State> {
         if state.generation == self.generation {
             return Cow::Borrowed(state);
