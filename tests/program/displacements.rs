@@ -6,7 +6,7 @@ use std::fs;
 use crate::fields::{assert_near, numbers, rows};
 use crate::harness::{Workshop, kluft, root};
 use crate::plane::probes;
-use crate::resume::{kill_after_a_step, outcome, resume_without_gmsh};
+use crate::resume::goes_on_to_the_same_bits;
 
 const FACES: [&str; 6] = ["left", "right", "front", "back", "bottom", "top"];
 /// Young's modulus (Pa) and Poisson's ratio of the block.
@@ -144,12 +144,7 @@ fn a_face_that_moves_with_the_time_is_resumed_to_the_same_bits() {
         .replace("0.5, 2.0, 3.0", &times.join(", "))
         .replace("-0.1*time^2", "-0.01*time*(1 + x)");
     let workshop = block("parameters = { h = 0.3 }", 0.25, &format!("{joint}{scene}"));
-    kill_after_a_step(&workshop);
-    let run = resume_without_gmsh(&workshop, "out");
-    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
-    assert!(run.out.contains("resumed    after step "), "{}", run.out);
-    let expected = outcome(&workshop.solve("whole", &[]));
-    assert_eq!(outcome(&workshop.path("out")), expected);
+    goes_on_to_the_same_bits(&workshop);
 }
 
 /// A support elsewhere along the same edge may say the same in other words, and differ by rounding.

@@ -97,6 +97,17 @@ pub fn kill_after_a_step(workshop: &Workshop) {
     assert!(kill(child), "it ended before it was killed");
 }
 
+/// Kills a run after a step and resumes it: what it leaves is what a run leaves that was never
+/// interrupted.
+pub fn goes_on_to_the_same_bits(workshop: &Workshop) {
+    kill_after_a_step(workshop);
+    let run = resume_without_gmsh(workshop, "out");
+    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("resumed    after step "), "{}", run.out);
+    let expected = outcome(&workshop.solve("whole", &[]));
+    assert_eq!(outcome(&workshop.path("out")), expected);
+}
+
 /// Pressures, volumes and the flow of former steps come back with the rest.
 #[test]
 fn a_flow_that_takes_time_is_resumed_to_the_same_bits() {
@@ -105,12 +116,7 @@ fn a_flow_that_takes_time_is_resumed_to_the_same_bits() {
         ("growth = 1.05", "growth = 1.02"),
     ];
     let workshop = Workshop::new("filling-joint", &longer);
-    kill_after_a_step(&workshop);
-    let run = resume_without_gmsh(&workshop, "out");
-    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
-    assert!(run.out.contains("resumed    after step "), "{}", run.out);
-    let expected = outcome(&workshop.solve("whole", &[]));
-    assert_eq!(outcome(&workshop.path("out")), expected);
+    goes_on_to_the_same_bits(&workshop);
 }
 
 /// So does a flow alone, between walls that do not move.
@@ -121,12 +127,7 @@ fn a_flow_in_rigid_rock_is_resumed_to_the_same_bits() {
     let stored = "viscosity = 1e-3\ncompressibility = 4.5e-10";
     let edits = [("viscosity = 1e-3", stored), ("[boundary.left]", &load[..])];
     let workshop = Workshop::new("flow-star", &edits);
-    kill_after_a_step(&workshop);
-    let run = resume_without_gmsh(&workshop, "out");
-    assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
-    assert!(run.out.contains("resumed    after step "), "{}", run.out);
-    let expected = outcome(&workshop.solve("whole", &[]));
-    assert_eq!(outcome(&workshop.path("out")), expected);
+    goes_on_to_the_same_bits(&workshop);
     let again = resume_without_gmsh(&workshop, "out");
     assert!(again.out.contains("nothing is left to do"), "{}", again.out);
 }
