@@ -87,9 +87,7 @@ impl<'a> FixedPart<'a> {
             let Ok(index) = pattern.rows.binary_search(&row) else {
                 return own;
             };
-            let blocks = added.row(index);
-            let sum: DVec3 = blocks.map(|(at, block)| *block * vector[at as usize]).sum();
-            own + sum
+            own + added.product(index, vector)
         };
         rows.par_iter().map(product).collect()
     }
