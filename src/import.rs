@@ -100,8 +100,19 @@ fn read(file: &Path) -> Result<Read, Vec<Defect>> {
             sections: Some(scene),
         });
     }
+    let imported = read_mesh(file)?;
+    let Draft { cells, facets, .. } = &imported.draft;
+    if cells.elements.is_empty() && facets.elements.is_empty() {
+        let problem = "it has no cells and no surfaces";
+        let remedy = "give a mesh of tetrahedra, hexahedra, wedges or pyramids, or of the plane";
+        return Err(vec![Defect::new(
+            file.display().to_string(),
+            problem,
+            remedy,
+        )]);
+    }
     Ok(Read {
-        imported: read_mesh(file)?,
+        imported,
         sections: None,
     })
 }

@@ -8,7 +8,7 @@ use kluft_run::{
     Caller, Ending, MeshInput, Origin, Outcome, REPORT, Request, ThreadCount, folder_for, pool,
     thread_count,
 };
-use kluft_scene::Scene;
+use kluft_scene::{Scene, counted};
 
 use crate::failure::Failure;
 use crate::input::{expect_scene, scene_at};
@@ -127,10 +127,9 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
     }
     let megabytes = summary.peak_memory_bytes as f64 / 1e6;
     let text = format!(
-        "{:.2} s, {megabytes:.0} MB at most, {} thread{}",
+        "{:.2} s, {megabytes:.0} MB at most, {}",
         summary.seconds.total,
-        summary.threads,
-        if summary.threads == 1 { "" } else { "s" }
+        counted(summary.threads, "thread")
     );
     report.entry("took", &text);
     if !summary.steps.is_empty() {

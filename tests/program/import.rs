@@ -109,6 +109,7 @@ fn what_is_not_taken_over_is_named_and_what_cannot_be_read_is_refused() {
         ("grid.vtu", "<VTKFile", "cannot be read"),
         ("grid.vtu", &GRID.replace("9 9 3", "9 9 7"), "types 7"),
         ("a.inp", "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "not there"),
+        ("a.inp", "no mesh", "it has no cells and no surfaces"),
     ] {
         let (_, run) = imported(name, text);
         assert_eq!(run.code, Some(2), "{}", run.err);
@@ -168,6 +169,28 @@ fn an_exodus_mesh_runs() {
     assert!(written.expect("Python starts").success());
     let mesh = fs::read(&file).expect("the mesh");
     joint_carries_the_load("cubes.e", &mesh, "surface-7");
+}
+
+/// Two cubes of the blocks 10 and 20 with side sets of these numbers: the faces between, below and
+/// above. Where numbers are shared with blocks, side sets come behind.
+#[test]
+fn side_sets_of_an_exodus_mesh_are_fractures_and_boundaries() {
+    for (numbers, between) in [("7,8,9", "surface-7"), ("10,20,30", "surface-30")] {
+        let folder = Workshop::of("");
+        let file = folder.path("cubes.e");
+        let written = std::process::Command::new(crate::read_back::python())
+            .args(["-c", include_str!("exodus_sides.py")])
+            .arg(&file)
+            .arg(numbers)
+            .status();
+        assert!(written.expect("Python starts").success());
+        let mesh = fs::read(&file).expect("the mesh");
+        joint_carries_the_load("cubes.e", &mesh, between);
+        let (workshop, _) = imported("cubes.e", &mesh);
+        let scene = fs::read_to_string(workshop.path("made/scene.toml")).expect("a scene");
+        assert_eq!(scene.matches("[fracture.").count(), 1, "{scene}");
+        assert!(scene.contains("Surfaces on the outside, free"), "{scene}");
+    }
 }
 
 #[test]

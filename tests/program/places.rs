@@ -179,6 +179,11 @@ fn springs_that_hold_nothing_or_contradict_each_other_are_refused() {
     assert!(both.contains("both spring and far_field"), "{both}");
     let alone = with("shear_spring = 1e9");
     assert!(alone.contains("without `spring`"), "{alone}");
+    let beside = with("far_field = [-1, -1, -4]");
+    assert!(
+        beside.contains("lies on these faces or outside"),
+        "{beside}"
+    );
 }
 
 /// Largest opening of the disc of `small-cube` in a cube of twice its size over that of Sneddon

@@ -63,6 +63,15 @@ fn part(out: &mut String, call: Option<&mut Open>) -> Result<(), [String; 2]> {
     Ok(())
 }
 
+/// Names before an open parenthesis that are none of `functions`.
+pub(crate) fn unknown<'a>(text: &'a str, functions: &[String]) -> Vec<&'a str> {
+    let before = text.match_indices('(').map(|(at, _)| &text[..at]);
+    let names = before.filter_map(|before| Some(before[name_start(before)?..].trim_end()));
+    names
+        .filter(|name| !functions.iter().any(|function| function == name))
+        .collect()
+}
+
 /// Where the name that ends a text begins.
 fn name_start(text: &str) -> Option<usize> {
     let text = text.trim_end();
@@ -94,6 +103,12 @@ mod tests {
         ] {
             assert_eq!(between(text).as_deref(), Ok(wanted), "{text}");
         }
+        let functions = ["min", "sqrt"].map(str::to_owned);
+        assert!(unknown("min(1, sqrt (x)) * (y)", &functions).is_empty());
+        assert_eq!(
+            unknown("(x) + foo(sqrt(bar (1)))", &functions),
+            ["foo", "bar"]
+        );
         for text in ["1, 2", "2*(1, 2)", "min(1, 2, 3)", "min(1, 2), 3", ","] {
             assert!(between(text).is_err(), "{text}");
         }

@@ -53,12 +53,15 @@ impl Expression {
             let problem = format!("the expression has {} characters", text.len());
             return Err([problem, format!("write at most {LONGEST}")]);
         }
-        let functions: Vec<String> = Operators::make()
-            .iter()
-            .filter(|operator| operator.unary().is_ok() && !["+", "-"].contains(&operator.repr()))
-            .map(|operator| operator.repr().to_owned())
-            .collect();
-        precedence::check(text, &functions)?;
+        precedence::check(text, &functions(|own| own.unary().is_ok()))?;
+        let callable = functions(|own| own.unary().is_ok() || own.bin().is_ok());
+        if let Some(name) = calls::unknown(text, &callable).first() {
+            let problem = match Coordinate::named(name) {
+                Some(_) => format!("`{name}` is no function; a sign of multiplication is missing"),
+                None => format!("the expression has a function that is not known: `{name}`"),
+            };
+            return Err([problem, format!("write numbers, {}", known())]);
+        }
         let parsed = Parsed::parse(&calls::between(text)?).map_err(|error| {
             let problem = format!("the expression cannot be read: {}", error.msg());
             [problem, format!("write numbers, {}", known())]
@@ -108,6 +111,16 @@ impl Expression {
     pub fn depends_on_place(&self) -> bool {
         self.variables.iter().any(|own| *own != Coordinate::Time)
     }
+}
+
+/// Names of those functions that `are` meant.
+fn functions(are: impl Fn(&Operator<'_, f64>) -> bool) -> Vec<String> {
+    let all = Operators::make();
+    let named = all
+        .iter()
+        .filter(|own| own.repr().starts_with(char::is_alphabetic));
+    let meant = named.filter(|own| are(own));
+    meant.map(|own| own.repr().to_owned()).collect()
 }
 
 /// What an expression may be made of.
@@ -200,7 +213,9 @@ mod tests {
             ("2x", "cannot be read"),
             ("1 e6", "cannot be read"),
             ("pressure * 2", "unknown names: `pressure`"),
-            ("foo(x)", "cannot be read"),
+            ("foo(x)", "not known: `foo`"),
+            ("2 + system (1)", "not known: `system`"),
+            ("x(1 - y)", "`x` is no function"),
             ("(x", "cannot be read"),
             ("x > 2", "cannot be read"),
             ("é", "cannot be read"),

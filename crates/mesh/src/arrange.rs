@@ -15,7 +15,7 @@ const ELEMENTS_PER_TASK: usize = 8192;
 
 impl Draft {
     /// Numbers the nodes along a Morton curve and sorts the cells by their first node on it. Tags,
-    /// shapes and groups go along; facets keep their order.
+    /// shapes and groups go along; facets and lines keep their order.
     pub fn arrange(&mut self) {
         let order = along_curve(&self.nodes);
         let mut number = vec![0_u32; order.len()];
@@ -39,8 +39,10 @@ impl Draft {
     fn renumber_nodes(&mut self, order: &[u32], number: &[u32]) {
         self.nodes = permuted(&self.nodes, order);
         self.node_tags = permuted(&self.node_tags, order);
-        let facets = self.facets.elements.nodes.par_iter_mut();
-        facets.for_each(|node| *node = number[*node as usize]);
+        for elements in [&mut self.facets, &mut self.lines] {
+            let nodes = elements.elements.nodes.par_iter_mut();
+            nodes.for_each(|node| *node = number[*node as usize]);
+        }
     }
 }
 

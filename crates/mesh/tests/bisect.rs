@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use kluft_mesh::structured::{Patch, cells_of};
-use kluft_mesh::{Draft, Mesh, Shape, SurfaceRole, cell_volume, facet_area_vector};
+use kluft_mesh::{
+    Draft, Group, Mesh, Shape, SurfaceRole, TaggedElements, cell_volume, facet_area_vector,
+};
 use rayon::ThreadPoolBuilder;
 
 /// A crack in the middle of a box, one side of which is a boundary.
@@ -191,6 +193,122 @@ fn other_cells_are_refused() {
     let defects = draft.bisect(&[0.1]).expect_err("a hexahedron");
     assert!(
         defects[0].to_string().contains("tetrahedra"),
+        "{}",
+        defects[0]
+    );
+}
+
+/// A plate of 2 m by 1 m of triangles of either order, with a crack along the middle of its left
+/// half; rows and columns are counted in halves of cells, so that middles of edges are nodes.
+fn plate(shape: Shape) -> Draft {
+    const COLUMNS: u32 = 16;
+    const ROWS: u32 = 8;
+    let node = |column: u32, row: u32| row * (COLUMNS + 1) + column;
+    let mut draft = Draft {
+        groups: [(2, 1, "rock"), (1, 2, "crack"), (1, 3, "west")]
+            .map(|(dimension, tag, name)| Group {
+                dimension,
+                tag,
+                name: name.to_owned(),
+            })
+            .into(),
+        group_sets: vec![vec![0], vec![1], vec![2]],
+        cells: TaggedElements::new(),
+        facets: TaggedElements::new(),
+        lines: TaggedElements::new(),
+        ..Draft::default()
+    };
+    for row in 0..=ROWS {
+        for column in 0..=COLUMNS {
+            let [x, y] = [column, row].map(|count| f64::from(count) / 8.0);
+            // Sheared, so that edges differ in length.
+            draft.nodes.push([x + 0.3 * y, y, 0.0]);
+            draft.node_tags.push(u64::from(node(column, row)) + 1);
+        }
+    }
+    let push = |elements: &mut TaggedElements, shape: Shape, corners: &[[u32; 2]], set: u32| {
+        let mut nodes: Vec<u32> = corners.iter().map(|&[a, b]| node(a, b)).collect();
+        if shape.is_quadratic() {
+            for &[a, b] in shape.edges() {
+                let [a, b] = [a, b].map(|end| corners[end as usize]);
+                nodes.push(node((a[0] + b[0]) / 2, (a[1] + b[1]) / 2));
+            }
+        }
+        elements.elements.push(shape, &nodes);
+        elements.tags.push(elements.tags.len() as u64 + 1);
+        elements.group_set.push(set);
+    };
+    let line = match shape {
+        Shape::Tri3 => Shape::Line2,
+        _ => Shape::Line3,
+    };
+    for row in (0..ROWS).step_by(2) {
+        for x in (0..COLUMNS).step_by(2) {
+            let [a, b] = [[x, row], [x + 2, row]];
+            let [c, d] = [[x + 2, row + 2], [x, row + 2]];
+            push(&mut draft.facets, shape, &[a, b, c], 0);
+            push(&mut draft.facets, shape, &[a, c, d], 0);
+        }
+        push(&mut draft.lines, line, &[[0, row], [0, row + 2]], 2);
+    }
+    let middle = ROWS / 2;
+    for x in (0..COLUMNS / 2).step_by(2) {
+        push(&mut draft.lines, line, &[[x, middle], [x + 2, middle]], 1);
+    }
+    draft
+}
+
+/// Triangles of the plane: as large as before, none larger than asked for, lines cut with them.
+#[test]
+fn triangles_of_the_plane_are_bisected_with_their_lines() {
+    for shape in [Shape::Tri3, Shape::Tri6] {
+        let mut draft = plate(shape);
+        let corner = |draft: &Draft, facet: usize, local: usize| {
+            DVec3::from(draft.nodes[draft.facets.elements.nodes_of(facet)[local] as usize])
+        };
+        let front = DVec3::new(1.15, 0.5, 0.0);
+        let target = |draft: &Draft, facet: usize| {
+            let corners = [0, 1, 2].map(|local| corner(draft, facet, local));
+            0.01 + 0.2
+                * corners
+                    .map(|at| at.distance(front))
+                    .into_iter()
+                    .fold(2.0, f64::min)
+        };
+        let count = draft.facets.elements.len();
+        let targets: Vec<f64> = (0..count).map(|facet| target(&draft, facet)).collect();
+        let before = measures(&built(draft.clone().extruded()));
+        draft.bisect(&targets).expect("triangles");
+        let after = draft.facets.elements.len();
+        assert!(after > 5 * count, "{shape:?} {after}");
+        // Small at the front, where a parent asked for a sixth of its size.
+        let size = |facet: usize| {
+            let [a, b, c] = [0, 1, 2].map(|local| corner(&draft, facet, local));
+            let is_near = [a, b, c].iter().any(|at| at.distance(front) < 1e-9);
+            let area = (b - a).cross(c - a).length() / 2.0;
+            is_near.then(|| (4.0 / 3.0_f64.sqrt() * area).sqrt())
+        };
+        let near: Vec<f64> = (0..after).filter_map(size).collect();
+        assert!(
+            near.len() > 2 && near.iter().all(|size| *size < 1.2 * 0.01),
+            "{near:?}"
+        );
+        assert!(draft.lines.elements.len() > 8, "{shape:?}");
+        let mesh = built(draft.extruded());
+        for (before, after) in before.iter().zip(measures(&mesh)) {
+            assert!((before - after).abs() < 1e-12, "{shape:?} {before} {after}");
+        }
+        let crack = &mesh.facets.elements;
+        assert!(crack.len() > 4, "{shape:?} {}", crack.len());
+    }
+    let mut squares = plate(Shape::Tri3);
+    squares.facets = TaggedElements::new();
+    squares.facets.elements.push(Shape::Quad4, &[0, 2, 36, 34]);
+    squares.facets.tags.push(1);
+    squares.facets.group_set.push(0);
+    let defects = squares.bisect(&[0.1]).expect_err("a quadrangle");
+    assert!(
+        defects[0].to_string().contains("triangles"),
         "{}",
         defects[0]
     );

@@ -121,24 +121,31 @@ fn scaled(mesh: &Mesh, mut sizes: Vec<f64>, by: AdaptBy, budget: f64) -> Vec<f64
         AdaptBy::Meshing => {
             let growth = parts.iter().sum::<f64>() / parts.len() as f64;
             let excess = growth / growth.max(LEAST_GROWTH).min(budget);
-            match mesh.is_plane() {
-                true => excess.sqrt(),
-                false => excess.cbrt(),
+            match dimension(mesh) {
+                2 => excess.sqrt(),
+                _ => excess.cbrt(),
             }
         }
-        AdaptBy::Bisection => bisection_scale(&parts, budget),
+        AdaptBy::Bisection => bisection_scale(&parts, budget, dimension(mesh)),
     };
     sizes.iter_mut().for_each(|size| *size *= scale);
     sizes
 }
 
+/// In how many directions cells are divided.
+fn dimension(mesh: &Mesh) -> i32 {
+    if mesh.is_plane() { 2 } else { 3 }
+}
+
 /// Factor on sizes with which bisection divides at least a few of the cells and no more than the
 /// budget allows.
-fn bisection_scale(parts: &[f64], budget: f64) -> f64 {
+fn bisection_scale(parts: &[f64], budget: f64, dimension: i32) -> f64 {
     // A cell stays whole or is divided into a power of two.
     let count = |parts: f64| parts.log2().round().max(0.0).exp2();
     let growth = |scale: f64| {
-        let counts = parts.iter().map(|parts| count(parts / scale.powi(3)));
+        let counts = parts
+            .iter()
+            .map(|parts| count(parts / scale.powi(dimension)));
         counts.sum::<f64>() / parts.len() as f64
     };
     let mut scale = 1.0;

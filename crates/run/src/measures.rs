@@ -58,6 +58,11 @@ pub fn energy(joules: f64) -> Measure {
     plain("energy", joules)
 }
 
+/// The measure of a reduction of strength: the last stable factor.
+pub fn factor_of_safety(stable: f64) -> Measure {
+    plain("factor_of_safety", stable)
+}
+
 /// A fracture of a solution.
 struct MeasuredFracture<'a> {
     rock: &'a Rock,

@@ -9,6 +9,7 @@ mod strength;
 
 use kluft_chart::Chart;
 use kluft_report::{Frame, Page, Surface};
+use kluft_scene::counted;
 
 pub use iterations::Iterations;
 pub use strength::StrengthShown;
@@ -65,10 +66,6 @@ pub struct Told<'a> {
     pub strength: Option<&'a StrengthShown>,
     /// The text of the scene.
     pub scene: Option<&'a str>,
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }
 
 /// Whether a text is such a page.
@@ -132,15 +129,13 @@ impl Told<'_> {
             None => "Not finished",
         };
         page.text(&format!(
-            "{ended}: {steps} load step{}, {} unknowns, {} cells, {} fracture facets; {:.2} s on {} \
-             thread{}.",
-            plural(steps),
+            "{ended}: {}, {} unknowns, {} cells, {} fracture facets; {:.2} s on {}.",
+            counted(steps, "load step"),
             summary.unknowns.total,
             summary.mesh.cells,
             summary.mesh.fracture_facets,
             summary.seconds.total,
-            summary.threads,
-            plural(summary.threads)
+            counted(summary.threads, "thread")
         ));
         if let Some(Ending::NotConverged(why)) = &summary.ending {
             page.warning(why);

@@ -12,6 +12,7 @@ use lie_core::FractureLaw;
 
 use crate::failures;
 use crate::grids::{fracture_grid, in_plane, real_field, rock_grid};
+use crate::measures::factor_of_safety;
 use crate::observer::{Stage, StepStart};
 use crate::output::box_of;
 use crate::page::StrengthShown;
@@ -21,6 +22,14 @@ use crate::strength_summary::{GRIDS, MotionSummary, StrengthSummary, Trial};
 
 /// By what the factor grows as long as nothing fails.
 const GROWTH: f64 = 1.25;
+
+/// What came of a factor.
+struct TriedFactor {
+    factor: f64,
+    /// At rest if everything held, else where the iterations ended.
+    state: State,
+    record: StepRecord,
+}
 
 /// A search under way.
 struct Search<'a> {
@@ -56,8 +65,14 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Takes over what came of a factor: a state, if everything held.
-    fn take(&mut self, system: &System<'_>, factor: f64, (state, record): (&State, &StepRecord)) {
+    /// Takes over what came of a factor from a stable state `before` it: a state, at rest if
+    /// everything held.
+    fn take(&mut self, system: &System<'_>, before: &State, trial: &TriedFactor) {
+        let TriedFactor {
+            factor,
+            state,
+            record,
+        } = trial;
         let found = &mut self.found;
         let motion = record.converged().then(|| {
             let now = system.total_displacements(state);
@@ -66,23 +81,26 @@ impl<'a> Search<'a> {
             lengths.fold(0.0, f64::max)
         });
         found.trials.push(Trial {
-            factor,
+            factor: *factor,
             stable: record.converged(),
             newton_iterations: record.iterations.len(),
             largest_motion: motion,
         });
         if record.converged() {
-            found.stable = factor;
+            found.stable = *factor;
             return;
         }
-        found.failing = Some(factor);
+        found.failing = Some(*factor);
         let blocks = record.rigid_motions.iter().map(|body| &body.told);
         let blocks = blocks.map(|b| format!("{}: {}: {}", b.place, b.problem, b.remedy));
         found.free_blocks = blocks.collect();
         found.failure = Some(failures::of_outcome(system, record));
+        let [reached, began] = [state, before].map(|state| system.total_displacements(state));
         self.failed = Some(FailedTrial {
             bodies: record.rigid_motions.clone(),
-            reached: system.total_displacements(state),
+            moved: std::iter::zip(reached, began)
+                .map(|(to, from)| to - from)
+                .collect(),
         });
     }
 
@@ -118,14 +136,13 @@ impl Run<'_> {
             system.weaken(&search.laws, factor, |fracture| {
                 search.is_weakened[fracture]
             });
-            let mut trial = state.clone();
-            let record = self.try_factor(system, newton, &mut trial, factor);
-            if record.outcome == StepOutcome::Stopped {
+            let trial = self.try_factor(system, newton, &state, factor);
+            if trial.record.outcome == StepOutcome::Stopped {
                 return Err(Interruption::Stopped);
             }
-            search.take(system, factor, (&trial, &record));
-            if record.converged() {
-                state = trial;
+            search.take(system, &state, &trial);
+            if trial.record.converged() {
+                state = trial.state;
             }
         }
         system.weaken(&search.laws, search.found.stable, |f| search.is_weakened[f]);
@@ -136,23 +153,28 @@ impl Run<'_> {
         &mut self,
         system: &System<'_>,
         newton: &mut Newton,
-        state: &mut State,
+        before: &State,
         factor: f64,
-    ) -> StepRecord {
+    ) -> TriedFactor {
         let steps = system.problem().schedule.steps.len();
         self.observer.step_begins(StepStart {
             number: steps,
             count: steps,
             what: &format!("strength over {factor:.4}"),
         });
-        let record = self.stage(Stage::Solve, |run| {
-            newton.settle(system, state, |number, iteration| {
+        let mut state = before.clone();
+        let (record, end) = self.stage(Stage::Solve, |run| {
+            newton.settle(system, &mut state, |number, iteration| {
                 run.ask_after(number, iteration)
             })
         });
         self.summary.seconds.factorise += record.factorise_seconds;
         self.summary.seconds.solve += record.solve_seconds;
-        record
+        TriedFactor {
+            factor,
+            state: end.unwrap_or(state),
+            record,
+        }
     }
 
     fn write_strength(
@@ -172,7 +194,7 @@ impl Run<'_> {
         let moved: Vec<glam::DVec3> = pairs.map(|(now, begin)| *now - *begin).collect();
         found.motions = motions(system, &moved);
         let failed = failed.map(|failed| {
-            let motion = failed.motion(system, &solution.displacements);
+            let motion = failed.motion(system);
             found.failing_motions = motions(system, &motion);
             (failed, motion)
         });
@@ -180,6 +202,7 @@ impl Run<'_> {
         for block in &found.free_blocks {
             self.observer.note("strength", block);
         }
+        self.summary.measures.push(factor_of_safety(found.stable));
         self.summary.strength_reduction = Some(found);
         if self.output.is_kept() {
             self.write_stable(system, &solution, &moved)?;

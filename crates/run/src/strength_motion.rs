@@ -10,19 +10,18 @@ use crate::grids::{facet_grid, in_plane, integer_field, real_field};
 pub struct FailedTrial {
     /// Bodies that nothing held.
     pub bodies: Vec<FreeBody>,
-    /// Displacement of all points where the iterations ended (m).
-    pub reached: Vec<DVec3>,
+    /// How far all points were, where the iterations ended, from the state that they began with
+    /// (m).
+    pub moved: Vec<DVec3>,
 }
 
 impl FailedTrial {
     /// How all points move, the largest motion being 1: free bodies as they are pushed; where none
-    /// are known, from the displacements `before` (m) to where the iterations ended.
-    pub fn motion(&self, system: &System<'_>, before: &[DVec3]) -> Vec<DVec3> {
+    /// are known, as the iterations moved them.
+    pub fn motion(&self, system: &System<'_>) -> Vec<DVec3> {
         let mut motion = match self.bodies.is_empty() {
-            true => {
-                let pairs = self.reached.iter().zip(before);
-                pairs.map(|(reached, before)| *reached - *before).collect()
-            }
+            true if self.moved.iter().all(|u| u.is_finite()) => self.moved.clone(),
+            true => vec![DVec3::ZERO; self.moved.len()],
             false => self.rigid_motion(system),
         };
         let largest = motion.iter().map(|u| u.length()).fold(0.0, f64::max);

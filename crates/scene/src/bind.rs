@@ -23,6 +23,7 @@ use crate::remedies::in_terms_of_scene;
 use crate::roles::{DEFAULT, Roles, roles};
 use crate::scene::{Named, Scene};
 use crate::surfaces::{SurfaceMesh, surface_mesh};
+use crate::wrong_boundaries::wrong_boundaries;
 
 /// A problem and what was decided on the way to it.
 pub struct Binding {
@@ -122,9 +123,8 @@ pub(crate) fn bind_with(
     rock_of: impl Fn(usize) -> Option<u32>,
 ) -> Result<Binding, Vec<Defect>> {
     let (mut defects, mut decisions, mut idle) = (Vec::new(), Vec::new(), Vec::new());
-    if scene.quarter_points {
-        decisions.extend(quarter_points(mesh.move_to_quarter_points()));
-    }
+    let moved = (scene.quarter_points).then(|| quarter_points(mesh.move_to_quarter_points()));
+    decisions.extend(moved.into_iter().flatten());
     let mut rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
     for (cell, rock) in rock_of_cell.iter_mut().enumerate() {
         *rock = rock_of(cell).unwrap_or(*rock);
@@ -134,10 +134,11 @@ pub(crate) fn bind_with(
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
     defects.extend(wrong_strength(scene, &mesh, &fractures));
+    let (boundaries, conditions) = bind_boundaries(scene, &mesh);
+    defects.extend(wrong_boundaries(&mesh, &boundaries, &conditions));
     if !defects.is_empty() {
         return Err(defects);
     }
-    let (boundaries, conditions) = bind_boundaries(scene, &mesh);
     let (fixed_entries, fixed_points) = fixed_points.into_iter().unzip();
     let bound = Bound {
         boundaries,

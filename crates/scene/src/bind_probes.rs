@@ -8,6 +8,7 @@ use lie_core::load_areas;
 
 use crate::probe::{ProbeEntry, ProbedPart};
 use crate::scene::{Named, Scene};
+use crate::words::counted;
 
 /// A probe on a mesh.
 #[derive(Debug, Clone)]
@@ -146,9 +147,9 @@ fn in_rock(
         return Err(away(entry, *first, outside.len(), "outside the rock"));
     }
     decisions.push(format!(
-        "{}: {} points in the rock",
+        "{}: {} in the rock",
         section_head("probe", &entry.name),
-        places.len()
+        counted(places.len(), "point")
     ));
     let points = places.iter().zip(found);
     let points = points.filter_map(|(&position, found)| {
@@ -210,9 +211,9 @@ fn whole(
         return Err(Defect::new(&entry.place, problem, "remove the probe"));
     }
     decisions.push(format!(
-        "{}: mean over {area:.6e} m2 of `{name}`, {} facets",
+        "{}: mean over {area:.6e} m2 of `{name}`, {}",
         section_head("probe", &entry.name),
-        facets.len()
+        counted(facets.len(), "facet")
     ));
     let position = moment / area;
     Ok(vec![ProbePoint { position, hit }])
@@ -274,9 +275,9 @@ fn on_fracture(
         return Err(away(entry, *first, beside.len(), &what));
     }
     decisions.push(format!(
-        "{}: {} nodes of `{fracture}`, at most {farthest:.3e} m from where they were asked for",
+        "{}: {} of `{fracture}`, at most {farthest:.3e} m from where it was asked for",
         section_head("probe", &entry.name),
-        points.len()
+        counted(points.len(), "node")
     ));
     Ok(points)
 }

@@ -47,6 +47,8 @@ mod strength;
 mod surfaces;
 mod timed_cases;
 mod warning;
+mod words;
+mod wrong_boundaries;
 
 pub use bind::{Binding, bind};
 pub use bind_probes::{Hit, Probe, ProbePoint};
@@ -76,3 +78,4 @@ pub use stages::{StageBinding, Staged};
 pub use strength::StrengthReduction;
 pub use surfaces::{SurfaceMesh, surface_mesh};
 pub use warning::Doubt;
+pub use words::counted;

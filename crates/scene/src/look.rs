@@ -88,13 +88,13 @@ impl<'a> Look<'a> {
         let reach = seen.reach.map_or(String::new(), |reach| {
             format!(", at most {reach:.3e} m from a sample")
         });
+        let unit = match dimension.unit() {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
         let line = format!(
-            "{}: {:.4e} to {:.4e} {} at {count} points, by {}{reach}",
-            entry.title,
-            seen.low,
-            seen.high,
-            dimension.unit(),
-            entry.origin
+            "{}: {:.4e} to {:.4e}{unit} at {count} points, by {}{reach}",
+            entry.title, seen.low, seen.high, entry.origin
         );
         if !self.decisions.contains(&line) {
             self.decisions.push(line);
@@ -134,7 +134,7 @@ fn remedy(entry: &FieldEntry) -> &'static str {
         }
         kluft_solver::Field::Samples(_) => {
             "add samples there; beyond = \"nearest\" goes on with the last values, a larger reach \
-             bridges gaps"
+             bridges gaps; a value out of range needs other samples"
         }
         _ => "let the expression have a value in range there: max(a, b) and min(a, b) bound it",
     }

@@ -68,13 +68,16 @@ fn taken(entry: &Named<BoundaryEntry>, joined: &JoinedDraft) -> Option<Defect> {
 }
 
 fn nothing(entry: &Named<BoundaryEntry>, place: &SurfacePlace, [low, high]: [DVec3; 2]) -> Defect {
-    Defect::new(
-        &entry.place,
-        format!("no outer face lies where {}", place.text()),
-        format!(
+    let remedy = match low.is_finite() {
+        true => format!(
             "the body reaches from ({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6}); a face lies where \
              all its corners do",
             low.x, low.y, low.z, high.x, high.y, high.z
         ),
-    )
+        false => {
+            "the mesh has no cells, so no outer faces: mesh volumes, or name surfaces".to_owned()
+        }
+    };
+    let problem = format!("no outer face lies where {}", place.text());
+    Defect::new(&entry.place, problem, remedy)
 }

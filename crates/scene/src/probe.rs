@@ -121,6 +121,18 @@ fn read_lines(section: &Section<'_, '_>) -> Option<Vec<DVec3>> {
         section.refuse("count", problem, format!("write at most {MOST_POINTS}"));
     }
     let (from, to) = (DVec3::from(from?), DVec3::from(to?));
+    if from == to {
+        let problem = "`from` and `to` are one point".into();
+        section.refuse("to", problem, "give another end, or one point by `at`");
+    }
+    if section.has("across") && across == [0.0; 3] {
+        let problem = "`across` has no length".into();
+        section.refuse(
+            "across",
+            problem,
+            "give the way to the last line, or remove it",
+        );
+    }
     let share = |index: usize, of: usize| index as f64 / of.max(2).saturating_sub(1) as f64;
     let points = (0..rows).flat_map(|row| {
         let start = from + share(row, rows) * DVec3::from(across);

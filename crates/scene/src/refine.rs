@@ -3,7 +3,7 @@
 use kluft_mesh::{Defect, Draft, Faces, Mesh, Shape, SurfaceRole};
 
 use crate::join::JoinedDraft;
-use crate::scene::{AdaptBy, MeshSource, Scene};
+use crate::scene::Scene;
 
 /// Divides what has been joined. The mesh as given is checked before, so that defects name its own
 /// cells and not their parts.
@@ -15,9 +15,6 @@ pub fn refine(
     joined: JoinedDraft,
     roles: &[SurfaceRole],
 ) -> Result<JoinedDraft, Vec<Defect>> {
-    if joined.draft.is_extruded && bisects(scene) {
-        return Err(vec![bisects_plane(&joined.draft)]);
-    }
     if scene.refine == 0 {
         return Ok(joined);
     }
@@ -38,21 +35,6 @@ pub fn refine(
         draft,
         decisions,
     })
-}
-
-fn bisects(scene: &Scene) -> bool {
-    let MeshSource::Geometry { adapt, .. } = scene.mesh else {
-        return false;
-    };
-    adapt.is_some_and(|adapt| adapt.by == AdaptBy::Bisection)
-}
-
-fn bisects_plane(draft: &Draft) -> Defect {
-    Defect::new(
-        &draft.source,
-        "`by = \"bisection\"` is for tetrahedra, and this mesh is of the plane",
-        "remove it: a plane is meshed anew in a moment",
-    )
 }
 
 fn is_pyramid(shape: Shape) -> bool {

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use kluft_keys::section_head;
 use kluft_mesh::{Defect, Draft, Group, SurfaceRole, nearest, sample};
 
+use crate::history::PhaseEntry;
 use crate::scene::Scene;
 use crate::warning::Doubt;
 
@@ -178,12 +179,34 @@ fn surface_roles(
 
 fn volume_names(scene: &Scene, groups: &[Group]) -> Vec<Defect> {
     let phases = scene.phases();
+    let unknown: Vec<Defect> = phases
+        .iter()
+        .filter_map(|p| unknown_rock(scene, p))
+        .collect();
+    if !unknown.is_empty() {
+        return unknown;
+    }
     let is_added = |name: &str| phases.iter().any(|p| p.added_as.as_deref() == Some(name));
     let named = scene.rocks.iter().filter(|entry| entry.name != DEFAULT);
     let named = named.filter(|entry| !is_added(&entry.name));
     named
         .filter_map(|entry| find_group(groups, &entry.name, 3, &entry.place).err())
         .collect()
+}
+
+/// What a phase is said to add something as, if the scene has no such rock.
+fn unknown_rock(scene: &Scene, phase: &PhaseEntry) -> Option<Defect> {
+    let name = phase.added_as.as_deref()?;
+    let rocks = || scene.rocks.iter().map(|entry| entry.name.as_str());
+    if rocks().any(|own| own == name) {
+        return None;
+    }
+    let remedy = match nearest(name, rocks()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("add a section {}", section_head("rock", name)),
+    };
+    let problem = format!("`added_as` names a rock `{name}` that the scene has not");
+    Some(Defect::new(&phase.place, problem, remedy))
 }
 
 fn kind(dimension: usize) -> &'static str {

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use kluft_mesh::{Defect, Draft, Faces, Part, SurfaceRole, Whole};
+use kluft_mesh::{Defect, Draft, Faces, Part, SurfaceRole, Whole, nearest};
 use kluft_solver::{Discretisation, Load, Problem, StageEnd};
 
 use crate::bind::{Binding, bind_with};
@@ -15,6 +15,7 @@ use crate::refine::refine;
 use crate::remedies::in_terms_of_scene;
 use crate::roles::{Roles, find_group, roles};
 use crate::scene::Scene;
+use crate::words::counted;
 
 /// A scene with stages on a mesh that has the volumes of all of them.
 pub struct Staged<'a> {
@@ -154,11 +155,11 @@ impl Staged<'_> {
         held.map_err(|found| self.in_stage(stage, found))?;
         let mesh = problem.mesh;
         Ok(format!(
-            "{}: {} cells, {} fracture facets, {} blocks",
+            "{}: {}, {}, {}",
             self.says(stage),
-            mesh.cells.len(),
-            mesh.facets.elements.len(),
-            mesh.block_count
+            counted(mesh.cells.len(), "cell"),
+            counted(mesh.facets.elements.len(), "fracture facet"),
+            counted(mesh.block_count, "block")
         ))
     }
 
@@ -329,25 +330,16 @@ impl<'a> Planner<'a> {
         for name in &phase.remove {
             self.turn(phase, name, false, None);
         }
-        let rock = phase
-            .added_as
-            .as_ref()
-            .and_then(|name| self.rock(phase, name));
+        let rock = phase.added_as.as_ref().and_then(|name| self.rock(name));
         for name in &phase.add {
             self.turn(phase, name, true, rock);
         }
     }
 
-    /// The rock that a phase adds something as.
-    fn rock(&mut self, phase: &PhaseEntry, name: &str) -> Option<u32> {
+    /// The rock of a name; what a phase adds has one, see [`roles`].
+    fn rock(&self, name: &str) -> Option<u32> {
         let mut rocks = self.scene.rocks.iter();
         let found = rocks.position(|entry| entry.name == name);
-        if found.is_none() {
-            let problem = format!("`added_as` names a rock `{name}` that the scene has not");
-            let remedy = format!("add a section [rock.{name}], or name another");
-            self.defects
-                .push(Defect::new(&phase.place, problem, remedy));
-        }
         found.map(|rock| rock as u32)
     }
 
@@ -392,7 +384,26 @@ impl<'a> Planner<'a> {
             let remedy = "give one of them another name in the mesh";
             return Err(Defect::new(&phase.place, problem, remedy));
         }
-        find_group(groups, name, if is_fracture { 2 } else { 3 }, &phase.place)
+        let found = find_group(groups, name, if is_fracture { 2 } else { 3 }, &phase.place);
+        let is_known = groups.iter().any(|group| group.name == name);
+        found.map_err(|defect| match is_known {
+            true => defect,
+            false => self.unknown(phase, name),
+        })
+    }
+
+    /// A name that is neither that of a volume nor that of a fracture.
+    fn unknown(&self, phase: &PhaseEntry, name: &str) -> Defect {
+        let groups = &self.draft.groups;
+        let volumes = groups.iter().filter(|group| group.dimension == 3);
+        let fractures = self.fractures.iter().map(|&group| &groups[group]);
+        let known: Vec<&str> = volumes.chain(fractures).map(|g| g.name.as_str()).collect();
+        let remedy = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("volumes and fractures of the mesh: {}", known.join(", ")),
+        };
+        let problem = format!("the mesh has no physical volume `{name}`, and no fracture");
+        Defect::new(&phase.place, problem, remedy)
     }
 
     fn is_fracture(&self, name: &str) -> bool {

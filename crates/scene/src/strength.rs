@@ -21,9 +21,14 @@ pub struct StrengthReduction {
 
 /// Reads the section.
 pub(crate) fn read_strength_reduction(section: Section<'_, '_>) -> StrengthReduction {
+    let fractures = section.texts("fractures");
+    if fractures.as_ref().is_some_and(Vec::is_empty) {
+        let remedy = "name them, or leave it out for all that have friction";
+        section.refuse("fractures", "no fracture is named".into(), remedy);
+    }
     let read = StrengthReduction {
         place: section.place(),
-        fractures: section.texts("fractures").unwrap_or_default(),
+        fractures: fractures.unwrap_or_default(),
         accuracy: section.number("accuracy").unwrap_or(0.01),
         most: section.number("most").unwrap_or(10.0),
     };

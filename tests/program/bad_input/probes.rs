@@ -40,6 +40,17 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "a line and a plane without an extent",
+        scene: &[(
+            "[boundary.top]",
+            "[probe.a]\nfrom = [0.2, 0.2, 0]\nto = [0.2, 0.2, 0]\n[probe.b]\nfrom = [0.2, 0.2, 0.1]\n\
+             to = [0.4, 0.2, 0.1]\nacross = [0, 0, 0]\n[boundary.top]",
+        )],
+        defects: 2,
+        says: &["`from` and `to` are one point", "`across` has no length"],
+        ..SOUND
+    },
+    Case {
         name: "surfaces that are none, and points on them",
         scene: &[(
             "[boundary.top]",

@@ -107,7 +107,7 @@ pub static ADAPT: KeySection = KeySection {
             kind: Kind::Choice("way to a finer mesh", &["meshing", "bisection"]),
             need: Need::Default("\"meshing\""),
             example: "\"bisection\"",
-            says: "Whether gmsh makes each mesh anew, with sizes by the error, or tetrahedra of the first mesh are cut in two where it asks for that, which starts no gmsh; surfaces stay as the first mesh has them",
+            says: "Whether gmsh makes each mesh anew, with sizes by the error, or tetrahedra of the first mesh, triangles of one of the plane, are cut in two where it asks for that, which starts no gmsh; surfaces stay as the first mesh has them",
         },
         Key {
             name: "max_rounds",

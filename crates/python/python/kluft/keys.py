@@ -947,8 +947,8 @@ class Adapt(Section):
             1. Required.
         max_unknowns: Unknowns beyond which no mesh goes; > 0. Without it 1e6.
         by: Whether gmsh makes each mesh anew, with sizes by the error, or tetrahedra of the first
-            mesh are cut in two where it asks for that, which starts no gmsh; surfaces stay as the
-            first mesh has them. Without it "meshing".
+            mesh, triangles of one of the plane, are cut in two where it asks for that, which starts
+            no gmsh; surfaces stay as the first mesh has them. Without it "meshing".
         max_rounds: Most meshes; > 0. Without it 8.
     """
 

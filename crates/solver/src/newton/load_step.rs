@@ -41,16 +41,18 @@ impl Newton {
 
     /// Lets `state` come to rest under the load that it has, as after its laws have changed: in one
     /// increment, which no division would make shorter, of more iterations than one of a load step.
-    /// `observe` and `state` are as those of [`Self::solve_step`].
+    /// `observe` and `state` are as those of [`Self::solve_step`]. Where it does not come to rest,
+    /// the state in which the iterations ended comes with the record: on the way of what moves.
     pub fn settle(
         &mut self,
         system: &System<'_>,
         state: &mut State,
         mut observe: impl FnMut(usize, &Iteration) -> ControlFlow<()>,
-    ) -> StepRecord {
+    ) -> (StepRecord, Option<State>) {
         let start = Instant::now();
         let load = state.load.clone();
         let mut step = Step::new(system, &load, &mut observe);
+        step.keeps_end = true;
         let most = self.settings.max_iterations;
         self.settings.max_iterations = SETTLING * most;
         let outcome = match self.solve_increment(&mut step, state, &load) {
@@ -63,7 +65,8 @@ impl Newton {
         };
         self.settings.max_iterations = most;
         let seconds = start.elapsed().as_secs_f64();
-        step.finished(outcome, seconds)
+        let end = step.end.take();
+        (step.finished(outcome, seconds), end)
     }
 
     /// Solves from one state to a load in one increment: predicts, iterates until the tests hold,
@@ -83,6 +86,7 @@ impl Newton {
         let converged = self.iterate_to_convergence(step, &mut iterate);
         if let Err(outcome) = converged {
             step.explain(&outcome, &iterate);
+            step.end = step.keeps_end.then_some(iterate.state);
             return Err(outcome);
         }
         Ok(self.commit(step.system, iterate))

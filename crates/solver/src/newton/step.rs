@@ -8,7 +8,7 @@ use super::free_blocks;
 use super::iterate::Iterate;
 use super::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
 use crate::problem::Load;
-use crate::system::System;
+use crate::system::{State, System};
 
 /// Who is told of each iteration, by its number and measures, and may stop the step.
 type Observe<'a> = dyn FnMut(usize, &Iteration) -> ControlFlow<()> + 'a;
@@ -23,6 +23,10 @@ pub(super) struct Step<'a> {
     pub(super) is_tried_briefly: bool,
     /// Blocks that an increment from the same state as that at hand pushed.
     pub(super) pushed: Vec<FreeBody>,
+    /// Whether the state is kept in which an increment failed.
+    pub(super) keeps_end: bool,
+    /// The state in which the last increment failed, if it is kept.
+    pub(super) end: Option<State>,
     observe: &'a mut Observe<'a>,
     is_stopped: bool,
 }
@@ -35,6 +39,8 @@ impl<'a> Step<'a> {
             share: 1.0,
             is_tried_briefly: false,
             pushed: Vec::new(),
+            keeps_end: false,
+            end: None,
             observe,
             is_stopped: false,
         }

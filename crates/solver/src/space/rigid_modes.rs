@@ -151,6 +151,32 @@ pub(crate) fn free_motions(
 }
 
 impl FreeMotions {
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.motions.len()
+    }
+
+    /// Of their combinations those that a `resistance`, the work of each along each other, leaves
+    /// below `share`; none if it has no eigenvalues.
+    pub(crate) fn unresisted(self, resistance: &Mat<f64>, share: f64) -> Option<Self> {
+        if self.motions.is_empty() {
+            return Some(self);
+        }
+        let eigen = apart(|| resistance.self_adjoint_eigen(Side::Lower)).ok()?;
+        let values = eigen.S().column_vector();
+        let left = (0..values.nrows()).filter(|&i| values[i] <= share);
+        let entry = |i: usize, body: usize, component: usize| -> f64 {
+            let parts = self.motions.iter().enumerate();
+            parts
+                .map(|(a, own)| eigen.U()[(a, i)] * own[body][component])
+                .sum()
+        };
+        let of_body = |i, body| std::array::from_fn(|component| entry(i, body, component));
+        let motions = left.map(|i| (0..self.body_count).map(|body| of_body(i, body)).collect());
+        let motions = motions.collect();
+        Some(Self { motions, ..self })
+    }
+
     /// The work of forces (N, on the unknowns) along each of the motions.
     pub(crate) fn work(&self, mesh: &Mesh, points: &SectorNodes, forces: &[DVec3]) -> Vec<f64> {
         let body_of_point = bodies_of_points(mesh, points, &self.body_of_block);

@@ -1,5 +1,6 @@
 //! Random materials on six junctions: one answer, whatever the linear solver and the load steps.
 
+use kluft_scene::counted;
 use kluft_solver::{LinearMethod, NewtonSettings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -154,8 +155,7 @@ fn words(&Way { linear, steps }: &Way) -> String {
     let method = linear.map_or("the program's choice".to_owned(), |linear| {
         linear.to_string()
     });
-    let plural = if steps == 1 { "" } else { "s" };
-    format!("{method} in {steps} step{plural}")
+    format!("{method} in {}", counted(steps, "step"))
 }
 
 fn judged(case: &Case, ends: &[(Way, End)]) -> Verdict {

@@ -1,4 +1,4 @@
-//! Cells and facets cut at their marked edges.
+//! Cells, facets and lines cut at their marked edges.
 
 use std::collections::BTreeMap;
 
@@ -38,24 +38,34 @@ pub(super) fn divide(
         .collect();
     let old = std::mem::take(&mut draft.cells);
     draft.cells = cut(draft, &old, (&cells, &edges.of_cell), &middles, &mut new);
-    let of_cells = cells.iter().zip(targets);
-    let targets = of_cells.flat_map(|(parts, target)| std::iter::repeat_n(*target, parts.len()));
-    let targets = targets.collect();
     let old = std::mem::take(&mut draft.facets);
     draft.facets = cut(draft, &old, (&facets, &edges.of_facet), &middles, &mut new);
-    targets
+    let lines = edges.of_line.iter();
+    let lines: Vec<Vec<Part<2>>> = lines
+        .map(|own| parts(Shape::Line2, own, (edges, marked)))
+        .collect();
+    let old = std::mem::take(&mut draft.lines);
+    draft.lines = cut(draft, &old, (&lines, &edges.of_line), &middles, &mut new);
+    match cells.is_empty() {
+        true => inherited(targets, &facets),
+        false => inherited(targets, &cells),
+    }
+}
+
+/// The target of each part: that of its parent.
+fn inherited<const CORNERS: usize>(targets: &[f64], parts: &[Vec<Part<CORNERS>>]) -> Vec<f64> {
+    let pairs = targets.iter().zip(parts);
+    pairs
+        .flat_map(|(target, parts)| std::iter::repeat_n(*target, parts.len()))
+        .collect()
 }
 
 /// The node in the middle of each marked edge: a new one, or that of an edge of second order.
 fn middles(draft: &mut Draft, (edges, marked): (&Edges, &[bool]), new: &mut NewNodes) -> Vec<u32> {
     let mut middles = vec![NONE; marked.len()];
-    let elements = &draft.cells.elements;
-    for (cell, own) in edges.of_cell.iter().enumerate() {
-        if elements.shapes[cell].is_quadratic() {
-            for (edge, &middle) in own.iter().zip(&elements.nodes_of(cell)[4..]) {
-                middles[*edge as usize] = middle;
-            }
-        }
+    match draft.is_plane() {
+        true => known_middles(&draft.facets.elements, &edges.of_facet, &mut middles),
+        false => known_middles(&draft.cells.elements, &edges.of_cell, &mut middles),
     }
     for (edge, ends) in edges.ends.iter().enumerate() {
         if marked[edge] && middles[edge] == NONE {
@@ -64,6 +74,23 @@ fn middles(draft: &mut Draft, (edges, marked): (&Edges, &[bool]), new: &mut NewN
         }
     }
     middles
+}
+
+/// Takes the nodes between the corners of elements of second order for those of their edges.
+fn known_middles<const EDGES: usize>(
+    elements: &Elements,
+    edges: &[[u32; EDGES]],
+    middles: &mut [u32],
+) {
+    for (element, own) in edges.iter().enumerate() {
+        let shape = elements.shapes[element];
+        if shape.is_quadratic() {
+            let known = &elements.nodes_of(element)[shape.corner_count()..];
+            for (edge, &middle) in own.iter().zip(known) {
+                middles[*edge as usize] = middle;
+            }
+        }
+    }
 }
 
 /// Parts of an element with these edges: at each marked edge, the longest first, the part that has

@@ -19,15 +19,17 @@ pub(super) struct Edges {
     pub(super) of_cell: Vec<[u32; 6]>,
     /// Edges of each facet, as its shape counts them; [`NONE`] where no cell has them.
     pub(super) of_facet: Vec<[u32; 3]>,
+    /// The edge of each line, in a mesh of the plane; [`NONE`] where no facet has it.
+    pub(super) of_line: Vec<[u32; 1]>,
 }
 
 impl Edges {
     pub(super) fn of(draft: &Draft) -> Self {
-        let cells = &draft.cells.elements;
-        let mut ends: Vec<[u32; 2]> = (0..cells.len())
-            .into_par_iter()
-            .flat_map_iter(|cell| pairs::<6>(cells, cell))
-            .collect();
+        let (cells, facets) = (&draft.cells.elements, &draft.facets.elements);
+        let mut ends: Vec<[u32; 2]> = match draft.is_plane() {
+            true => all_pairs::<3>(facets),
+            false => all_pairs::<6>(cells),
+        };
         ends.par_sort_unstable();
         ends.dedup();
         let find = |pair: [u32; 2]| ends.binary_search(&pair).map_or(NONE, |at| at as u32);
@@ -35,7 +37,7 @@ impl Edges {
         let of_cell = numbers
             .into_par_iter()
             .map(|cell| pairs(cells, cell).map(find));
-        let facets = &draft.facets.elements;
+        let lines = &draft.lines.elements;
         let is_triangle = |facet: usize| facets.shapes[facet].corner_count() == 3;
         let of_facet = (0..facets.len()).map(|facet| match is_triangle(facet) {
             true => pairs(facets, facet).map(find),
@@ -45,9 +47,19 @@ impl Edges {
             rank: ranks(draft, &ends),
             of_cell: of_cell.collect(),
             of_facet: of_facet.collect(),
+            of_line: (0..lines.len())
+                .map(|line| pairs(lines, line).map(find))
+                .collect(),
             ends,
         }
     }
+}
+
+/// Ends of the edges of all elements.
+fn all_pairs<const COUNT: usize>(elements: &Elements) -> Vec<[u32; 2]> {
+    let all = (0..elements.len()).into_par_iter();
+    all.flat_map_iter(|element| pairs::<COUNT>(elements, element))
+        .collect()
 }
 
 /// Ends of the edges of an element, the lower node first.

@@ -8,12 +8,16 @@ use crate::draft::Draft;
 /// Edges of the four faces of a tetrahedron, as its shape counts them.
 const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 5], [1, 4, 5], [2, 3, 4]];
 
-/// The longest edges of the cells that are too `large`, and those that must be bisected with them:
-/// the longest of every face and cell that has one of them.
+/// The longest edges of the cells that are too `large` (of the facets, in a mesh of the plane), and
+/// those that must be bisected with them: the longest of every face and cell that has one of them.
 pub(super) fn closed(draft: &Draft, edges: &Edges, large: &[usize]) -> Vec<bool> {
     let mut marked = vec![false; edges.ends.len()];
     for &cell in large {
-        marked[longest(edges, &edges.of_cell[cell]) as usize] = true;
+        let own = match draft.is_plane() {
+            true => &edges.of_facet[cell][..],
+            false => &edges.of_cell[cell],
+        };
+        marked[longest(edges, own) as usize] = true;
     }
     loop {
         let cells = edges.of_cell.par_iter();

@@ -1,4 +1,5 @@
-//! Divides tetrahedra where they are too large, by bisection of edges.
+//! Divides tetrahedra, in a mesh of the plane triangles, where they are too large, by bisection of
+//! edges.
 //!
 //! A pass marks the longest edge of each tetrahedron that is too large, and goes on marking until
 //! every triangle with a marked edge has its longest one marked (A. Plaza and G. F. Carey, "Local
@@ -12,9 +13,10 @@ mod divide;
 mod edges;
 mod marks;
 
+use glam::DVec3;
 use kluft_defect::Defect;
 
-use crate::draft::Draft;
+use crate::draft::{Draft, Elements};
 use crate::shape::Shape;
 use edges::Edges;
 
@@ -23,11 +25,14 @@ const MOST_PASSES: usize = 40;
 /// Size against the target above which a cell is bisected: one division more and one less miss the
 /// target by the same factor, a sixth root of two.
 const TOO_LARGE: f64 = 1.122_462_048_309_373;
+/// The same of triangles: a fourth root of two.
+const TOO_LARGE_IN_PLANE: f64 = 1.189_207_115_002_721;
 
 impl Draft {
     /// Bisects cells until none is larger than its target, and what their neighbours need. The size
     /// of a cell is the edge of the regular tetrahedron of its volume; `targets` (m) has one for
-    /// each cell, infinite where it may stay, and its parts inherit it.
+    /// each cell, infinite where it may stay, and its parts inherit it. In a mesh of the plane, as
+    /// read, facets are cells, and their sizes the edges of regular triangles.
     ///
     /// New nodes of cells of second order lie where the map of their parent has them. Nodes keep
     /// their tags, and of each cell and facet one part; the tags of others follow the highest.
@@ -35,20 +40,28 @@ impl Draft {
     /// of threads.
     ///
     /// # Errors
-    /// Cells that are no tetrahedra, and more of them than have numbers of 32 bits.
+    /// Cells that are no tetrahedra or, in the plane, no triangles, and more of them than have
+    /// numbers of 32 bits.
     ///
     /// # Panics
     /// If `targets` has not one entry a cell.
     pub fn bisect(&mut self, targets: &[f64]) -> Result<(), Vec<Defect>> {
-        assert_eq!(
-            targets.len(),
-            self.cells.elements.len(),
-            "one target a cell"
-        );
-        self.check_tetrahedra()?;
+        let is_plane = self.is_plane();
+        let (elements, too_large) = match is_plane {
+            true => (&self.facets.elements, TOO_LARGE_IN_PLANE),
+            false => (&self.cells.elements, TOO_LARGE),
+        };
+        assert_eq!(targets.len(), elements.len(), "one target a cell");
+        self.check_simplices(elements, is_plane)?;
         let mut targets = targets.to_vec();
         for _ in 0..MOST_PASSES {
-            let is_large = |cell: usize| self.cell_size(cell) > TOO_LARGE * targets[cell];
+            let is_large = |cell: usize| {
+                let size = match is_plane {
+                    true => self.facet_size(cell),
+                    false => self.cell_size(cell),
+                };
+                size > too_large * targets[cell]
+            };
             let large: Vec<usize> = (0..targets.len()).filter(|&cell| is_large(cell)).collect();
             if large.is_empty() {
                 break;
@@ -62,12 +75,15 @@ impl Draft {
         Ok(())
     }
 
-    fn check_tetrahedra(&self) -> Result<(), Vec<Defect>> {
-        let shapes = self.cells.elements.distinct_shapes();
-        let others = shapes.into_iter().filter(|shape| shape.corner_count() != 4);
+    fn check_simplices(&self, elements: &Elements, is_plane: bool) -> Result<(), Vec<Defect>> {
+        let (corners, remedy) = match is_plane {
+            true => (3, "mesh the plane with triangles"),
+            false => (4, "mesh the volume with tetrahedra"),
+        };
+        let shapes = elements.distinct_shapes().into_iter();
+        let others = shapes.filter(|shape| shape.corner_count() != corners);
         let defects = others.map(|shape: Shape| {
             let problem = format!("cells of the shape {shape:?} cannot be bisected");
-            let remedy = "mesh the volume with tetrahedra";
             Defect::new(&self.source, problem, remedy)
         });
         let defects: Vec<Defect> = defects.collect();
@@ -76,8 +92,9 @@ impl Draft {
 
     /// Refuses a pass after which nodes of cells could not be numbered with 32 bits.
     fn check_room(&self, marked: &[bool]) -> Result<(), Vec<Defect>> {
-        // At most eight parts of a cell.
-        let most = self.cells.elements.nodes.len().saturating_mul(8);
+        // At most eight parts of a cell, and four of a facet.
+        let [cells, facets] = [&self.cells, &self.facets].map(|own| own.elements.nodes.len());
+        let most = cells.max(facets).saturating_mul(8);
         let nodes = self.nodes.len() + marked.len();
         if most.max(nodes) < u32::MAX as usize {
             return Ok(());
@@ -87,13 +104,25 @@ impl Draft {
         Err(vec![Defect::new(&self.source, problem, remedy)])
     }
 
+    /// Edge of the regular triangle of a facet's area (m).
+    fn facet_size(&self, facet: usize) -> f64 {
+        let [a, b] = self.sides(&self.facets.elements, facet);
+        // `A = |a x b| / 2` and, of a regular one, `s^2 sqrt(3) / 4`.
+        (2.0 / 3.0_f64.sqrt() * a.cross(b).length()).sqrt()
+    }
+
+    /// The ways from the first corner of an element to the next ones (m).
+    fn sides<const COUNT: usize>(&self, elements: &Elements, element: usize) -> [DVec3; COUNT] {
+        let corner = |local: usize| {
+            let node = elements.nodes_of(element)[local];
+            DVec3::from(self.nodes[node as usize])
+        };
+        std::array::from_fn(|side| corner(side + 1) - corner(0))
+    }
+
     /// Edge of the regular tetrahedron of a cell's volume (m).
     fn cell_size(&self, cell: usize) -> f64 {
-        let corner = |local: usize| {
-            let node = self.cells.elements.nodes_of(cell)[local];
-            glam::DVec3::from(self.nodes[node as usize])
-        };
-        let [a, b, c] = [1, 2, 3].map(|local| corner(local) - corner(0));
+        let [a, b, c] = self.sides(&self.cells.elements, cell);
         // `V = a . (b x c) / 6` and, of a regular one, `s^3 / (6 sqrt 2)`.
         (std::f64::consts::SQRT_2 * a.dot(b.cross(c)).abs()).cbrt()
     }
