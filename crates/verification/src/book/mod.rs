@@ -3,7 +3,10 @@
 //!
 //! A new page is a file here and an entry of [`report`].
 
+mod bedded_tunnel;
 mod estimate;
+mod excavation;
+mod factor_of_safety;
 mod filled_penny;
 mod filling_joint;
 mod joint_sets;
@@ -24,6 +27,7 @@ mod radial_flow;
 mod refinement;
 mod scene;
 mod steady_flow;
+mod varying_values;
 
 use crate::report::{Layout, Report};
 
@@ -50,6 +54,10 @@ pub fn report() -> Report {
             joint_sets::PAGE,
             oscillation::PAGE,
             plane_cracks::PAGE,
+            bedded_tunnel::PAGE,
+            varying_values::PAGE,
+            excavation::PAGE,
+            factor_of_safety::PAGE,
             paths::PAGE,
             estimate::PAGE,
             steady_flow::PAGE,

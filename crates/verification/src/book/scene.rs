@@ -84,7 +84,7 @@ impl Outcome {
         self.summary["unknowns"]["total"].as_u64().expect("a count") as usize
     }
 
-    /// A value of a probe of one point.
+    /// A value of a probe of one point, or of a mean, after the last load step.
     pub fn probed(&self, probe: &str, column: &str) -> f64 {
         let file = self.folder.path().join("out/probes.csv");
         let text = fs::read_to_string(file).expect("probes");
@@ -92,7 +92,7 @@ impl Outcome {
         let head = rows.next().unwrap_or_default();
         let place = |name: &str| head.iter().position(|own| *own == name).expect("a column");
         let of = place("probe");
-        let row = rows.find(|row| row[of] == probe);
+        let row = rows.rfind(|row| row[of] == probe);
         let row = row.unwrap_or_else(|| panic!("no probe {probe}"));
         row[place(column)].parse().unwrap_or(f64::NAN)
     }

@@ -1,8 +1,11 @@
 //! Closed forms, written without any code of the workspace but for the types of its input.
 
+pub mod bedding;
 pub mod diffusion;
 pub mod similarity;
 pub mod spherical_joint;
+pub mod tunnel;
+pub mod wedge;
 
 /// Aperture over `b0` under the closing load `q = -sigma_n / (K_n0 b0) > 0`, by bisection on the
 /// exponent.
