@@ -1,6 +1,8 @@
 //! From a mesh of another program to a gmsh mesh and a scene.
 
 mod exodus;
+mod extent;
+mod faces;
 mod laws;
 mod loads;
 mod parameters;

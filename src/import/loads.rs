@@ -1,13 +1,15 @@
 //! Boundary conditions of a project of OpenGeoSys as sections of boundaries and fixed points.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use kluft_keys::{quoted, section_head};
+use kluft_mesh::Draft;
 
+use super::extent::Extent;
 use super::parameters::{Parameters, vector};
 use super::said::Said;
-use super::surfaces::{Extent, Part, extent_of_mesh, read_geometry};
+use super::surfaces::{Part, part_of_mesh, read_geometry};
 use super::tree::Element;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -17,13 +19,16 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 struct Condition {
     displacement: BTreeMap<usize, f64>,
     traction: BTreeMap<usize, f64>,
+    /// Against the outward normal.
+    pressure: Option<f64>,
 }
 
 /// The parts of the surface that a project names.
 struct Named<'a> {
     folder: &'a Path,
     geometry: BTreeMap<String, Extent>,
-    body: &'a Extent,
+    body: &'a mut Draft,
+    extent: &'a Extent,
 }
 
 /// Gravity.
@@ -37,7 +42,7 @@ pub fn body(process: &Element, said: &mut Said) {
 /// The conditions of all displacements.
 pub fn conditions(
     (root, folder): (&Element, &Path),
-    body: &Extent,
+    (body, extent): (&mut Draft, &Extent),
     parameters: &Parameters,
     said: &mut Said,
 ) {
@@ -50,13 +55,15 @@ pub fn conditions(
             said.notes.push(format!("the geometry is missing: {why}"));
             BTreeMap::new()
         });
-    let named = Named {
+    let mut named = Named {
         folder,
         geometry,
         body,
+        extent,
     };
     let all = gathered(root, parameters, said);
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    let mut groups = BTreeSet::new();
     for ((place, curve), condition) in &all {
         let count = counts.entry(place.clone()).or_default();
         *count += 1;
@@ -64,13 +71,23 @@ pub fn conditions(
             1 => place.clone(),
             count => format!("{place}-{count}"),
         };
+        if *count > 1 && groups.contains(place) {
+            said.notes.push(format!(
+                "no counterpart: a second curve in time on `{place}`, a group of the mesh"
+            ));
+            continue;
+        }
         match named.part(place) {
             Some(part) => {
+                if part == Part::Group {
+                    groups.insert(place.clone());
+                }
                 condition.say(&name, &part, &mut said.scene);
                 said.scene += &history(curve.as_deref(), parameters);
             }
             None => said.notes.push(format!(
-                "no counterpart: `{place}` is not there, or lies along no plane x, y or z"
+                "no counterpart: `{place}` is not there, or lies along no plane x, y or z and has no \
+                 mesh whose nodes are those of the body"
             )),
         }
     }
@@ -142,7 +159,7 @@ fn take(
     condition.pass_over(&["geometrical_set"]);
     let place = place_of(condition).ok_or("it has no place")?;
     let kind = condition.word("type").unwrap_or_default();
-    if !["Dirichlet", "Neumann"].contains(&kind) {
+    if !["Dirichlet", "Neumann", "NormalTraction"].contains(&kind) {
         return Err(format!("a condition of type {kind}"));
     }
     let text = condition.word("parameter").ok_or("it has no parameter")?;
@@ -150,6 +167,13 @@ fn take(
     let component = condition
         .word("component")
         .and_then(|text| text.parse::<usize>().ok());
+    if kind == "NormalTraction" {
+        let &[along_normal] = &parameter.values[..] else {
+            return Err(format!("`{text}` is no number"));
+        };
+        all.entry((place, parameter.curve)).or_default().pressure = Some(-along_normal);
+        return Ok(());
+    }
     let components: Vec<(usize, f64)> = match (component, &parameter.values[..]) {
         (Some(axis), &[value]) if axis < 3 => vec![(axis, value)],
         (None, values) if values.len() <= 3 => values.iter().copied().enumerate().collect(),
@@ -173,12 +197,12 @@ fn history(curve: Option<&str>, parameters: &Parameters) -> String {
 }
 
 impl Named<'_> {
-    fn part(&self, name: &str) -> Option<Part> {
-        let extent = match self.geometry.get(name) {
-            Some(extent) => *extent,
-            None => extent_of_mesh(&self.folder.join(format!("{name}.vtu")))?,
-        };
-        extent.part(self.body)
+    fn part(&mut self, name: &str) -> Option<Part> {
+        if let Some(extent) = self.geometry.get(name) {
+            return extent.part(self.extent);
+        }
+        let path = self.folder.join(format!("{name}.vtu"));
+        part_of_mesh(&path, name, (&mut *self.body, self.extent))
     }
 }
 
@@ -196,15 +220,20 @@ impl Condition {
                     "\n[[fixed_point]]               # {name}\nat = {at:?}\n{displacement}"
                 );
             }
-            Part::Faces(place) => {
-                let head = section_head("boundary", name);
-                *scene += &format!("\n{head}\nwhere = {}\n", quoted(place));
+            Part::Faces(_) | Part::Group => {
+                *scene += &format!("\n{}\n", section_head("boundary", name));
+                if let Part::Faces(place) = part {
+                    *scene += &format!("where = {}\n", quoted(place));
+                }
                 if !self.displacement.is_empty() {
                     *scene += &displacement;
                 }
                 if !self.traction.is_empty() {
                     let at = |axis: usize| self.traction.get(&axis).copied().unwrap_or(0.0);
                     *scene += &format!("traction = {:?}\n", [0, 1, 2].map(at));
+                }
+                if let Some(pressure) = self.pressure {
+                    *scene += &format!("pressure = {pressure:?}\n");
                 }
             }
         }

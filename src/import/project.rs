@@ -5,11 +5,11 @@ use std::path::Path;
 use kluft_io::import::{Imported, read_grid};
 use kluft_mesh::Defect;
 
+use super::extent::Extent;
 use super::laws::{fractures, rocks};
 use super::loads::{body, conditions};
 use super::parameters::Parameters;
 use super::said::Said;
-use super::surfaces::Extent;
 use super::times::times;
 use super::tree::Element;
 
@@ -73,7 +73,8 @@ pub fn read_project(path: &Path) -> Result<Project, Vec<Defect>> {
     rocks(process, &parameters, &mut said);
     fractures(process, &parameters, &mut said);
     body(process, &mut said);
-    conditions((&root, folder), &extent, &parameters, &mut said);
+    let body = (&mut imported.draft, &extent);
+    conditions((&root, folder), body, &parameters, &mut said);
     times(&root, &mut said);
     said.notes.extend(pass_over(&root, process));
     imported.notes.append(&mut said.notes);

@@ -5,18 +5,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use kluft_io::import::read_grid;
+use kluft_mesh::Draft;
 
+use super::extent::{Extent, NEAR};
+use super::faces::add_faces;
 use super::tree::Element;
-
-/// Share of the size of the body within which a coordinate is the same.
-const NEAR: f64 = 1e-9;
-
-/// The smallest box around places (m).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
-    pub low: [f64; 3],
-    pub high: [f64; 3],
-}
 
 /// What a boundary of a project is for a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,25 +18,11 @@ pub enum Part {
     Point([f64; 3]),
     /// Comparisons that hold on its faces.
     Faces(String),
+    /// Faces of the mesh, in a group of its name.
+    Group,
 }
 
 impl Extent {
-    /// Around some places.
-    pub fn of(places: impl Iterator<Item = [f64; 3]>) -> Option<Self> {
-        let mut all: Option<Self> = None;
-        for place in places {
-            let own = all.get_or_insert(Self {
-                low: place,
-                high: place,
-            });
-            for (axis, x) in place.into_iter().enumerate() {
-                own.low[axis] = own.low[axis].min(x);
-                own.high[axis] = own.high[axis].max(x);
-            }
-        }
-        all
-    }
-
     /// The faces of a body in this box, if it is flat along an axis of the body.
     pub fn part(&self, body: &Self) -> Option<Part> {
         let size = (0..3).map(|axis| body.high[axis] - body.low[axis]);
@@ -139,8 +118,15 @@ pub fn read_geometry(path: &Path) -> Result<BTreeMap<String, Extent>, String> {
     Ok(parts)
 }
 
-/// The box around a mesh of a boundary; of faces alone, of which a mesh of points has none.
-pub fn extent_of_mesh(path: &Path) -> Option<Extent> {
-    let read = read_grid(path).ok()?;
-    Extent::of(read.draft.nodes.into_iter())
+/// A boundary that is a mesh of its own: by comparisons if it is flat along an axis of the body,
+/// and else as a group that is added to the body.
+pub fn part_of_mesh(
+    path: &Path,
+    name: &str,
+    (body, extent): (&mut Draft, &Extent),
+) -> Option<Part> {
+    let boundary = read_grid(path).ok()?.draft;
+    let own = Extent::of(boundary.nodes.iter().copied())?;
+    let part = own.part(extent);
+    part.or_else(|| add_faces(body, &boundary, name).map(|()| Part::Group))
 }

@@ -153,7 +153,7 @@ fn a_filling_joint_is_the_same_on_any_threads() {
 fn friction_slips_by_the_pressure_of_the_fluid() {
     let slip = |name: &str, edits: &[(&str, &str)]| {
         let coarse = [
-            ("parameters = { h = 0.02 }", "parameters = { h = 0.16 }"),
+            ("parameters = { h = 0.02", "parameters = { h = 0.16"),
             ("order = 2", "order = 1"),
         ];
         let edits: Vec<_> = coarse.iter().chain(edits).copied().collect();
@@ -187,14 +187,7 @@ fn contact_that_leaves_nothing_open_is_refused() {
         "friction_angle = 30.0",
         "friction_angle = 30.0\nfluid_pressure = 5e6",
     );
-    let workshop = Workshop::new(
-        "inclined-crack",
-        &[
-            ("parameters = { h = 0.02 }", "parameters = { h = 0.16 }"),
-            fluid,
-            pressed,
-        ],
-    );
+    let workshop = Workshop::new("inclined-crack", &[fluid, pressed]);
     let scene = workshop.scene();
     let run = kluft(&["run".as_ref(), scene.as_os_str()]);
     assert_eq!(run.code, Some(2), "{}", run.err);

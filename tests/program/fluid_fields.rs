@@ -2,6 +2,7 @@
 //! plain numbers.
 
 use std::fs;
+use std::path::Path;
 
 use crate::fields::{assert_near, numbers, rows};
 use crate::flow::sources;
@@ -164,11 +165,170 @@ fn a_pressure_that_a_table_does_not_reach_is_refused_with_its_place() {
     ] {
         assert!(run.err.contains(said), "{said}: {}", run.err);
     }
-    let timed = "{ expression = \"1e5*time\" }";
-    let run = star_of([timed, "1e5", "0.0", "2e5"], &[]).run("out", &[]);
+    let both = "{ expression = \"1e5*time*z\" }";
+    let run = star_of([both, "1e5", "0.0", "2e5"], &[TIMED]).run("out", &[]);
     assert_eq!(run.code, Some(2));
-    let said = "`fluid_pressure` does not change with time";
+    let said = "`fluid_pressure` drives a fluid and changes with time and from place to place";
     assert!(run.err.contains(said), "{}", run.err);
+    let early = "{ table = [[1, 1e5], [3, 2e5]], over = \"time\" }";
+    let run = star_of([early, "1e5", "0.0", "2e5"], &[TIMED]).run("out", &[]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.err.contains("there is no row"), "{}", run.err);
+}
+
+/// Load steps of the flow star that have times, 1 to 3 s.
+const TIMED: (&str, &str) = (
+    "[fracture.west]",
+    "[load]\ntimes = [1.0, 2.0, 3.0]\n\n[fracture.west]",
+);
+
+/// The rates of a source at the ends of the load steps.
+fn rates_of(out: &Path, name: &str) -> Vec<f64> {
+    let rows = sources(out);
+    let own = rows.iter().filter(|row| row.0 == name);
+    own.map(|row| row.2).collect()
+}
+
+/// Steady at the end of each load step: what flows in there is what the pressure of then drives,
+/// `T_w (p_w - p)` where `p = sum(T p)/sum(T)` is that of the line.
+#[test]
+fn pressures_on_boundaries_and_in_fractures_change_with_time() {
+    let of_time = |time: f64| 1e5 * (1.0 + 2.0 * time * time);
+    let wave = "{ expression = \"1e5 * (1 + 2*time^2)\" }";
+    let t = [1.0_f64, 2.0, 0.5, 1.5].map(|b| (1e-4 * b).powi(3) / 12e-3);
+    let whole: f64 = t.iter().sum();
+    let driven = |left: f64| {
+        let line = (t[0] * left + t[1] * 1e5 + t[3] * 2e5) / whole;
+        t[0] * (left - line)
+    };
+    let ends = [
+        wave,
+        "1e5\nhistory = [[0, 1]]",
+        "0.0",
+        "2e5\nhistory = [[0, 1]]",
+    ];
+    let workshop = star_of(ends, &[TIMED]);
+    let out = workshop.solve("out", &[]);
+    let found = rates_of(&out, "[boundary.left]");
+    assert_eq!(found.len(), 3);
+    for (found, time) in found.into_iter().zip([1.0, 2.0, 3.0]) {
+        assert_near(found, driven(of_time(time)), 1e-11);
+    }
+    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
+    let given = format!("[load]\ntimes = [1.0, 2.0, 3.0]\n\n{own}\nfluid_pressure = {wave}");
+    let edits = [
+        (own, &given[..]),
+        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
+        (
+            "fluid_pressure = 1e5",
+            "fluid_pressure = 1e5\nhistory = [[0, 1]]",
+        ),
+        (
+            "fluid_pressure = 2e5",
+            "fluid_pressure = 2e5\nhistory = [[0, 1]]",
+        ),
+    ];
+    let workshop = Workshop::new("flow-star", &edits);
+    let out = workshop.solve("out", &[]);
+    let found = rates_of(&out, "[fracture.west]");
+    for (found, time) in found.into_iter().zip([1.0, 2.0, 3.0]) {
+        let line = of_time(time);
+        let taken = t[1] * (line - 1e5) + t[2] * line + t[3] * (line - 2e5);
+        assert_near(found, taken, 1e-11);
+    }
+}
+
+/// What enters at a boundary follows the time, times its history, and nothing else that acts there
+/// does.
+#[test]
+fn an_inflow_is_what_the_time_makes_of_it() {
+    let inflow = "fluid_inflow = { expression = \"1e-5 * sin(PI*time/4)\" }\nhistory = [[0, 0.5]]";
+    let edits = [TIMED, ("fluid_pressure = 3e5", inflow)];
+    let workshop = Workshop::new("flow-star", &edits);
+    let out = workshop.solve("out", &[]);
+    let found = rates_of(&out, "[boundary.left]");
+    assert_eq!(found.len(), 3);
+    for (found, time) in found.into_iter().zip([1.0_f64, 2.0, 3.0]) {
+        let wanted = 0.5e-5 * (std::f64::consts::PI * time / 4.0).sin();
+        assert_near(found, wanted, 1e-11);
+    }
+    let plain = Workshop::new(
+        "flow-star",
+        &[("fluid_pressure = 3e5", "fluid_inflow = 1e-5")],
+    );
+    let constant = "fluid_inflow = { expression = \"1e-5\" }";
+    let same = Workshop::new("flow-star", &[("fluid_pressure = 3e5", constant)]);
+    let [plain, same] = [plain, same].map(|one| sources(&one.solve("out", &[])));
+    assert_eq!(plain, same);
+    let placed = "fluid_inflow = { expression = \"1e-5 * z\" }";
+    let run = Workshop::new("flow-star", &[("fluid_pressure = 3e5", placed)]).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(run.err.contains("varies with time alone"), "{}", run.err);
+}
+
+/// The scene of the star with a source in the place of the pressure at its left end.
+fn fed(source: &str, timed: &[(&str, &str)]) -> Workshop {
+    let source = format!("[[source]]\nname = \"pump\"\n{source}\n");
+    let own = [("[boundary.left]\nfluid_pressure = 3e5\n", &source[..])];
+    let edits: Vec<(&str, &str)> = own.iter().chain(timed).copied().collect();
+    Workshop::new("flow-star", &edits)
+}
+
+/// A source of pressure holds what a fracture's own pressure does; a borehole has what its place
+/// says, and no weight on top.
+#[test]
+fn a_source_holds_pressures_that_vary() {
+    let field = "{ expression = \"3e5 - 2e5*x\" }";
+    let of_source = fed(&format!("fracture = \"west\"\npressure = {field}"), &[]);
+    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
+    let given = format!("{own}\nfluid_pressure = {field}");
+    let edits = [
+        (own, &given[..]),
+        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
+    ];
+    let of_fracture = Workshop::new("flow-star", &edits);
+    let found = rates_of(&of_source.solve("out", &[]), "pump");
+    let wanted = rates_of(&of_fracture.solve("out", &[]), "[fracture.west]");
+    assert_eq!(found, wanted);
+    assert!(found[0] != 0.0);
+
+    let in_time = "{ table = [[0, 0], [10, 2]], over = \"time\", unit = \"MPa\" }";
+    let held = fed(
+        &format!("fracture = \"west\"\npressure = {in_time}"),
+        &[TIMED],
+    );
+    let out = held.solve("out", &[]);
+    let rows = sources(&out);
+    let pressures = rows.iter().filter(|row| row.0 == "pump").map(|row| row.1);
+    for (found, time) in pressures.zip([1.0, 2.0, 3.0]) {
+        assert_near(found, 2e5 * time, 1e-12);
+    }
+
+    let borehole = "from = [0.5, 0.9, 0.5]\nto = [0.5, 1.1, 0.5]\nradius = 0.01";
+    let drilled = fed(&format!("{borehole}\npressure = {field}"), &[]);
+    let rows = sources(&drilled.solve("out", &[]));
+    let row = rows.iter().find(|row| row.0.starts_with("pump"));
+    let pressure = row.expect("a row").1;
+    assert!((1.8e5..2.2e5).contains(&pressure), "{pressure}");
+    let heavy = (
+        "viscosity = 1e-3",
+        "viscosity = 1e-3\ndensity = 1000\n\n[body]\ngravity = [0, 0, -9.81]",
+    );
+    let timed = fed(
+        &format!("{borehole}\npressure = {in_time}"),
+        &[TIMED, heavy],
+    );
+    let run = timed.run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(
+        run.err.contains("the weight of the fluid in it"),
+        "{}",
+        run.err
+    );
+    let short = "{ table = [[0, 1], [0.2, 2]], over = \"x\" }";
+    let run = fed(&format!("fracture = \"west\"\npressure = {short}"), &[]).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(run.err.contains("there is no row at"), "{}", run.err);
 }
 
 /// What is the same everywhere is what a number says, to the last bit, also under a history and

@@ -35,6 +35,7 @@ mod network_flow;
 mod network_seeds;
 mod one_answer;
 mod opengeosys;
+mod opengeosys_arcs;
 mod places;
 mod plane;
 mod point_contacts;

@@ -176,9 +176,11 @@ fn a_crack_in_the_plane_is_meshed_until_its_error_is_small() {
 fn crack_meshed_by(by: &str) -> Value {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("geometries/line-crack");
     let read = |name: &str| fs::read_to_string(folder.join(name)).expect(name);
-    let adapt =
-        format!("parameters = {{ h = 0.3 }}\nadapt = {{ tolerance = 0.01, by = \"{by}\" }}");
-    let adapted = ("parameters = { h = 0.02 }", &adapt[..]);
+    let adapt = format!(
+        "parameters = {{ h = 0.3, half = 10 }}\nadapt = {{ tolerance = 0.01, by = \"{by}\" }}"
+    );
+    let own = "parameters = { h = 0.02, half = 10, grow = 0.3 }";
+    let adapted = (own, &adapt[..]);
     let workshop = Workshop::of(&edited(&read("scene.toml"), &[adapted]));
     fs::write(workshop.path("line-crack.geo"), read("line-crack.geo")).expect("written");
     let found = summary(&workshop.solve("out", &[]));

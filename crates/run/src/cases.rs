@@ -47,6 +47,7 @@ pub fn separate(problem: &mut Problem) -> ActingCases {
     let of_fixed_points = of_fractures.end..names.len();
     let cases = Cases {
         conditions: of_conditions.collect(),
+        boundary_flows: Vec::new(),
         fractures: of_fractures.collect(),
         fixed_points: of_fixed_points.collect(),
         sources: Vec::new(),

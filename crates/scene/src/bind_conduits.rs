@@ -34,7 +34,7 @@ impl Conduits {
         let mut look = Look::of(scene, decisions);
         let conduits = Self::looked_at(mesh, bound, &mut look);
         look_at_pressures(mesh, bound, &mut look);
-        look_at_rates(bound, &mut look);
+        look_at_times(bound, &mut look);
         let mut defects = look.defects;
         let is_sealed = |conduit: &Conduit| *conduit == Conduit::Sealed;
         if conduits.of_fractures.iter().all(is_sealed) {
@@ -103,20 +103,28 @@ impl Conduits {
     }
 }
 
-/// Looks at rates that the time is in, at the beginning and at the ends of the load steps.
-fn look_at_rates(bound: &Bound<'_>, look: &mut Look<'_>) {
+/// Looks at what drives the fluid and is the same everywhere, at the beginning and at the ends of
+/// the load steps.
+fn look_at_times(bound: &Bound<'_>, look: &mut Look<'_>) {
     let ends = match &look.scene.timetable {
         Timetable::Times { ends, .. } => &ends[..],
         Timetable::Factors(_) => &[],
     };
     let times = [0.0].into_iter().chain(ends.iter().map(|end| end.time));
     let times: Vec<f64> = times.collect();
-    for rate in bound
-        .sources
-        .iter()
-        .filter_map(|entry| entry.value.rate.as_deref())
-    {
-        look.at(rate, &[DVec3::ZERO], &times);
+    let sources = bound.sources.iter().map(|entry| &entry.value.drive);
+    let boundaries = bound.boundaries.iter();
+    let boundaries = boundaries.filter_map(|entry| entry.value.fluid.as_ref());
+    let fractures = bound.fractures.iter();
+    let fractures = fractures.filter_map(|entry| entry.value.given_pressure.as_ref());
+    for drive in sources.chain(boundaries).chain(fractures) {
+        let rate = drive
+            .field
+            .as_deref()
+            .filter(|_| !drive.drive.is_pressure());
+        if let Some(entry) = drive.in_time().or(rate) {
+            look.at(entry, &[DVec3::ZERO], &times);
+        }
     }
 }
 
@@ -125,9 +133,8 @@ fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
     let initial = look.scene.fluid.as_ref();
     if let Some(field) = initial.and_then(|fluid| fluid.value.initial_pressure.field.as_ref()) {
         let nodes = mesh.facets.elements.nodes.iter();
-        look.at(field, &places(mesh, nodes), &[0.0]);
+        look.at(field, &places(mesh, nodes.copied()), &[0.0]);
     }
-    let facets = 0..mesh.facets.elements.len();
     let mut is_fractured = vec![false; mesh.nodes.len()];
     for &node in &mesh.facets.elements.nodes {
         is_fractured[node as usize] = true;
@@ -135,35 +142,39 @@ fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
     for (index, entry) in bound.fractures.iter().enumerate() {
         let leakoff = entry.value.leakoff.as_ref();
         let leakoff = leakoff.and_then(|own| own.field.as_deref());
-        for field in entry
-            .value
-            .given_field
-            .as_deref()
-            .into_iter()
-            .chain(leakoff)
-        {
-            let own = facets.clone();
-            let own = own.filter(|&facet| mesh.facets.fracture[facet] as usize == index);
-            let nodes = own.flat_map(|facet| mesh.facets.elements.nodes_of(facet));
+        let given = entry.value.given_pressure.as_ref();
+        let given = given.and_then(|own| own.in_space());
+        for field in given.into_iter().chain(leakoff) {
+            let nodes = nodes_of_fracture(mesh, index);
             look.at(field, &places(mesh, nodes), &[0.0]);
         }
     }
     for entry in &bound.boundaries {
-        let Some(field) = &entry.value.fluid_pressure.field else {
+        let drive = entry.value.fluid.as_ref();
+        let Some(field) = drive.and_then(|own| own.in_space()) else {
             continue;
         };
         let boundary = mesh.boundaries.iter().find(|own| own.name == entry.name);
         let nodes = boundary.iter().flat_map(|own| &own.elements.nodes);
         let nodes = nodes.filter(|&&node| is_fractured[node as usize]);
-        let places = places(mesh, nodes);
+        let places = places(mesh, nodes.copied());
         if !places.is_empty() {
             look.at(field, &places, &[0.0]);
         }
     }
 }
 
-fn places<'a>(mesh: &Mesh, nodes: impl Iterator<Item = &'a u32>) -> Vec<DVec3> {
-    let nodes: BTreeSet<u32> = nodes.copied().collect();
+/// The nodes of a fracture, as often as its facets have them.
+pub(crate) fn nodes_of_fracture(mesh: &Mesh, fracture: usize) -> impl Iterator<Item = u32> {
+    let all = 0..mesh.facets.elements.len();
+    let own = all.filter(move |&facet| mesh.facets.fracture[facet] as usize == fracture);
+    let nodes = own.flat_map(|facet| mesh.facets.elements.nodes_of(facet));
+    nodes.copied()
+}
+
+/// Where nodes are (m), each once.
+pub(crate) fn places(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<DVec3> {
+    let nodes: BTreeSet<u32> = nodes.collect();
     let places = nodes.into_iter().map(|node| mesh.nodes[node as usize]);
     places.collect()
 }

@@ -4,10 +4,12 @@ use kluft_keys::section_head;
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{Cases, Conduit, Flow, FlowCondition, FlowDrive, FlowPlace, LineShare};
 
-use crate::bind_conduits::Conduits;
+use crate::bind_conduits::{Conduits, nodes_of_fracture, places};
 use crate::cases::Bound;
+use crate::conditions::BoundaryEntry;
 use crate::history::Timetable;
-use crate::scene::{Isolated, Scene};
+use crate::look::Look;
+use crate::scene::{Isolated, Named, Scene};
 use crate::sources::Drilling;
 
 /// The flow of a scene, if it has a fluid; what the user should know of it goes to `decisions`.
@@ -44,7 +46,12 @@ pub(crate) fn bind_flow(
         weight,
         (&mut lines, &mut *decisions),
     );
-    let refused = [leaks_in_no_time(scene, bound), unweighed(scene, bound)].concat();
+    let mut refused = [leaks_in_no_time(scene, bound), unweighed(scene, bound)].concat();
+    if let Ok(drilled) = &drilled {
+        let mut look = Look::of(scene, decisions);
+        look_at_pressures(mesh, bound, (drilled, &lines), &mut look);
+        refused.extend(look.defects);
+    }
     let drilled = match (drilled, refused) {
         (Ok(drilled), early) if early.is_empty() => drilled,
         (drilled, early) => return Err([early, drilled.err().unwrap_or_default()].concat()),
@@ -52,7 +59,7 @@ pub(crate) fn bind_flow(
     let mut conditions = on_boundaries(mesh, (bound, weight), cases);
     conditions.extend(in_fractures(mesh, bound, cases));
     conditions.extend(leaking(mesh, bound, cases));
-    conditions.extend(drilled);
+    conditions.extend(drilled.into_iter().flatten());
     let flow = Flow {
         is_undrained: scene.isolated == Isolated::Undrained
             && !matches!(scene.timetable, Timetable::Times { .. }),
@@ -70,7 +77,7 @@ pub(crate) fn bind_flow(
     Ok(Some(flow))
 }
 
-/// What sources do to the flow, for the weight of its fluid (Pa/m).
+/// What each source does to the flow, for the weight of its fluid (Pa/m).
 ///
 /// # Errors
 /// Those that meet no fracture that conducts.
@@ -79,7 +86,7 @@ fn from_sources(
     (bound, cases): (&Bound<'_>, &Cases),
     weight: f64,
     (lines, decisions): (&mut Vec<Vec<LineShare>>, &mut Vec<String>),
-) -> Result<Vec<FlowCondition>, Vec<Defect>> {
+) -> Result<Vec<Vec<FlowCondition>>, Vec<Defect>> {
     let (mut conditions, mut defects) = (Vec::new(), Vec::new());
     for (index, entry) in bound.sources.iter().enumerate() {
         let drilling = Drilling {
@@ -90,13 +97,34 @@ fn from_sources(
             case: cases.of_source(index),
         };
         match drilling.conditions(entry, (&mut *lines, &mut *decisions)) {
-            Ok(own) => conditions.extend(own),
+            Ok(own) => conditions.push(own),
             Err(defect) => defects.push(defect),
         }
     }
     match defects.is_empty() {
         true => Ok(conditions),
         false => Err(defects),
+    }
+}
+
+/// Looks at pressures of sources that change from place to place, at the nodes where they act.
+fn look_at_pressures(
+    mesh: &Mesh,
+    bound: &Bound<'_>,
+    (drilled, lines): (&[Vec<FlowCondition>], &[Vec<LineShare>]),
+    look: &mut Look<'_>,
+) {
+    for (entry, conditions) in bound.sources.iter().zip(drilled) {
+        let Some(field) = entry.value.drive.in_space() else {
+            continue;
+        };
+        let nodes = conditions.iter().flat_map(|own| match own.place {
+            FlowPlace::Well { node, .. } => vec![node],
+            FlowPlace::Line(line) => lines[line].iter().map(|share| share.node).collect(),
+            FlowPlace::Fracture(fracture) => nodes_of_fracture(mesh, fracture).collect(),
+            FlowPlace::Boundary(_) => Vec::new(),
+        });
+        look.at(field, &places(mesh, nodes), &[0.0]);
     }
 }
 
@@ -112,13 +140,8 @@ fn on_boundaries(
         Some(FlowCondition {
             name: section_head("boundary", &entry.name),
             place: FlowPlace::Boundary(boundary),
-            drive: match entry.value.fluid.clone()? {
-                FlowDrive::Pressure(_) => {
-                    FlowDrive::Pressure(entry.value.fluid_pressure.resolved(weight))
-                }
-                other => other,
-            },
-            case: cases.of_condition(index),
+            drive: entry.value.fluid.as_ref()?.resolved(weight),
+            case: cases.of_boundary_flow(index),
         })
     });
     conditions.collect()
@@ -128,11 +151,10 @@ fn on_boundaries(
 fn in_fractures(mesh: &Mesh, bound: &Bound<'_>, cases: &Cases) -> Vec<FlowCondition> {
     let entries = bound.fractures.iter().zip(&mesh.fractures).enumerate();
     let conditions = entries.filter_map(|(index, (entry, name))| {
-        let pressure = entry.value.given_pressure.clone()?;
         Some(FlowCondition {
             name: section_head("fracture", name),
             place: FlowPlace::Fracture(index),
-            drive: FlowDrive::Pressure(pressure),
+            drive: entry.value.given_pressure.as_ref()?.drive.clone(),
             case: cases.of_fracture(index),
         })
     });
@@ -162,12 +184,16 @@ fn unweighed(scene: &Scene, bound: &Bound<'_>) -> Vec<Defect> {
         (false, true) => return Vec::new(),
     };
     let initial = scene.fluid.iter();
-    let initial = initial.map(|entry| (&entry.place, &entry.value.initial_pressure));
+    let initial = initial.map(|entry| (&entry.place, entry.value.initial_pressure.water_table));
+    let driven = |entry: &Named<BoundaryEntry>| entry.value.fluid.as_ref()?.water_table;
     let boundaries = bound.boundaries.iter();
-    let boundaries = boundaries.map(|entry| (&entry.place, &entry.value.fluid_pressure));
+    let boundaries = boundaries.map(|entry| (&entry.place, driven(entry)));
+    let sources = bound.sources.iter();
+    let sources = sources.map(|entry| (&entry.place, entry.value.drive.water_table));
     let tables = initial
         .chain(boundaries)
-        .filter(|(_, given)| given.water_table.is_some());
+        .chain(sources)
+        .filter(|(_, level)| level.is_some());
     let remedy = "add [body] with gravity = [0, 0, -9.81], or write value and per_metre";
     tables
         .map(|(place, _)| Defect::new(place, problem, remedy))

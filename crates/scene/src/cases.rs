@@ -73,50 +73,65 @@ impl Found {
                 Some(LoadEntry::Varying(load)) => !load.load.depends_on_time(),
                 load => load.is_some(),
             };
-            let acts = is_loaded || value.moves() || value.fluid.is_some();
-            self.case(acts, &value.history, name)
+            let acts = is_loaded || value.moves();
+            self.case(acts, value.history.as_ref(), name)
         });
         let conditions = conditions.collect();
+        let driven = bound.boundaries.iter().map(|entry| {
+            let history = entry.value.history.as_ref();
+            let drive = entry.value.fluid.as_ref();
+            let course = drive.and_then(|drive| drive.course(history, ends));
+            let name = section_head("boundary", &entry.name);
+            self.case(drive.is_some(), course.as_ref(), name)
+        });
+        let boundary_flows = driven.collect();
         let fractures = bound.fractures.iter().map(|entry| {
             let value = &entry.value;
             let varying = value.varying_pressure.as_ref();
             let acts = value.fracture.fluid_pressure != 0.0
                 || value.given_pressure.is_some()
                 || varying.is_some_and(|entry| !entry.field.depends_on_time());
+            let history = value.history.as_ref();
+            let given = value.given_pressure.as_ref();
+            let course = given.map(|drive| drive.course(history, ends));
+            let course = course.unwrap_or_else(|| history.cloned());
             let name = section_head("fracture", &entry.name);
-            self.case(acts, &entry.value.history, name)
+            self.case(acts, course.as_ref(), name)
         });
         let fractures = fractures.collect();
         let fixed_points = bound.fixed_points.iter().map(|entry| {
             self.case(
                 entry.value.moves(),
-                &entry.value.history,
+                entry.value.history.as_ref(),
                 entry.name.clone(),
             )
         });
         let fixed_points = fixed_points.collect();
-        let sources = bound.sources.iter();
-        let sources =
-            sources.map(|entry| self.case(true, &entry.value.course(ends), entry.name.clone()));
+        let sources = bound.sources.iter().map(|entry| {
+            let SourceEntry { drive, history, .. } = &entry.value;
+            let course = drive.course(history.as_ref(), ends);
+            self.case(true, course.as_ref(), entry.name.clone())
+        });
         Cases {
             conditions,
+            boundary_flows,
             fractures,
             fixed_points,
             sources: sources.collect(),
             gravity: {
                 let acts = scene.body.gravity != glam::DVec3::ZERO;
-                self.case(acts, &scene.body.history, "[body]".into())
+                self.case(acts, scene.body.history.as_ref(), "[body]".into())
             },
         }
     }
 
     /// Load case of a section; what does not act may be in any.
-    fn case(&mut self, acts: bool, history: &Option<LoadHistory>, name: String) -> usize {
+    fn case(&mut self, acts: bool, history: Option<&LoadHistory>, name: String) -> usize {
         if !acts {
             return 0;
         }
         let history = history
-            .clone()
+            .cloned()
             .unwrap_or_else(|| LoadHistory::ramp(self.grown));
         let known = self.cases.iter().position(|(other, _)| *other == history);
         let case = known.unwrap_or(self.cases.len());

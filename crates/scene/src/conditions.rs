@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 use kluft_solver::{
-    Conduit, Field, FlowDrive, Fracture, LawParameter, LoadField, SpringStiffness, Support,
-    SurfaceLoad,
+    Conduit, Field, Fracture, LawParameter, LoadField, SpringStiffness, Support, SurfaceLoad,
 };
 
 use crate::conduit::HydraulicParameter;
+use crate::drive::DriveEntry;
 use crate::field::{self, FieldEntry, InTime, Value, read_value};
-use crate::fluid::{LeakoffEntry, PressureEntry, read_boundary_fluid};
+use crate::fluid::{LeakoffEntry, read_boundary_fluid};
 use crate::history::LoadHistory;
 use crate::load::{Clock, Scaled, read_history};
 use crate::place::SurfacePlace;
@@ -29,9 +29,7 @@ pub struct BoundaryEntry {
     /// Its springs.
     pub springs: Option<SpringEntry>,
     /// What drives the fluid there.
-    pub fluid: Option<FlowDrive>,
-    /// How the pressure of the fluid is given there, if it is.
-    pub fluid_pressure: PressureEntry,
+    pub fluid: Option<DriveEntry>,
     /// How all change with time.
     pub history: Option<LoadHistory>,
 }
@@ -87,7 +85,7 @@ impl BoundaryEntry {
         load.iter()
             .chain(displacement)
             .chain(self.spring_fields())
-            .chain(&self.fluid_pressure.field)
+            .chain(self.fluid.iter().filter_map(|own| own.field.as_deref()))
     }
 
     /// Whether it prescribes displacements that grow with its load case: other than 0, and without
@@ -120,10 +118,8 @@ pub struct FractureEntry {
     pub hydraulic_fields: Vec<(HydraulicParameter, FieldEntry)>,
     /// What leaks off from it into the rock; none if nothing does.
     pub leakoff: Option<LeakoffEntry>,
-    /// The fluid pressure all over it (Pa), where it is given and the fracture conducts.
-    pub given_pressure: Option<Field>,
-    /// The same, if it varies.
-    pub given_field: Option<Box<FieldEntry>>,
+    /// The fluid pressure all over it, where it is given and the fracture conducts.
+    pub given_pressure: Option<DriveEntry>,
     /// How the fluid pressure changes with time.
     pub history: Option<LoadHistory>,
 }
@@ -134,10 +130,11 @@ impl FractureEntry {
         let law = self.fields.iter().map(|(_, field)| field);
         let hydraulic = self.hydraulic_fields.iter().map(|(_, field)| field);
         let leakoff = self.leakoff.iter();
+        let given = self.given_pressure.iter();
         law.chain(hydraulic)
             .chain(leakoff.filter_map(|own| own.field.as_deref()))
             .chain(self.varying_pressure.as_deref())
-            .chain(self.given_field.as_deref())
+            .chain(given.filter_map(|own| own.field.as_deref()))
     }
 }
 
@@ -173,7 +170,7 @@ impl FixedPointEntry {
 
 /// Reads what acts on a part of the outer surface; rigid rock has no use for loads and supports.
 pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Option<BoundaryEntry> {
-    let (fluid, fluid_pressure) = read_boundary_fluid(section, setting);
+    let fluid = read_boundary_fluid(section, setting);
     let (load, held, springs) = match setting.is_rigid() {
         true => (None, Held::default(), None),
         false => (
@@ -218,7 +215,6 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
         displacement_fields: held.fields,
         springs,
         fluid,
-        fluid_pressure,
         history: read_history(section, setting.clock, scaled),
     })
 }

@@ -3,8 +3,9 @@
 use kluft_solver::Conduit;
 use lie_core::{HydraulicAperture, Roughness};
 
+use crate::drive::refuse_beside;
 use crate::field::{FieldEntry, InTime, Value, read_value};
-use crate::fluid::{OF_FRACTURES, refuse_beside, refuse_without_fluid};
+use crate::fluid::{OF_FRACTURES, refuse_without_fluid};
 use crate::reader::Section;
 use crate::setting::{FluidUse, Setting};
 

@@ -1,12 +1,12 @@
 //! What a scene says of a fluid: what it is, how fractures conduct it, what drives it.
 
 use glam::DVec3;
-use kluft_solver::{Conduit, Field, FlowDrive, Fluid, Leakoff, Profile};
+use kluft_solver::{Conduit, Fluid, Leakoff};
 
+use crate::drive::{DriveEntry, PressureEntry, read_drive, read_pressure};
 use crate::field::{FieldEntry, InTime, Value, read_value};
-use crate::history::{LoadHistory, StepEnd};
+use crate::history::LoadHistory;
 use crate::load::{Scaled, read_history};
-use crate::profile::{read_profile_or_field, says};
 use crate::reader::Section;
 use crate::setting::{FluidUse, Setting};
 
@@ -43,29 +43,9 @@ pub struct SourceEntry {
     /// Where it is.
     pub place: SourcePlace,
     /// What it does.
-    pub drive: FlowDrive,
-    /// The rate (m^3/s), if the time is in it; then `drive` is a rate of 1 m^3/s.
-    pub rate: Option<Box<FieldEntry>>,
+    pub drive: DriveEntry,
     /// How that changes with time.
     pub history: Option<LoadHistory>,
-}
-
-impl SourceEntry {
-    /// The factor on what it does: its history, times a rate that the time is in, which is linear
-    /// between the ends of the load steps.
-    pub(crate) fn course(&self, ends: &[StepEnd]) -> Option<LoadHistory> {
-        let Some(rate) = &self.rate else {
-            return self.history.clone();
-        };
-        let scaled = |time: f64| {
-            let factor = self.history.as_ref().map_or(1.0, |own| own.at(time));
-            [time, factor * rate.field.at(DVec3::ZERO, time)]
-        };
-        let times = [0.0].into_iter().chain(ends.iter().map(|end| end.time));
-        Some(LoadHistory {
-            points: times.map(scaled).collect(),
-        })
-    }
 }
 
 /// What leaks off from a fracture.
@@ -116,67 +96,6 @@ pub struct FluidEntry {
     pub initial_pressure: PressureEntry,
 }
 
-/// The pressure of a fluid, as the scene gives it.
-#[derive(Debug, Clone, Default)]
-pub struct PressureEntry {
-    /// Its values (Pa); without meaning where there is a water table.
-    pub pressure: Field,
-    /// The same, if it varies by more than the elevation.
-    pub field: Option<FieldEntry>,
-    /// Elevation below which the fluid rests (m), where its pressure is given so.
-    pub water_table: Option<f64>,
-}
-
-impl PressureEntry {
-    /// The values (Pa) for the weight of the fluid along z (Pa/m), which is negative downwards.
-    pub(crate) fn resolved(&self, weight: f64) -> Field {
-        let resting = |level| {
-            Field::from(Profile {
-                at: level,
-                value: 0.0,
-                per_metre: weight,
-            })
-        };
-        self.water_table
-            .map_or_else(|| self.pressure.clone(), resting)
-    }
-}
-
-/// Reads the elevation below which a fluid rests (m), if a pressure is given so.
-fn read_water_table(section: &Section<'_, '_>, name: &'static str) -> Option<f64> {
-    if section.is_word(name, "hydrostatic") {
-        let problem = format!("`{name}` is hydrostatic, but from which elevation on?");
-        let remedy = format!("write {name} = {{ water_table = 0.0 }}, where the pressure is 0 (m)");
-        section.refuse(name, problem, remedy);
-        return Some(0.0);
-    }
-    if !says(section, name, &["water_table"]) {
-        return None;
-    }
-    let value = section.section(name)?;
-    let forms = ["value", "per_metre", "at", "table", "expression", "file"];
-    refuse_beside(&value, "water_table", &forms);
-    let level = value.number("water_table");
-    value.finish();
-    level
-}
-
-fn read_pressure(section: &Section<'_, '_>, key: &'static str) -> PressureEntry {
-    let water_table = read_water_table(section, key);
-    if water_table.is_some() {
-        return PressureEntry {
-            water_table,
-            ..PressureEntry::default()
-        };
-    }
-    let (pressure, field) = read_profile_or_field(section, key);
-    PressureEntry {
-        pressure,
-        field,
-        water_table,
-    }
-}
-
 /// Reads the fluid.
 pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<FluidEntry> {
     section.require("viscosity");
@@ -186,7 +105,7 @@ pub(crate) fn read_fluid(section: Section<'_, '_>, gravity: DVec3) -> Option<Flu
     let viscosity = section.number("viscosity");
     let density = section.number("density");
     let compressibility = section.number("compressibility");
-    let initial_pressure = read_pressure(&section, "initial_pressure");
+    let initial_pressure = read_pressure(&section, "initial_pressure", InTime::Never);
     section.finish();
     Some(FluidEntry {
         fluid: Fluid {
@@ -270,11 +189,7 @@ fn read_points(section: &Section<'_, '_>) -> Option<SourcePlace> {
 pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option<SourceEntry> {
     refuse_without_fluid(section, setting, &["rate", "pressure"]);
     let place = read_place(section);
-    let constant = || Field::constant(section.number("pressure").unwrap_or(0.0));
-    let (drive, rate) = match section.is_table("rate") && !section.has("pressure") {
-        true => (Some(FlowDrive::Rate(1.0)), read_rate(section, setting)),
-        false => (read_drive(section, ["pressure", "rate"], constant), None),
-    };
+    let drive = read_drive(section, ["pressure", "rate"], setting.clock);
     if drive.is_none() {
         section.require("rate");
     }
@@ -286,58 +201,18 @@ pub(crate) fn read_source(section: &Section<'_, '_>, setting: Setting) -> Option
     Some(SourceEntry {
         place: place?,
         drive: drive?,
-        rate,
         history,
     })
 }
 
-/// A rate that changes with time; all that a source feeds has one.
-fn read_rate(section: &Section<'_, '_>, setting: Setting) -> Option<Box<FieldEntry>> {
-    let value = read_value(section, "rate", InTime::By(setting.clock));
-    let Some(Value::Varying(entry)) = value else {
-        return None;
-    };
-    if entry.field.depends_on_place() {
-        section.refuse(
-            "rate",
-            "a source has one rate, which varies with time alone".into(),
-            "write an expression of time, or a table over = \"time\"",
-        );
-    }
-    Some(entry)
-}
-
-/// Reads what drives the fluid at a part of the outer surface, and how its pressure is given.
+/// Reads what drives the fluid at a part of the outer surface.
 pub(crate) fn read_boundary_fluid(
     section: &Section<'_, '_>,
     setting: Setting,
-) -> (Option<FlowDrive>, PressureEntry) {
+) -> Option<DriveEntry> {
     let keys = ["fluid_pressure", "fluid_inflow"];
     refuse_without_fluid(section, setting, &keys);
-    let mut given = PressureEntry::default();
-    let drive = read_drive(section, keys, || {
-        given = read_pressure(section, "fluid_pressure");
-        given.pressure.clone()
-    });
-    (drive, given)
-}
-
-/// A pressure or a rate.
-fn read_drive(
-    section: &Section<'_, '_>,
-    [pressure, rate]: [&'static str; 2],
-    read_pressure: impl FnOnce() -> Field,
-) -> Option<FlowDrive> {
-    if section.has(pressure) && section.has(rate) {
-        let problem = format!("both {pressure} and {rate} are given");
-        let remedy = "keep one: where the pressure is given the rate follows from it";
-        section.refuse(rate, problem, remedy);
-    }
-    if !section.has(pressure) {
-        return section.number(rate).map(FlowDrive::Rate);
-    }
-    section.number(rate);
-    Some(FlowDrive::Pressure(read_pressure()))
+    read_drive(section, keys, setting.clock)
 }
 
 /// Reads what leaks off from a fracture; none if nothing does.
@@ -362,14 +237,6 @@ pub(crate) fn read_leakoff(
         exposed: exposed.unwrap_or(0.0),
     };
     (is_open && leakoff.coefficient > 0.0).then_some(LeakoffEntry { leakoff, field })
-}
-
-/// Refuses keys that another one leaves without effect.
-pub(crate) fn refuse_beside(section: &Section<'_, '_>, other: &str, keys: &[&'static str]) {
-    for &key in keys.iter().filter(|key| section.has(key)) {
-        let problem = format!("`{key}` has no effect beside {other}");
-        section.refuse(key, problem, "keep one of them");
-    }
 }
 
 pub(crate) fn refuse_without_fluid(

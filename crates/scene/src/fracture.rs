@@ -1,11 +1,12 @@
 //! What a scene may say of a fracture.
 
 use kluft_keys::Range;
-use kluft_solver::{Conduit, Field, Fracture, LawParameter};
+use kluft_solver::{Conduit, Fracture, LawParameter};
 use lie_core::{Closure, ClosureKind, FractureLaw, Friction, HydraulicAperture, Tension};
 
 use crate::conditions::FractureEntry;
 use crate::conduit::{HydraulicFields, HydraulicParameter, read_conduit};
+use crate::drive::{DriveEntry, refuse_both_ways};
 use crate::field::{FieldEntry, InTime, Value, read_value};
 use crate::fluid::read_leakoff;
 use crate::load::{Scaled, read_history};
@@ -43,18 +44,18 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
     let is_open = matches!(conduit, Some(Conduit::Open(_)));
     // Nothing moves the walls of a sealed fracture in rigid rock.
     let has_use = is_open || !setting.is_rigid();
-    let given = match (has_use, is_open) {
-        (false, _) => None,
-        (true, true) => read_value(section, "fluid_pressure", InTime::Never),
-        (true, false) => read_value(section, "fluid_pressure", InTime::By(setting.clock)),
-    };
-    let (fluid_pressure, varying_pressure) = match given {
+    let key = "fluid_pressure";
+    let given = has_use.then(|| read_value(section, key, InTime::By(setting.clock)));
+    let (fluid_pressure, varying_pressure) = match given.flatten() {
         Some(Value::Number(pressure)) => (Some(pressure), None),
         Some(Value::Varying(entry)) => (None, Some(entry)),
         None => (None, None),
     };
+    if is_open {
+        refuse_both_ways(section, key, varying_pressure.as_deref());
+    }
     let scaled = Scaled {
-        is_there: has_use && section.has("fluid_pressure"),
+        is_there: has_use && section.has(key),
         what: "a fluid_pressure",
     };
     let history = read_history(section, setting.clock, scaled);
@@ -70,10 +71,9 @@ pub fn read_fracture(section: &Section<'_, '_>, setting: Setting) -> Option<Frac
         fields: fields.0,
         given_pressure: match (&varying_pressure, fluid_pressure) {
             _ if !is_open => None,
-            (Some(entry), _) => Some(entry.field.clone()),
-            (None, pressure) => pressure.map(Field::constant),
+            (Some(entry), _) => Some(DriveEntry::of_field(entry.clone())),
+            (None, pressure) => pressure.map(DriveEntry::of_constant),
         },
-        given_field: varying_pressure.clone().filter(|_| is_open),
         varying_pressure: varying_pressure.filter(|_| !is_open),
         leakoff: read_leakoff(section, conduit),
         conduit,

@@ -2,7 +2,7 @@
 
 use kluft_solver::InitialStress;
 
-use crate::field::FieldEntry;
+use crate::field::{FieldEntry, InTime};
 use crate::profile::read_profile_or_field;
 use crate::reader::Section;
 
@@ -18,7 +18,7 @@ pub struct InitialStressEntry {
 pub(crate) fn read_initial_stress(section: Section<'_, '_>) -> InitialStressEntry {
     let mut fields = Vec::new();
     let components = ["xx", "yy", "zz", "xy", "yz", "xz"].map(|name| {
-        let (component, entry) = read_profile_or_field(&section, name);
+        let (component, entry) = read_profile_or_field(&section, name, InTime::Never);
         fields.extend(entry);
         component
     });

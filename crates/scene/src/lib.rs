@@ -16,6 +16,7 @@ mod cases;
 mod conditions;
 mod conduit;
 mod doubts;
+mod drive;
 mod field;
 mod fluid;
 mod fluid_doubts;
@@ -56,8 +57,9 @@ pub use conditions::{
     BodyEntry, BoundaryEntry, FixedPointEntry, FractureEntry, LoadEntry, SpringEntry,
     VaryingLoadEntry,
 };
+pub use drive::{DriveEntry, PressureEntry};
 pub use field::FieldEntry;
-pub use fluid::{FluidEntry, LeakoffEntry, PressureEntry, SourceEntry, SourcePlace};
+pub use fluid::{FluidEntry, LeakoffEntry, SourceEntry, SourcePlace};
 pub use fracture::{read_fracture, refused_keys};
 pub use history::{LoadHistory, PhaseEntry, StepEnd, Timetable};
 pub use initial_stress::InitialStressEntry;

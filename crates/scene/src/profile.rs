@@ -35,18 +35,18 @@ pub(crate) fn says(section: &Section<'_, '_>, name: &'static str, keys: &[&'stat
         .is_some_and(|value| keys.iter().any(|key| value.has(key)))
 }
 
-/// Reads a number, a profile, or a value that varies otherwise but not with time, which is kept
-/// beside.
+/// Reads a number, a profile, or a value that varies otherwise, which is kept beside.
 pub(crate) fn read_profile_or_field(
     section: &Section<'_, '_>,
     name: &'static str,
+    in_time: InTime,
 ) -> (Field, Option<FieldEntry>) {
     if !says(section, name, &["table", "expression", "file"]) {
         return (Field::from(read_profile(section, name)), None);
     }
     let quantity = section.quantity(name);
     let value = section.section(name);
-    let value = value.and_then(|value| read_field(value, (name, quantity), InTime::Never));
+    let value = value.and_then(|value| read_field(value, (name, quantity), in_time));
     match value {
         Some(Value::Varying(entry)) => (entry.field.clone(), Some(*entry)),
         Some(Value::Number(_)) | None => (Field::default(), None),

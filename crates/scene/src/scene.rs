@@ -186,11 +186,14 @@ impl Scene {
         let stress = self.initial_stress.iter().flat_map(|entry| &entry.fields);
         let fluid = self.fluid.iter();
         let fluid = fluid.filter_map(|entry| entry.value.initial_pressure.field.as_ref());
+        let sources = self.sources.iter();
+        let sources = sources.filter_map(|entry| entry.value.drive.field.as_deref());
         let mut files: Vec<&Path> = Vec::new();
         for file in fractures
             .chain(loads)
             .chain(stress)
             .chain(fluid)
+            .chain(sources)
             .filter_map(|field| field.file.as_deref())
         {
             if !files.contains(&file) {

@@ -54,7 +54,7 @@ impl Drilling<'_> {
         let condition = |place: FlowPlace| FlowCondition {
             name: entry.name.clone(),
             place,
-            drive: entry.value.drive.clone(),
+            drive: entry.value.drive.resolved(self.weight),
             case: self.case,
         };
         match &entry.value.place {
@@ -147,7 +147,7 @@ impl Drilling<'_> {
                 "let it lie within one; a borehole that crosses fractures has from, to and radius",
             ));
         }
-        if entry.value.drive.is_pressure() && !found.is_on_edges {
+        if entry.value.drive.drive.is_pressure() && !found.is_on_edges {
             return Err(Defect::new(
                 &entry.place,
                 "a pressure is given along a line that runs across facets, where no node has it",
@@ -166,8 +166,9 @@ impl Drilling<'_> {
         Ok(found.shares)
     }
 
-    /// A borehole through all fractures that it crosses: a pressure is hydrostatic along it, a rate
-    /// is shared by the transmissivities of the fractures without load.
+    /// A borehole through all fractures that it crosses: one pressure is hydrostatic along it,
+    /// pressures that change from place to place are what they are, a rate is shared by the
+    /// transmissivities of the fractures without load.
     fn borehole(
         &self,
         entry: &Named<SourceEntry>,
@@ -175,6 +176,8 @@ impl Drilling<'_> {
         decisions: &mut Vec<String>,
     ) -> Result<Vec<FlowCondition>, Defect> {
         let crossings = self.crossings(ends);
+        let drive = entry.value.drive.resolved(self.weight);
+        let is_pressure = drive.is_pressure();
         if crossings.is_empty() {
             let [a, b] = ends;
             return Err(Defect::new(
@@ -185,6 +188,14 @@ impl Drilling<'_> {
                 ),
                 "let it cross one; a borehole within the plane of a fracture does not, nor does one \
                  that ends before it",
+            ));
+        }
+        if entry.value.drive.in_time().is_some() && is_pressure && self.weight != 0.0 {
+            return Err(Defect::new(
+                &entry.place,
+                "the pressure of a borehole changes with time, but the weight of the fluid in it does not",
+                "let it change from place to place and scale it by a history, or give a source `at` \
+                 each fracture its own",
             ));
         }
         decisions.push(self.told(entry, &crossings));
@@ -202,9 +213,10 @@ impl Drilling<'_> {
                 node: crossing.node,
                 radius,
             },
-            drive: match &entry.value.drive {
+            drive: match &drive {
                 FlowDrive::Rate(rate) => FlowDrive::Rate(rate * weight / whole),
                 leakoff @ FlowDrive::Leakoff(_) => leakoff.clone(),
+                FlowDrive::Pressure(given) if given.depends_on_place() => drive.clone(),
                 FlowDrive::Pressure(given) => FlowDrive::Pressure(Field::from(Profile {
                     per_metre: self.weight,
                     at: ends[0].z,

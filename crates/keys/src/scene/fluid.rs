@@ -152,10 +152,10 @@ pub static SOURCE: KeySection = KeySection {
         },
         Key {
             name: "pressure",
-            kind: number(Dimension::Stress, INITIAL),
+            kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &SOURCE_PROFILE),
             need: Need::Or("rate"),
             example: "12e6",
-            says: "Pressure of the fluid at its wall",
+            says: "Pressure of the fluid at its wall: constant, linear in the elevation, or any value that varies with time or from place to place; in a borehole `from` and `to` a number is that where it begins, and the fluid in it rests",
         },
         Key {
             name: "radius",
@@ -178,6 +178,14 @@ pub static SOURCE: KeySection = KeySection {
 /// A pressure on a boundary that is linear in the elevation.
 pub static FLUID_PROFILE: KeySection = KeySection {
     pattern: "[boundary.NAME.fluid_pressure]",
+    says: "Pressure `value + per_metre (z - at)`, or one that varies",
+    keys: &PROFILE_KEYS,
+    also: Some(&FIELD),
+};
+
+/// A pressure of a source that is linear in the elevation.
+pub static SOURCE_PROFILE: KeySection = KeySection {
+    pattern: "[source.pressure]",
     says: "Pressure `value + per_metre (z - at)`, or one that varies",
     keys: &PROFILE_KEYS,
     also: Some(&FIELD),
@@ -228,16 +236,16 @@ pub(super) const BOUNDARY_PRESSURE: Key = Key {
     kind: Kind::NumberOr(quantity(Dimension::Stress, INITIAL), &FLUID_PROFILE),
     need: Need::Without("closed to the fluid"),
     example: "1e6",
-    says: "Pressure of the fluid where fractures meet the surface: constant, linear in the elevation, or any value that varies but not with time",
+    says: "Pressure of the fluid where fractures meet the surface: constant, linear in the elevation, or any value that varies with time or from place to place",
 };
 
 /// What enters the fractures through a part of the outer surface.
 pub(super) const BOUNDARY_INFLOW: Key = Key {
     name: "fluid_inflow",
-    kind: number(Dimension::VolumeRate, Range::Finite),
+    kind: varied(Dimension::VolumeRate, Range::Finite),
     need: Need::Without("closed to the fluid"),
     example: "1e-3",
-    says: "What flows into the fractures that meet the surface, in all, shared by length times transmissivity; instead of `fluid_pressure`",
+    says: "What flows into the fractures that meet the surface, in all, shared by length times transmissivity; one that varies does so with time alone; instead of `fluid_pressure`",
 };
 
 /// How a fracture conducts.

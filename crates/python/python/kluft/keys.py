@@ -370,6 +370,73 @@ class InitialStress(Section):
         )
 
 
+class Unnamed(Section):
+    """Pressure `value + per_metre (z - at)`, or one that varies.
+
+    Args:
+        value: Pressure at the elevation `at` (Pa); -1e12 to 1e12. This or `water_table` is
+            required.
+        per_metre: Increase with the elevation (Pa/m); -1e9 to 1e9. Without it 0.
+        at: Elevation of `value`, positive upwards (m). Without it 0.
+        water_table: Instead: elevation below which a fluid at rest has this pressure, by `density`
+            and gravity; 0 there, negative above (m). This or `value` is required.
+        table: Rows `[coordinate, value]` with linear values between, in any order. Without it:
+            `expression` or `file`.
+        over: What the rows of the table are over; the time is that of the load steps. Without it:
+            required with `table`.
+        ground: Elevation z of the ground: the depth is `ground` - z (m). Without it 0.
+        expression: Value by x, y, z, depth (m) and time, with + - * / ^, min(a, b), max(a, b),
+            sqrt, exp, ln, log10, sin, cos, tan, abs, step (0 below 0, else 1) and PI. Without it:
+            `table` or `file`.
+        file: CSV file of samples: columns x, y, z (m), of which those may be missing along which
+            nothing varies; or a grid of VTK (.vtu), whose values stand at its points, or in the
+            middle of its cells. Without it: `table` or `expression`.
+        column: Column, or array of the grid, with the values. Without it: required with `file`.
+        method: Between samples: the nearest one, or linear along their line, in the Delaunay
+            triangles of their plane, or on their grid. Without it "nearest".
+        reach: Largest distance from a sample: a point beyond it is a gap, and refused (m); > 0.
+            Without it: any; the run tells the largest.
+        beyond: Beyond the table or the samples between which values are linear: a defect, or the
+            nearest value. Without it "refuse".
+        unit: Unit of the values. Without it: SI units, angles in degrees.
+    """
+
+    def __init__(
+        self,
+        *,
+        value: Quantity | None = None,
+        per_metre: Quantity | None = None,
+        at: Quantity | None = None,
+        water_table: Quantity | None = None,
+        table: Sequence[Sequence[float]] | None = None,
+        over: Literal["x", "y", "z", "depth", "time"] | None = None,
+        ground: Quantity | None = None,
+        expression: str | None = None,
+        file: str | os.PathLike[str] | None = None,
+        column: str | None = None,
+        method: Literal["nearest", "linear"] | None = None,
+        reach: Quantity | None = None,
+        beyond: Literal["refuse", "nearest"] | None = None,
+        unit: str | None = None,
+    ) -> None:
+        super().__init__(
+            value=value,
+            per_metre=per_metre,
+            at=at,
+            water_table=water_table,
+            table=table,
+            over=over,
+            ground=ground,
+            expression=expression,
+            file=file,
+            column=column,
+            method=method,
+            reach=reach,
+            beyond=beyond,
+            unit=unit,
+        )
+
+
 class Source(Section):
     """A borehole, a line within fractures or a whole fracture, by its rate or its pressure.
 
@@ -388,7 +455,10 @@ class Source(Section):
             its pressure does (m). Without it: `at`.
         rate: What flows in; negative where it flows out; one that varies does so with time alone
             (m3/s). This or `pressure` is required.
-        pressure: Pressure of the fluid at its wall (Pa); -1e12 to 1e12. This or `rate` is required.
+        pressure: Pressure of the fluid at its wall: constant, linear in the elevation, or any value
+            that varies with time or from place to place; in a borehole `from` and `to` a number is
+            that where it begins, and the fluid in it rests (Pa); -1e12 to 1e12. This or `rate` is
+            required.
         radius: Its radius, small beside the facets around it; the pressure at its wall depends on
             it (m); > 0. Required, unless there is `fracture`, `curve` or `points`.
         history: Factor on its rate or pressure at times. Without it: grows once.
@@ -405,7 +475,7 @@ class Source(Section):
         curve: str | None = None,
         points: Sequence[Sequence[float]] | None = None,
         rate: Quantity | Varying | Mapping[str, Any] | None = None,
-        pressure: Quantity | None = None,
+        pressure: Quantity | Unnamed | Mapping[str, Any] | None = None,
         radius: Quantity | None = None,
         history: Sequence[Sequence[float]] | None = None,
     ) -> None:
@@ -686,11 +756,11 @@ class Boundary(Section):
         far_field: Springs as stiff as unbounded rock outside, going by the distance from this
             centre of what happens inside; instead of `spring` (m). Without it: none.
         fluid_pressure: Pressure of the fluid where fractures meet the surface: constant, linear in
-            the elevation, or any value that varies but not with time (Pa); -1e12 to 1e12. Without
-            it: closed to the fluid.
+            the elevation, or any value that varies with time or from place to place (Pa); -1e12 to
+            1e12. Without it: closed to the fluid.
         fluid_inflow: What flows into the fractures that meet the surface, in all, shared by length
-            times transmissivity; instead of `fluid_pressure` (m3/s). Without it: closed to the
-            fluid.
+            times transmissivity; one that varies does so with time alone; instead of
+            `fluid_pressure` (m3/s). Without it: closed to the fluid.
         history: Factor on its load, its displacement and its fluid at times. Without it: grows
             once.
     """
@@ -707,7 +777,7 @@ class Boundary(Section):
         shear_spring: Quantity | Varying | Mapping[str, Any] | None = None,
         far_field: Sequence[Quantity] | None = None,
         fluid_pressure: Quantity | FluidPressure | Mapping[str, Any] | None = None,
-        fluid_inflow: Quantity | None = None,
+        fluid_inflow: Quantity | Varying | Mapping[str, Any] | None = None,
         history: Sequence[Sequence[float]] | None = None,
     ) -> None:
         super().__init__(
@@ -1105,6 +1175,7 @@ __all__ = [
     "Source",
     "StrengthReduction",
     "StressProfile",
+    "Unnamed",
     "Varying",
     "Warnings",
 ]

@@ -85,6 +85,8 @@ pub struct Step {
 pub struct Cases {
     /// Of each of [`crate::Problem::conditions`].
     pub conditions: Vec<usize>,
+    /// Of what drives the fluid at the surface of each of [`crate::Problem::conditions`].
+    pub boundary_flows: Vec<usize>,
     /// Of the fluid pressure in each of [`crate::Problem::fractures`].
     pub fractures: Vec<usize>,
     /// Of each of [`crate::Problem::fixed_points`].
@@ -99,6 +101,11 @@ impl Cases {
     /// Load case of a condition.
     pub fn of_condition(&self, condition: usize) -> usize {
         self.conditions.get(condition).copied().unwrap_or(0)
+    }
+
+    /// Load case of what drives the fluid at the surface of a condition.
+    pub fn of_boundary_flow(&self, condition: usize) -> usize {
+        self.boundary_flows.get(condition).copied().unwrap_or(0)
     }
 
     /// Load case of the fluid pressure in a fracture.
