@@ -34,7 +34,13 @@ pub(crate) fn problem(height: fn(f64) -> f64) -> Problem {
             contains: &|x: [f64; 3]| x[2] == 0.0,
         },
     ];
-    let mut draft = tetrahedra([CUBES; 3], [1.0; 3], &patches);
+    cut_by(&patches, height)
+}
+
+/// A block that stands on its clamped bottom, the last of the patches, with fractures on the two
+/// others.
+fn cut_by(patches: &[Patch<'_>; 3], height: fn(f64) -> f64) -> Problem {
+    let mut draft = tetrahedra([CUBES; 3], [1.0; 3], patches);
     for node in &mut draft.nodes {
         node[2] = height(node[2]);
     }
@@ -183,6 +189,30 @@ fn a_sliver_beside_a_fracture_costs_no_iterations() {
     let count = iterations(&system, |_| YOUNG);
     println!("with a sliver: {count}");
     assert!(count <= 20, "{count}");
+}
+
+/// Two cracks from one side leave a tongue of rock between them, one cell thick, that hangs on the
+/// rock ahead of their edges.
+#[test]
+fn a_tongue_between_two_open_cracks_costs_few_iterations() {
+    let patches = [
+        Patch {
+            name: "below",
+            contains: &|x: [f64; 3]| x[2] == 0.5 && x[0] <= 0.5 && x[1] <= 0.5,
+        },
+        Patch {
+            name: "above",
+            contains: &|x: [f64; 3]| x[2] == 0.6 && x[0] <= 0.5 && x[1] <= 0.5,
+        },
+        Patch {
+            name: "bottom",
+            contains: &|x: [f64; 3]| x[2] == 0.0,
+        },
+    ];
+    let tongue = cut_by(&patches, |z| z);
+    let count = iterations(&system(&tongue), |_| 1e-4 * YOUNG);
+    println!("with a tongue: {count}");
+    assert!(count <= 16, "{count}");
 }
 
 /// The upper part moving alone, by one: a motion of the next level, as far as the clamped bottom is

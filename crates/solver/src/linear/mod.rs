@@ -8,6 +8,7 @@ mod direct;
 #[cfg(test)]
 mod fractured_tests;
 mod iterative;
+mod moved_points;
 #[cfg(test)]
 mod multigrid_tests;
 mod nonsymmetric;

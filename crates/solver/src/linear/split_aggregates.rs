@@ -4,16 +4,17 @@
 //! its motion falls into parts; each becomes a motion of its own, as a node falls into points. So
 //! the next level knows smooth jumps as the finest one knows jumps, which nothing else can take
 //! care of at a moderate cost: a jump of nodes alone, one layer thick, is stiffer by `L/h` than one
-//! whose sides follow it to the distance `L`. Small parts have no motions of their own but follow
-//! those beside them, so that whatever moves rigidly on the finest level still does so exactly on
-//! the next one. What stiff walls make of these motions is left to the multigrid, see
+//! whose sides follow it to the distance `L`. Where a fracture ends inside an aggregate, each of
+//! its walls has a part that reaches beyond the edge. Small parts have no motions of their own but
+//! follow those beside them, so that whatever moves rigidly on the finest level still does so
+//! exactly on the next one. What stiff walls make of these motions is left to the multigrid, see
 //! [`kluft_algebra::multigrid`].
 
 use kluft_algebra::multigrid::{CoarseBasis, MeanField};
 use kluft_algebra::small::{Modes, add, product, rows_of, widen};
-use kluft_mesh::DisjointSets;
 use rayon::prelude::*;
 
+use crate::linear::moved_points::{MovedPoints, NOWHERE};
 use crate::space::Space;
 
 /// A part with less than this share of the motion of its aggregate follows that of another one.
@@ -22,7 +23,6 @@ const SMALL: f64 = 0.02;
 const FOLLOWS: u32 = u32::MAX;
 /// Aggregates that one task cuts.
 const PER_TASK: usize = 64;
-const NOWHERE: u32 = u32::MAX;
 
 /// The parts of all aggregates.
 pub(super) struct SplitAggregates<'a> {
@@ -250,37 +250,16 @@ fn moved(space: Space<'_>, means: &MeanField, aggregate: usize) -> Vec<(u32, f64
     points.collect()
 }
 
-/// Numbers the parts into which the facets cut the points of an aggregate. `number` is room,
+/// Numbers the parts into which fractures divide the points of an aggregate. `number` is room,
 /// [`NOWHERE`] for all points before and after.
 fn cut(space: Space<'_>, moved: &[(u32, f64)], number: &mut [u32]) -> SplitAggregate {
-    let Space {
-        points, pattern, ..
-    } = space;
-    let cells = &space.problem.mesh.cells;
     for (place, (point, _)) in moved.iter().enumerate() {
         number[*point as usize] = place as u32;
     }
-    let mut sets = DisjointSets::new(moved.len());
-    for (place, &(point, _)) in moved.iter().enumerate() {
-        for &slot in pattern.slots.of(points.node[point as usize] as usize) {
-            if points.of_cell_node[slot as usize] != point {
-                continue;
-            }
-            let (_, slots) = pattern.cell_of_slot.locate(slot, cells);
-            for other in &points.of_cell_node[slots] {
-                let other = number[*other as usize];
-                if other != NOWHERE {
-                    sets.join(place as u32, other);
-                }
-            }
-        }
-    }
+    let roots = MovedPoints::new(space, moved, number).parts();
     for (point, _) in moved {
         number[*point as usize] = NOWHERE;
     }
-    let roots: Vec<u32> = (0..moved.len() as u32)
-        .map(|place| sets.root(place))
-        .collect();
     let mut parts = roots.clone();
     parts.sort_unstable();
     parts.dedup();
