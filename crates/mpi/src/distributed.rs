@@ -11,8 +11,10 @@ use kluft_solver::{
 };
 
 use crate::levels::{Levels, gathered_parts};
+use crate::lines::EntryShape;
 use crate::partition::Partition;
-use crate::petsc::{Matrix, PetscFailure, Preconditioner, Solver, SolverParts, World};
+use crate::parts::SolverParts;
+use crate::petsc::{Matrix, PetscFailure, Preconditioner, Solver, World};
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 2000;
@@ -30,6 +32,8 @@ pub struct Distributed {
     world: Arc<World>,
     partition: Arc<Partition>,
     coarsening: FirstCoarsening,
+    /// The stiffness of the rock, the rows of this rank.
+    rock: Arc<Matrix>,
     solver: Option<Solver>,
     /// Stiffness of the fractures, one block for each of the interface's columns.
     stiffness: Option<Vec<DMat3>>,
@@ -47,10 +51,15 @@ impl Distributed {
     pub fn new(world: &Arc<World>, system: &System<'_>) -> Result<Self, LinearFailure> {
         let coarsening = first_coarsening(system)?;
         let partition = Partition::of(world, system, coarsening.clusters());
+        let rock = system.rock_rows();
+        let rock = matrix(world, &partition, |row, blocks| {
+            blocks.extend(partition.numbered(rock.row(row as usize)));
+        })?;
         Ok(Self {
             world: Arc::clone(world),
             partition: Arc::new(partition),
             coarsening,
+            rock: Arc::new(rock),
             solver: None,
             stiffness: None,
             built_for: None,
@@ -85,7 +94,7 @@ impl Distributed {
         &mut self,
         fixed: FixedPart<'_>,
         blocks: InterfaceBlocks<'_>,
-    ) -> Result<SolverParts, LinearFailure> {
+    ) -> Result<SolverParts<Matrix>, LinearFailure> {
         let rows = fixed.matrix.rows();
         let mut part = self.part(fixed, blocks)?;
         let levels = match self.coarsening.has_next(rows) {
@@ -94,8 +103,9 @@ impl Distributed {
         };
         let bounds = std::iter::once(part.largest_eigenvalue).chain(levels.largest_eigenvalues);
         Ok(SolverParts {
-            operator: self.operator(fixed, blocks)?,
-            inverse: self.matrix(&part.inverse)?,
+            rock: Arc::clone(&self.rock),
+            fractures: self.fractures(blocks)?,
+            inverse: self.inverse(&part.inverse)?,
             prolongators: levels.prolongators,
             matrices: levels.matrices,
             coarsest: levels.coarsest,
@@ -157,26 +167,23 @@ impl Distributed {
         }
     }
 
-    fn matrix(&self, rows: &BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
-        let Partition { own, number, .. } = &*self.partition;
-        Matrix::new(&self.world, rows, own.len(), |row| number[row as usize])
+    fn inverse(&self, rows: &BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
+        let number = |row: u32| self.partition.number[row as usize];
+        Matrix::of_level(&self.world, rows, number)
     }
 
-    /// The rows of this rank of the whole tangent.
-    fn operator(
-        &self,
-        fixed: FixedPart<'_>,
-        blocks: InterfaceBlocks<'_>,
-    ) -> Result<Matrix, PetscFailure> {
-        let own = &self.partition.own;
-        Matrix::by_rows([own.len(); 2], &self.world, |at, entries| {
-            self.partition.add_row(fixed, blocks, own[at], entries);
+    /// The rows of this rank of what the fractures have in the tangent.
+    fn fractures(&self, added: InterfaceBlocks<'_>) -> Result<Matrix, PetscFailure> {
+        matrix(&self.world, &self.partition, |row, blocks| {
+            if let Ok(index) = added.pattern.rows.binary_search(&row) {
+                blocks.extend(self.partition.numbered(added.row(index)));
+            }
         })
     }
 
-    /// Takes a new stiffness of the fractures into the operator: the rows of this rank that have
+    /// Takes a new stiffness of the fractures into the tangent: the rows of this rank that have
     /// some of it.
-    fn update_operator(
+    fn update_fractures(
         &mut self,
         fixed: FixedPart<'_>,
         stiffness: &[DMat3],
@@ -187,11 +194,10 @@ impl Distributed {
         };
         let partition = Arc::clone(&self.partition);
         let rank = self.world.rank() as u32;
-        let rows = blocks.pattern.rows.iter();
-        let own = rows.filter(|row| partition.owner[**row as usize] == rank);
-        let rows = own.map(|&row| {
-            let mut entries = Vec::new();
-            partition.add_row(fixed, blocks, row, &mut entries);
+        let rows = blocks.pattern.rows.iter().enumerate();
+        let own = rows.filter(|(_, row)| partition.owner[**row as usize] == rank);
+        let rows = own.map(|(index, &row)| {
+            let entries = partition.numbered(blocks.row(index)).collect();
             (partition.number[row as usize], entries)
         });
         Ok(self.solver()?.update(rows)?)
@@ -254,13 +260,25 @@ impl Distributed {
     }
 }
 
+/// The matrix of unknowns of which `row` adds the blocks of one to a list, by the global numbers of
+/// their columns.
+fn matrix(
+    world: &Arc<World>,
+    partition: &Partition,
+    row: impl Fn(u32, &mut Vec<(i64, [[f64; 3]; 3])>),
+) -> Result<Matrix, PetscFailure> {
+    let own = &partition.own;
+    let sizes = (EntryShape::square(3), [own.len(); 2]);
+    Matrix::by_rows(world, sizes, |at, blocks| row(own[at], blocks))
+}
+
 impl TangentSolver for Distributed {
     fn update(&mut self, fixed: FixedPart<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
         let built_for = self.built_for.as_deref();
         if !built_for.is_some_and(|built_for| serves(fixed, built_for, &stiffness)) {
             self.rebuild_for(fixed, stiffness.clone())?;
         } else if self.stiffness.as_ref() != Some(&stiffness) {
-            self.update_operator(fixed, &stiffness)?;
+            self.update_fractures(fixed, &stiffness)?;
         }
         self.stiffness = Some(stiffness);
         Ok(())

@@ -68,14 +68,19 @@ impl LevelNodes {
         }
     }
 
-    /// The rows of a matrix on this rank.
-    fn matrix<const M: usize>(
+    /// The rows of a matrix between these nodes, on this rank.
+    fn matrix(&self, world: &Arc<World>, rows: &BlockList<6, 6>) -> Result<Matrix, PetscFailure> {
+        Matrix::of_level(world, rows, |node| self.number[node as usize])
+    }
+
+    /// The rows of the prolongator from these nodes, on this rank.
+    fn prolongator<const M: usize>(
         &self,
         world: &Arc<World>,
         rows: &BlockList<M, 6>,
     ) -> Result<Matrix, PetscFailure> {
         let number = |node: u32| self.number[node as usize];
-        Matrix::new(world, rows, self.own.len(), number)
+        Matrix::prolongator(world, rows, self.own.len(), number)
     }
 }
 
@@ -120,7 +125,7 @@ impl Levels {
             *block = product(block, &transpose(&lower.factors()[column as usize]));
         }
         let mut nodes = LevelNodes::of(world, owner, lower.nodes(0), movers);
-        let mut prolongators = vec![nodes.matrix(world, &prolongator)?];
+        let mut prolongators = vec![nodes.prolongator(world, &prolongator)?];
         drop(prolongator);
         let mut matrices = vec![nodes.matrix(world, &lower.matrix(0, &nodes.own))?];
         for level in 1..lower.count() {
@@ -129,7 +134,7 @@ impl Levels {
                 lower.movers(level - 1, node).iter().copied()
             });
             let rows = lower.prolongator(level - 1, &above.own);
-            prolongators.push(nodes.matrix(world, &rows)?);
+            prolongators.push(nodes.prolongator(world, &rows)?);
             matrices.push(nodes.matrix(world, &lower.matrix(level, &nodes.own))?);
         }
         let coarsest = match lower.coarsest_solve() {

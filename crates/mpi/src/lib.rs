@@ -6,7 +6,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `petsc`, `shim.c` | PETSc and MPI behind safe types |
-//! | `rows`, `lines` | rows of blocks on their way to PETSc |
+//! | `rows`, `lines`, `parts` | rows of blocks on their way to PETSc, and what a solver is made of |
 //! | `partition` | which rank owns which unknowns |
 //! | `levels` | the levels below the finest one, the rows of this rank |
 //! | `distributed` | the linear solver |
@@ -19,6 +19,7 @@ pub mod levels;
 mod lines;
 mod memory;
 pub mod partition;
+pub mod parts;
 pub mod petsc;
 mod rows;
 pub mod run;

@@ -2,6 +2,35 @@
 
 use crate::answers::PetscFailure;
 
+/// Lines and numbers of an entry of a matrix, and the size of the square blocks that keep it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EntryShape {
+    pub(crate) lines: usize,
+    pub(crate) numbers: usize,
+    pub(crate) block: usize,
+}
+
+impl EntryShape {
+    /// One square block.
+    pub(crate) fn square(size: usize) -> Self {
+        Self {
+            lines: size,
+            numbers: size,
+            block: size,
+        }
+    }
+
+    /// What moves `lines` unknowns of a node by the six of one below. PETSc unrolls the products of
+    /// transposed blocks of three, not those of six.
+    pub(crate) fn of_prolongator(lines: usize) -> Self {
+        Self {
+            lines,
+            numbers: 6,
+            block: 3,
+        }
+    }
+}
+
 /// Most blocks of a row that the shim takes at once.
 const MOST_AT_ONCE: usize = 256;
 

@@ -1,7 +1,7 @@
 //! Memory that the solver on ranks takes, predicted before any of it is taken.
 
-/// PETSc's operator, and the one that the levels were made of: a block and its column.
-const OF_BLOCK: usize = 2 * (72 + 4);
+/// PETSc's stiffness of the rock: a block and its column.
+const OF_BLOCK: usize = 72 + 4;
 /// Inverses of clusters, prolongator, levels below, vectors and room to make them, for each row.
 const OF_ROW: usize = 4_000;
 

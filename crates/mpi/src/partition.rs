@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 use kluft_solver::small::rows_of;
-use kluft_solver::{FixedPart, InterfaceBlocks, Lists, System};
+use kluft_solver::{FixedPart, Lists, System};
 
 use crate::answers::machine;
 use crate::petsc::{PetscFailure, World};
@@ -68,23 +68,12 @@ impl Partition {
         }
     }
 
-    /// Adds the blocks of a row of the sum of rock and fractures, by the global numbers of their
-    /// columns.
-    pub fn add_row(
+    /// Blocks by the global numbers of their columns.
+    pub fn numbered<'a>(
         &self,
-        fixed: FixedPart<'_>,
-        blocks: InterfaceBlocks<'_>,
-        row: u32,
-        entries: &mut Vec<(i64, [[f64; 3]; 3])>,
-    ) {
-        let index = blocks.pattern.rows.binary_search(&row);
-        let added = index.into_iter().flat_map(|index| blocks.row(index));
-        let mut added = added.peekable();
-        for (column, block) in fixed.matrix.row(row as usize) {
-            let other = added.next_if(|(at, _)| *at == column);
-            let sum = other.map_or(*block, |(_, other)| *block + *other);
-            entries.push((self.number[column as usize], rows_of(&sum)));
-        }
+        blocks: impl Iterator<Item = (u32, &'a DMat3)>,
+    ) -> impl Iterator<Item = (i64, [[f64; 3]; 3])> {
+        blocks.map(|(column, block)| (self.number[column as usize], rows_of(block)))
     }
 
     /// Sets a vector to the entries of all ranks, each in its place.

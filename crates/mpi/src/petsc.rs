@@ -14,7 +14,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ThreadId;
 use std::time::Duration;
 
-use crate::lines::{checked, in_lines};
+use crate::lines::{EntryShape, checked, in_lines};
+use crate::parts::SolverParts;
 
 pub use crate::answers::{PetscFailure, Preconditioner, Solved, Traffic};
 
@@ -41,6 +42,7 @@ unsafe extern "C" {
         columns: i64,
         m: c_int,
         l: c_int,
+        block: c_int,
         own: *const c_int,
         others: *const c_int,
         out: *mut Handle,
@@ -48,6 +50,8 @@ unsafe extern "C" {
     fn km_matrix_row(
         matrix: Handle,
         row: i64,
+        down: c_int,
+        across: c_int,
         count: c_int,
         columns: *const i64,
         lines: *const f64,
@@ -55,7 +59,8 @@ unsafe extern "C" {
     fn km_matrix_end(matrix: Handle) -> c_int;
     fn km_free_matrix(matrix: Handle) -> c_int;
     fn km_solver(
-        operator: Handle,
+        rock: Handle,
+        fractures: Handle,
         inverse: Handle,
         count: c_int,
         prolongators: *const Handle,
@@ -65,7 +70,7 @@ unsafe extern "C" {
         is_small: c_int,
         out: *mut Handle,
     ) -> c_int;
-    fn km_current_operator(solver: Handle, out: *mut Handle) -> c_int;
+    fn km_current_fractures(solver: Handle, out: *mut Handle) -> c_int;
     fn km_solve(
         solver: Handle,
         right: *const f64,
@@ -242,8 +247,7 @@ impl Drop for World {
 #[derive(Debug)]
 pub struct Matrix {
     pointer: Handle,
-    /// Numbers of a block.
-    block: usize,
+    shape: EntryShape,
     world: Arc<World>,
 }
 
@@ -253,16 +257,17 @@ unsafe impl Send for Matrix {}
 unsafe impl Sync for Matrix {}
 
 impl Matrix {
-    /// A matrix of blocks of `M` lines of `L` numbers, without entries, with the numbers of blocks
-    /// in each row of this rank: in its own `columns`, and in those of others.
+    /// A matrix of entries of this shape, yet without them, with the numbers of entries in each row
+    /// of this rank: in its own `columns`, and in those of others.
     ///
     /// # Errors
     /// Those of PETSc.
     ///
     /// # Panics
     /// If there are not both numbers of each row.
-    pub(crate) fn allocated<const M: usize, const L: usize>(
+    pub(crate) fn allocated(
         world: &Arc<World>,
+        shape: EntryShape,
         columns: usize,
         [own, others]: [&[i32]; 2],
     ) -> Result<Self, PetscFailure> {
@@ -270,18 +275,19 @@ impl Matrix {
         assert_eq!(own.len(), others.len(), "both numbers of each row");
         let mut matrix = Self {
             pointer: null_mut(),
-            block: M * L,
+            shape,
             world: Arc::clone(world),
         };
         let (rows, columns) = (own.len() as i64, columns as i64);
+        let [m, l, block] = [shape.lines, shape.numbers, shape.block].map(|size| size as c_int);
         let (own, others) = (own.as_ptr(), others.as_ptr());
         let out = &mut matrix.pointer;
         // SAFETY: PETSc runs on this thread; both arrays have one number a row.
-        done(unsafe { km_matrix(rows, columns, M as c_int, L as c_int, own, others, out) })?;
+        done(unsafe { km_matrix(rows, columns, m, l, block, own, others, out) })?;
         Ok(matrix)
     }
 
-    /// Sets blocks of a row: columns, ascending, and all numbers line by line.
+    /// Sets entries of a row: columns, ascending, and all numbers line by line.
     ///
     /// # Errors
     /// Those of PETSc.
@@ -295,10 +301,12 @@ impl Matrix {
         lines: &[f64],
     ) -> Result<(), PetscFailure> {
         self.world.here();
-        let count = checked(columns, lines, self.block);
+        let [m, l, block] = [self.shape.lines, self.shape.numbers, self.shape.block];
+        let count = checked(columns, lines, m * l);
+        let (down, across) = ((m / block) as c_int, (l / block) as c_int);
         let (columns, lines) = (columns.as_ptr(), lines.as_ptr());
         // SAFETY: PETSc runs on this thread, the matrix lives, and both arrays were checked.
-        done(unsafe { km_matrix_row(self.pointer, row, count, columns, lines) })
+        done(unsafe { km_matrix_row(self.pointer, row, down, across, count, columns, lines) })
     }
 
     /// Ends the setting of rows on all ranks.
@@ -326,24 +334,6 @@ impl Drop for Matrix {
     }
 }
 
-/// The matrices of a solver.
-pub struct SolverParts {
-    /// The tangent.
-    pub operator: Matrix,
-    /// The inverses of its diagonal blocks of clusters.
-    pub inverse: Matrix,
-    /// The prolongators from the levels below, the largest first.
-    pub prolongators: Vec<Matrix>,
-    /// Their matrices, whose diagonal is the identity.
-    pub matrices: Vec<Matrix>,
-    /// The inverse of the last of them; without it that level is smoothed.
-    pub coarsest: Option<Matrix>,
-    /// Upper bounds of the spectra of all levels, the finest first.
-    pub largest_eigenvalues: Vec<f64>,
-    /// Whether the whole is small enough for each rank to factorise.
-    pub is_small: bool,
-}
-
 /// Conjugate gradients with multigrid.
 #[derive(Debug)]
 pub struct Solver {
@@ -362,7 +352,11 @@ impl Solver {
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn new(world: &Arc<World>, rows: usize, parts: SolverParts) -> Result<Self, PetscFailure> {
+    pub fn new(
+        world: &Arc<World>,
+        rows: usize,
+        parts: SolverParts<Matrix>,
+    ) -> Result<Self, PetscFailure> {
         world.here();
         let (levels, bounds) = (parts.matrices.len(), &parts.largest_eigenvalues);
         assert_eq!(parts.prolongators.len(), levels, "a prolongator a level");
@@ -376,11 +370,13 @@ impl Solver {
             rows,
             world: Arc::clone(world),
         };
-        // SAFETY: PETSc runs on this thread; the shim takes the matrices over, whose pointers
-        // nobody else has. It reads as many of them as there are levels, and a bound more.
+        // SAFETY: PETSc runs on this thread; the shim counts itself among the holders of the rock,
+        // and takes the others over, whose pointers nobody else has. It reads as many of them as
+        // there are levels, and a bound more.
         done(unsafe {
             km_solver(
-                parts.operator.into_pointer(),
+                parts.rock.pointer,
+                parts.fractures.into_pointer(),
                 parts.inverse.into_pointer(),
                 levels as c_int,
                 prolongators.as_ptr(),
@@ -394,8 +390,8 @@ impl Solver {
         Ok(solver)
     }
 
-    /// Changes rows of the operator, given by their global numbers and all their blocks, and lets
-    /// the levels be as they are. All ranks must call it.
+    /// Changes rows of what the fractures have in the tangent, given by their global numbers and
+    /// all their blocks, and lets the levels be as they are. All ranks must call it.
     ///
     /// # Errors
     /// Those of PETSc.
@@ -406,10 +402,10 @@ impl Solver {
         self.world.here();
         let mut pointer = null_mut();
         // SAFETY: PETSc runs on this thread, and the solver lives.
-        done(unsafe { km_current_operator(self.pointer, &mut pointer) })?;
+        done(unsafe { km_current_fractures(self.pointer, &mut pointer) })?;
         let current = Matrix {
             pointer,
-            block: 9,
+            shape: EntryShape::square(3),
             world: Arc::clone(&self.world),
         };
         let done = rows.try_for_each(|(row, mut blocks)| {

@@ -4,36 +4,58 @@ use std::sync::Arc;
 
 use kluft_solver::multigrid::BlockList;
 
-use crate::lines::in_lines;
+use crate::lines::{EntryShape, in_lines};
 use crate::petsc::{Matrix, PetscFailure, World};
 
 impl Matrix {
-    /// The matrix whose rows of this rank are given in blocks; `number` gives a column its global
-    /// number, and `columns` of all of them are this rank's own.
+    /// The square matrix whose rows of this rank are given in blocks; `number` gives a column its
+    /// global number.
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn new<const M: usize, const L: usize>(
+    pub fn of_level<const N: usize>(
         world: &Arc<World>,
-        rows: &BlockList<M, L>,
-        columns: usize,
+        rows: &BlockList<N, N>,
         number: impl Fn(u32) -> i64,
     ) -> Result<Self, PetscFailure> {
-        Self::by_rows([rows.rows(), columns], world, |row, blocks| {
+        let sizes = [rows.rows(); 2];
+        Self::by_rows(world, (EntryShape::square(N), sizes), |row, blocks| {
             let entries = rows.row(row);
             blocks.extend(entries.map(|(column, block)| (number(column), *block)));
         })
     }
 
+    /// The prolongator whose rows of this rank are given in blocks; `number` gives a column its
+    /// global number, and `columns` of all of them are this rank's own.
+    ///
+    /// # Errors
+    /// Those of PETSc.
+    pub fn prolongator<const M: usize>(
+        world: &Arc<World>,
+        rows: &BlockList<M, 6>,
+        columns: usize,
+        number: impl Fn(u32) -> i64,
+    ) -> Result<Self, PetscFailure> {
+        let sizes = [rows.rows(), columns];
+        Self::by_rows(
+            world,
+            (EntryShape::of_prolongator(M), sizes),
+            |row, blocks| {
+                let entries = rows.row(row);
+                blocks.extend(entries.map(|(column, block)| (number(column), *block)));
+            },
+        )
+    }
+
     /// The matrix with so many block rows and columns of this rank, of which `row` adds one to a
-    /// list: global numbers of columns, and blocks as lines. It is called twice a row, so that
+    /// list: global numbers of columns, and entries as lines. It is called twice a row, so that
     /// nothing of the matrix is held but by PETSc.
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn by_rows<const M: usize, const L: usize>(
-        [rows, columns]: [usize; 2],
+    pub(crate) fn by_rows<const M: usize, const L: usize>(
         world: &Arc<World>,
+        (shape, [rows, columns]): (EntryShape, [usize; 2]),
         mut row: impl FnMut(usize, &mut Vec<(i64, [[f64; L]; M])>),
     ) -> Result<Self, PetscFailure> {
         let starts = world.gather(&[rows as u64, columns as u64])?;
@@ -52,7 +74,7 @@ impl Matrix {
             own[at] = of_rank.count() as i32;
             others[at] = blocks.len() as i32 - own[at];
         }
-        let matrix = Self::allocated::<M, L>(world, columns, [&own, &others])?;
+        let matrix = Self::allocated(world, shape, columns, [&own, &others])?;
         for at in 0..rows {
             blocks.clear();
             row(at, &mut blocks);

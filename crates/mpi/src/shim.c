@@ -18,6 +18,8 @@
 
 /* Most blocks of a row that are given at once. */
 #define MOST_AT_ONCE 256
+/* Most square blocks of an entry, down or across. */
+#define MOST_BLOCKS 2
 
 /* A group of its own for what must not meet other messages: the arrival of all ranks at the end. */
 static MPI_Comm at_the_end = MPI_COMM_NULL;
@@ -28,8 +30,11 @@ int km_start(void) {
   char *list[] = {name, skip, NULL}, **arguments = list;
   int count = 2;
 #ifdef __GLIBC__
-  /* Arrays of levels come and go: in maps of their own they leave no holes. */
+  /* Arrays of levels come and go: in maps of their own they leave no holes. SuperLU_DIST, which PETSc
+     may bring along, forbids such maps to the whole process, and keeps what is freed. */
+  mallopt(M_MMAP_MAX, 1 << 16);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_TRIM_THRESHOLD, 1 << 20);
 #endif
   PetscCall(PetscInitialize(&count, &arguments, NULL, NULL));
   PetscCall(PetscPopSignalHandler());
@@ -84,36 +89,33 @@ int km_gather_records(int size, const void *own, const int *counts, void *all) {
   PetscCall(PetscFree(starts));
   return failed ? PETSC_ERR_MPI : 0;
 }
-/* A distributed matrix with as many block rows and columns of this rank, in blocks of m lines of l
-   numbers; square blocks stay blocks. Of each row the number of blocks in columns of this rank, and
-   in those of others. Then come the rows, then the end. */
-int km_matrix(int64_t rows, int64_t columns, int m, int l, const int *own, const int *others, void **out) {
+/* A distributed matrix with as many rows and columns of this rank, in entries of m lines of l numbers,
+   which it keeps in square blocks; PETSc has none that are not square, and unrolls products of small
+   ones. Of each row the number of entries in columns of this rank, and in those of others. Then come
+   the rows, then the end. */
+int km_matrix(int64_t rows, int64_t columns, int m, int l, int block, const int *own, const int *others, void **out) {
   Mat a;
   PetscInt *counts[2];
-  int lines = m == l ? 1 : m, wide = m == l ? 1 : l;
+  int down = m / block, across = l / block;
   PetscCall(MatCreate(PETSC_COMM_WORLD, &a));
   *out = a;
   PetscCall(MatSetSizes(a, m * rows, l * columns, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSizes(a, m, l));
-  PetscCall(PetscMalloc2(lines * rows + 1, &counts[0], lines * rows + 1, &counts[1]));
-  for (int64_t r = 0; r < lines * rows; r++) { counts[0][r] = wide * own[r / lines]; counts[1][r] = wide * others[r / lines]; }
-  if (m == l) {
-    PetscCall(MatSetType(a, MATBAIJ));
-    PetscCall(MatSeqBAIJSetPreallocation(a, m, 0, counts[0]));
-    PetscCall(MatMPIBAIJSetPreallocation(a, m, 0, counts[0], 0, counts[1]));
-  } else {
-    PetscCall(MatSetType(a, MATAIJ));
-    PetscCall(MatSeqAIJSetPreallocation(a, 0, counts[0]));
-    PetscCall(MatMPIAIJSetPreallocation(a, 0, counts[0], 0, counts[1]));
-  }
+  PetscCall(MatSetBlockSizes(a, block, block));
+  PetscCall(PetscMalloc2(down * rows + 1, &counts[0], down * rows + 1, &counts[1]));
+  for (int64_t r = 0; r < down * rows; r++) { counts[0][r] = across * own[r / down]; counts[1][r] = across * others[r / down]; }
+  PetscCall(MatSetType(a, MATBAIJ));
+  PetscCall(MatSeqBAIJSetPreallocation(a, block, 0, counts[0]));
+  PetscCall(MatMPIBAIJSetPreallocation(a, block, 0, counts[0], 0, counts[1]));
   PetscCall(PetscFree2(counts[0], counts[1]));
   return MatSetOption(a, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE);
 }
-/* A block row by its global number: columns, and all numbers line by line; called by any rank. */
-int km_matrix_row(void *matrix, int64_t row, int count, const int64_t *columns, const double *lines) {
-  PetscInt at = (PetscInt)row, where[MOST_AT_ONCE];
-  for (int k = 0; k < count; k++) where[k] = (PetscInt)columns[k];
-  return MatSetValuesBlocked(matrix, 1, &at, count, where, lines, INSERT_VALUES);
+/* Entries of a row by its global number, each of so many blocks down and across: columns, and all
+   numbers line by line; called by any rank. */
+int km_matrix_row(void *matrix, int64_t row, int down, int across, int count, const int64_t *columns, const double *lines) {
+  PetscInt at[MOST_BLOCKS], where[MOST_BLOCKS * MOST_AT_ONCE];
+  for (int k = 0; k < down; k++) at[k] = (PetscInt)(down * row + k);
+  for (int k = 0; k < across * count; k++) where[k] = (PetscInt)(across * columns[k / across] + k % across);
+  return MatSetValuesBlocked(matrix, down, at, across * count, where, lines, INSERT_VALUES);
 }
 int km_matrix_end(void *matrix) {
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -159,21 +161,48 @@ static PetscErrorCode count_iteration(KSP solver, PetscInt iteration, PetscReal 
   return 0;
 }
 
-/* `operator` is what the levels were made of; `current`, if any, what is solved with. Prolongators
-   and matrices of `count` levels below, the largest first, and the inverse of the last one. */
+/* The tangent is the sum of the rock and of the fractures, which are few rows of it. */
+typedef struct { Mat rock, fractures, sum; } Tangent;
+
+static PetscErrorCode times(Mat sum, Vec x, Vec y) {
+  Tangent *t;
+  PetscCall(MatShellGetContext(sum, &t));
+  PetscCall(MatMult(t->rock, x, y));
+  return MatMultAdd(t->fractures, x, y, y);
+}
+static int set_tangent(Tangent *t, Mat rock, Mat fractures) {
+  PetscInt rows, columns;
+  t->rock = rock; t->fractures = fractures;
+  PetscCall(PetscObjectReference((PetscObject)rock));
+  PetscCall(MatGetLocalSize(rock, &rows, &columns));
+  PetscCall(MatCreateShell(PETSC_COMM_WORLD, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE, t, &t->sum));
+  return MatShellSetOperation(t->sum, MATOP_MULT, (void (*)(void))times);
+}
+static int free_tangent(Tangent *t) {
+  PetscCall(MatDestroy(&t->sum));
+  PetscCall(MatDestroy(&t->fractures));
+  return MatDestroy(&t->rock);
+}
+
+/* `built` is what the levels were made of; `current`, if there is one, what is solved with.
+   Prolongators and matrices of `count` levels below, the largest first, and the inverse of the last
+   one. */
 typedef struct {
   KSP solver;
-  Mat operator, current, inverse, *prolongators, *matrices, coarsest;
+  Tangent built, current;
+  Mat inverse, *prolongators, *matrices, coarsest;
   int count;
   Vec right, solution;
 } Solver;
 
 /* One solve of the whole by each rank, for what is too small to be coarsened. */
 static int set_redundant(Solver *s, PC pc) {
-  Mat aij;
-  PetscCall(MatConvert(s->operator, MATAIJ, MAT_INITIAL_MATRIX, &aij));
-  PetscCall(KSPSetOperators(s->solver, s->operator, aij));
-  PetscCall(MatDestroy(&aij));
+  Mat whole;
+  PetscCall(MatDuplicate(s->built.rock, MAT_COPY_VALUES, &whole));
+  PetscCall(MatAXPY(whole, 1.0, s->built.fractures, SUBSET_NONZERO_PATTERN));
+  PetscCall(MatConvert(whole, MATAIJ, MAT_INPLACE_MATRIX, &whole));
+  PetscCall(KSPSetOperators(s->solver, s->built.sum, whole));
+  PetscCall(MatDestroy(&whole));
   return PCSetType(pc, PCREDUNDANT);
 }
 
@@ -198,7 +227,7 @@ static int set_levels(Solver *s, PC pc, const double *largest) {
   PetscCall(PCMGSetGalerkin(pc, PC_MG_GALERKIN_NONE));
   for (int below = 0; below < s->count; below++) PetscCall(PCMGSetInterpolation(pc, s->count - below, s->prolongators[below]));
   PetscCall(PCMGGetSmoother(pc, s->count, &smoother));
-  PetscCall(set_smoother(smoother, PCMAT, s->operator, s->inverse, largest[0]));
+  PetscCall(set_smoother(smoother, PCMAT, s->built.sum, s->inverse, largest[0]));
   for (int at = 1; at < s->count; at++) {
     Mat matrix = s->matrices[at - 1];
     PetscCall(PCMGGetSmoother(pc, s->count - at, &smoother));
@@ -216,12 +245,12 @@ static int set_levels(Solver *s, PC pc, const double *largest) {
    levels below Chebyshev on matrices whose diagonal is the identity, on the last one its inverse, if
    there is one. `largest` bounds the spectra of all levels, the finest first. Without a level below:
    `small` systems are solved by each rank as a whole, others smoothed only. Takes the matrices over,
-   also upon an error. */
-int km_solver(void *operator, void *inverse, int count, void *const *prolongators, void *const *matrices, void *coarsest, const double *largest, int is_small, void **out) {
+   also upon an error, but for the rock, which it shares. */
+int km_solver(void *rock, void *fractures, void *inverse, int count, void *const *prolongators, void *const *matrices, void *coarsest, const double *largest, int is_small, void **out) {
   Solver *s = calloc(1, sizeof *s);
   PC pc;
   if (!s) return PETSC_ERR_MEM;
-  s->operator = operator; s->inverse = inverse; s->coarsest = coarsest;
+  s->inverse = inverse; s->coarsest = coarsest;
   *out = s;
   counted.levels = count + 1;
   PetscCall(PetscMalloc2(count + 1, &s->prolongators, count + 1, &s->matrices));
@@ -229,19 +258,20 @@ int km_solver(void *operator, void *inverse, int count, void *const *prolongator
     s->prolongators[s->count] = prolongators[s->count];
     s->matrices[s->count] = matrices[s->count];
   }
-  PetscCall(MatCreateVecs(s->operator, &s->solution, &s->right));
+  PetscCall(set_tangent(&s->built, rock, fractures));
+  PetscCall(MatCreateVecs(rock, &s->solution, &s->right));
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &s->solver));
   PetscCall(KSPSetOptionsPrefix(s->solver, "kluft_"));
   PetscCall(KSPSetType(s->solver, KSPCG));
   PetscCall(KSPSetNormType(s->solver, KSP_NORM_UNPRECONDITIONED));
-  PetscCall(KSPSetOperators(s->solver, s->operator, s->operator));
+  PetscCall(KSPSetOperators(s->solver, s->built.sum, s->built.sum));
   PetscCall(KSPGetPC(s->solver, &pc));
   if (count) {
     PetscCall(set_levels(s, pc, largest));
   } else if (is_small) {
     PetscCall(set_redundant(s, pc));
   } else {
-    PetscCall(KSPSetOperators(s->solver, s->operator, s->inverse));
+    PetscCall(KSPSetOperators(s->solver, s->built.sum, s->inverse));
     PetscCall(PCSetType(pc, PCMAT));
   }
   PetscCall(KSPMonitorSet(s->solver, count_iteration, NULL, NULL));
@@ -250,18 +280,19 @@ int km_solver(void *operator, void *inverse, int count, void *const *prolongator
   return 0;
 }
 
-/* The operator, some rows of which may change then; what the levels were made of stays as it is,
-   because the finest one is smoothed with it. The solver keeps what it hands out. */
-int km_current_operator(void *solver, void **out) {
+/* What the fractures have in the tangent, which may change then; what the levels were made of stays
+   as it is, because the finest one is smoothed with it. The solver keeps what it hands out. */
+int km_current_fractures(void *solver, void **out) {
   Solver *s = solver;
-  Mat levels;
-  if (!s->current) {
-    PetscCall(MatDuplicate(s->operator, MAT_COPY_VALUES, &s->current));
+  Mat levels, fractures;
+  if (!s->current.sum) {
+    PetscCall(MatDuplicate(s->built.fractures, MAT_COPY_VALUES, &fractures));
+    PetscCall(set_tangent(&s->current, s->built.rock, fractures));
     PetscCall(KSPGetOperators(s->solver, NULL, &levels));
     PetscCall(KSPSetReusePreconditioner(s->solver, PETSC_TRUE));
-    PetscCall(KSPSetOperators(s->solver, s->current, levels));
+    PetscCall(KSPSetOperators(s->solver, s->current.sum, levels));
   }
-  *out = s->current;
+  *out = s->current.fractures;
   return 0;
 }
 
@@ -322,8 +353,8 @@ int km_smooth(void *solver, const double *right, double *solution) {
 int km_free(void *solver) {
   Solver *s = solver;
   PetscCall(KSPDestroy(&s->solver));
-  PetscCall(MatDestroy(&s->operator));
-  PetscCall(MatDestroy(&s->current));
+  PetscCall(free_tangent(&s->built));
+  PetscCall(free_tangent(&s->current));
   PetscCall(MatDestroy(&s->inverse));
   for (int at = 0; at < s->count; at++) {
     PetscCall(MatDestroy(&s->prolongators[at]));
