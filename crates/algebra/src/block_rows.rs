@@ -3,8 +3,6 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use crate::vectors::norm;
-
 /// Rows that one task treats; fixed, so that no result depends on the number of threads.
 const ROWS_PER_TASK: usize = 1024;
 /// Marks a row of the larger matrix that is not kept.
@@ -59,17 +57,13 @@ impl<'a> BlockRows<'a> {
         even + odd
     }
 
-    /// Norm of `|A| |vector|`, both entry by entry: the unit that rounding of `A vector` is a small
-    /// multiple of, once it is multiplied with the machine's epsilon.
-    pub fn absolute_norm(&self, vector: &[DVec3]) -> f64 {
+    /// Entry `row` of `|A| |vector|`, both entry by entry: the unit that rounding of `A vector` is
+    /// a small multiple of, once it is multiplied with the machine's epsilon.
+    pub fn absolute_product(&self, row: usize, vector: &[DVec3]) -> DVec3 {
         let absolute = |block: &DMat3| DMat3::from_cols_array(&block.to_cols_array().map(f64::abs));
-        let of_row = |row: usize| {
-            let terms = self.row(row);
-            let terms = terms.map(|(at, block)| absolute(block) * vector[at as usize].abs());
-            terms.fold(DVec3::ZERO, |sum, term| sum + term)
-        };
-        let rows: Vec<DVec3> = (0..self.rows()).into_par_iter().map(of_row).collect();
-        norm(&rows)
+        let terms = self.row(row);
+        let terms = terms.map(|(at, block)| absolute(block) * vector[at as usize].abs());
+        terms.fold(DVec3::ZERO, |sum, term| sum + term)
     }
 
     /// `product = A vector`, both of one entry a block row, without allocating. Each row is summed

@@ -65,9 +65,19 @@ pub struct FixedPart<'a> {
     pub matrix: BlockRows<'a>,
     /// Where the interface adds blocks.
     pub interface: InterfacePattern<'a>,
+    /// The diagonal blocks of the fixed matrix in these rows, if it is not there as a whole.
+    pub diagonal: Option<&'a [DMat3]>,
 }
 
 impl<'a> FixedPart<'a> {
+    /// The diagonal block of the fixed matrix in row `index` of the interface.
+    pub fn diagonal(&self, index: usize) -> DMat3 {
+        match self.diagonal {
+            Some(blocks) => blocks[index],
+            None => self.matrix.diagonal(self.interface.rows[index] as usize),
+        }
+    }
+
     /// `product = (matrix + blocks) vector`.
     ///
     /// # Panics

@@ -9,7 +9,7 @@
 //!
 //! | files | what they hold |
 //! |---|---|
-//! | `lists`, `ownership`, `vectors`, `small`, `dense_kernels` | compressed rows, who owns which rows, sums over vectors, small dense blocks, dense kernels on threads of their own |
+//! | `lists`, `ownership`, `division`, `thread_ranks`, `vectors`, `small`, `dense_kernels` | compressed rows, who owns which rows, rows of processes, processes for tests, sums over vectors, small dense blocks, dense kernels on threads of their own |
 //! | `block_matrix`, `block_rows`, `interface` | a block matrix, its view row by row, and what an interface adds to it |
 //! | `conjugate_gradients`, `gmres` | iterations, with any preconditioner |
 //! | `cholesky/`, `schur` | nested dissection, symbolic analysis, factor, substitution, of blocks and of scalars; the dense problem that is left of it |
@@ -67,6 +67,7 @@ mod block_rows;
 mod cholesky;
 mod conjugate_gradients;
 pub mod dense_kernels;
+mod division;
 mod failure;
 mod gmres;
 mod interface;
@@ -75,6 +76,7 @@ pub mod multigrid;
 mod ownership;
 mod schur;
 pub mod small;
+pub mod thread_ranks;
 mod vectors;
 
 pub use block_matrix::{BlockMatrix, BlockPattern};
@@ -84,6 +86,7 @@ pub use conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientReport, ConjugateGradientSettings,
     conjugate_gradients,
 };
+pub use division::{AllGather, Communicator, Division};
 pub use failure::{LinearFailure, MultigridFailure};
 pub use gmres::gmres;
 pub use interface::{FixedPart, InterfaceBlocks, InterfacePattern};

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 use glam::{DMat3, DVec3};
 use kluft_io::{GmshOptions, load_msh};
+use kluft_mpi::communicator::communicator;
 use kluft_mpi::distributed::Distributed;
 use kluft_mpi::petsc::World;
 use kluft_scene::Scene;
@@ -33,9 +34,14 @@ fn main() {
         let draft = load_msh(mesh, &folder, &GmshOptions::default()).expect("a mesh");
         let binding = scene.problem(draft).expect("a problem");
         let discretisation = Discretisation::of(&binding.problem).expect("held");
+        let mut divided = System::divided(
+            &binding.problem,
+            discretisation.clone(),
+            &communicator(&world),
+        );
         let system = System::assemble(&binding.problem, discretisation);
         let load = &binding.problem.schedule.steps[0].load;
-        let mut distributed = Distributed::new(&world, &system).expect("prepared");
+        let mut distributed = Distributed::new(&world, &mut divided).expect("prepared");
         let mut serial = Iterative::new(&system).expect("prepared");
         if world.rank() == 0 {
             let unknowns = system.discretisation().unknown_count();
@@ -45,7 +51,7 @@ fn main() {
         for kind in ["slide", "glue"] {
             for exponent in -2..=6 {
                 let row = Row { kind, exponent };
-                let found = row.solve(&system, load, &mut serial, &mut distributed);
+                let found = row.solve(load, (&system, &mut serial), (&divided, &mut distributed));
                 if world.rank() == 0 {
                     println!("{kind:<6} {:>7.0e}   {found}", 10_f64.powi(exponent));
                 }
@@ -78,20 +84,19 @@ impl Row {
 
     fn solve(
         &self,
-        system: &System<'_>,
         load: &Load,
-        serial: &mut Iterative,
-        distributed: &mut Distributed,
+        (system, serial): (&System<'_>, &mut Iterative),
+        (divided, distributed): (&System<'_>, &mut Distributed),
     ) -> String {
         let interface = system.discretisation().interface();
         let stiffness = interface.stiffness(&self.tangents(system));
-        let fixed = system.fixed_part();
         let rhs: Vec<DVec3> = system.load_forces(load);
-        let solved = |solver: &mut dyn TangentSolver| {
+        let solved = |system: &System<'_>, solver: &mut dyn TangentSolver| {
+            let fixed = system.fixed_part();
             solver.update(fixed, stiffness.clone())?;
             solver.solve(fixed, &rhs, TOLERANCE)
         };
-        let (a, b) = match (solved(serial), solved(distributed)) {
+        let (a, b) = match (solved(system, serial), solved(divided, distributed)) {
             (Ok(a), Ok(b)) => (a, b),
             (a, b) => return format!("{:?} {:?}", a.err(), b.err()),
         };

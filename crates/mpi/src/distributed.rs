@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use kluft_solver::multigrid::{BlockList, FirstCoarsening, LevelPart, MultigridFailure};
+use kluft_solver::multigrid::{BlockList, FirstCoarsening, LevelPart, NextPart};
 use kluft_solver::{
-    FixedPart, InterfaceBlocks, LinearFailure, LinearSolution, SolverHistory, System,
+    Communicator, FixedPart, InterfaceBlocks, LinearFailure, LinearSolution, SolverHistory, System,
     TangentSolver, first_coarsening, first_guess, norm, serves,
 };
 
-use crate::levels::{Levels, gathered_parts};
+use crate::levels::Levels;
 use crate::lines::EntryShape;
 use crate::partition::Partition;
 use crate::parts::SolverParts;
@@ -30,6 +30,7 @@ const LARGEST_FACTOR: usize = 6000;
 /// Solver of a system on all ranks. Every rank knows all unknowns, and has its own rows.
 pub struct Distributed {
     world: Arc<World>,
+    communicator: Communicator,
     partition: Arc<Partition>,
     coarsening: FirstCoarsening,
     /// The stiffness of the rock, the rows of this rank.
@@ -44,19 +45,21 @@ pub struct Distributed {
 }
 
 impl Distributed {
-    /// Prepares the solver of a system.
+    /// Prepares the solver of a system, and lets that hold the rows that it needs.
     ///
     /// # Errors
     /// If the rock is not positive definite, and those of PETSc.
-    pub fn new(world: &Arc<World>, system: &System<'_>) -> Result<Self, LinearFailure> {
-        let coarsening = first_coarsening(system)?;
-        let partition = Partition::of(world, system, coarsening.clusters());
+    pub fn new(world: &Arc<World>, system: &mut System<'_>) -> Result<Self, LinearFailure> {
+        let (coarsening, owner) = first_coarsening(system)?;
+        let communicator = system.division().communicator().clone();
+        let partition = Partition::of(owner, &communicator);
         let rock = system.rock_rows();
         let rock = matrix(world, &partition, |row, blocks| {
             blocks.extend(partition.numbered(rock.row(row as usize)));
         })?;
         Ok(Self {
             world: Arc::clone(world),
+            communicator,
             partition: Arc::new(partition),
             coarsening,
             rock: Arc::new(rock),
@@ -96,16 +99,22 @@ impl Distributed {
         blocks: InterfaceBlocks<'_>,
     ) -> Result<SolverParts<Matrix>, LinearFailure> {
         let rows = fixed.matrix.rows();
-        let mut part = self.part(fixed, blocks)?;
+        let LevelPart {
+            largest_eigenvalue,
+            inverse,
+            prolongator,
+            next,
+        } = self.part(fixed, blocks)?;
+        let inverse = self.inverse(inverse)?;
         let levels = match self.coarsening.has_next(rows) {
-            true => self.levels(&mut part)?,
+            true => self.levels(prolongator, next)?,
             false => Levels::none(),
         };
-        let bounds = std::iter::once(part.largest_eigenvalue).chain(levels.largest_eigenvalues);
+        let bounds = std::iter::once(largest_eigenvalue).chain(levels.largest_eigenvalues);
         Ok(SolverParts {
             rock: Arc::clone(&self.rock),
             fractures: self.fractures(blocks)?,
-            inverse: self.inverse(&part.inverse)?,
+            inverse,
             prolongators: levels.prolongators,
             matrices: levels.matrices,
             coarsest: levels.coarsest,
@@ -124,52 +133,48 @@ impl Distributed {
         let rows = self
             .coarsening
             .factorised(fixed.matrix, blocks, &partition.own);
-        let rows = self.agreed(rows)?;
-        let world = Arc::clone(&self.world);
-        let mut failure = None;
-        let part = self.coarsening.part(&rows, |vector| {
-            if let Err(error) = partition.complete(&world, vector) {
-                failure = Some(error);
-            }
-        });
-        match failure {
-            Some(failure) => Err(failure.into()),
-            None => self.agreed(match part.largest_eigenvalue.is_finite() {
-                true => Ok(part),
-                false => Err(MultigridFailure::NotFinite),
-            }),
+        let rows = self.communicator.agreed(rows)?;
+        let complete = |vector: &mut [[f32; 3]]| partition.complete(vector);
+        let part = self.coarsening.part(&rows, complete);
+        match part.largest_eigenvalue.is_finite() {
+            true => Ok(part),
+            false => Err(LinearFailure::NotFinite),
         }
     }
 
-    fn levels(&self, part: &mut LevelPart) -> Result<Levels, LinearFailure> {
-        let parts = gathered_parts(&self.world, &part.next)?;
-        part.next = BlockList::default();
-        let lower = self.coarsening.levels_below(&parts)?;
-        drop(parts);
+    fn levels(
+        &self,
+        prolongator: BlockList<3, 6>,
+        next: NextPart,
+    ) -> Result<Levels, LinearFailure> {
+        let lower = self.coarsening.levels_below(next, &self.communicator)?;
         let basis = self.coarsening.basis();
-        let movers = |row: usize| basis.row(row).map(|(node, _)| node as u32).collect();
-        let owner = &self.partition.owner;
-        Ok(Levels::of(&self.world, owner, part, &lower, movers)?)
-    }
-
-    /// What this rank has if all of them could do their part, and else the failure of one of them.
-    fn agreed<T>(&self, result: Result<T, MultigridFailure>) -> Result<T, LinearFailure> {
-        let code = match &result {
-            Ok(_) => 0,
-            Err(MultigridFailure::NotFinite) => 1,
-            Err(MultigridFailure::NotPositive(row)) => 2 + *row as u64,
-        };
-        let codes = self.world.gather(&[code])?;
-        match codes.into_iter().max() {
-            Some(1) => Err(LinearFailure::NotFinite),
-            Some(row @ 2..) => Err(LinearFailure::Indefinite(row as usize - 2)),
-            _ => result.map_err(LinearFailure::from),
+        let mut movers = vec![u32::MAX; basis.modes().len()];
+        for &row in &self.partition.own {
+            for (node, _) in basis.row(row as usize) {
+                movers[node] = movers[node].min(row);
+            }
         }
+        let owners = self.owners(&movers);
+        Ok(Levels::of(&self.world, owners, prolongator, &lower)?)
     }
 
-    fn inverse(&self, rows: &BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
+    /// Rank of the first row that each node of the next level moves, from the first ones of this
+    /// rank.
+    fn owners(&self, first: &[u32]) -> Vec<u32> {
+        let mut all = self.communicator.gathered(first);
+        let (lowest, others) = all.split_at_mut(first.len());
+        for of_rank in others.chunks_exact(first.len().max(1)) {
+            let pairs = lowest.iter_mut().zip(of_rank);
+            pairs.for_each(|(lowest, row)| *lowest = (*row).min(*lowest));
+        }
+        let owner = |row: &u32| self.partition.owner.get(*row as usize).copied();
+        lowest.iter().map(|row| owner(row).unwrap_or(0)).collect()
+    }
+
+    fn inverse(&self, rows: BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
         let number = |row: u32| self.partition.number[row as usize];
-        Matrix::of_level(&self.world, rows, number)
+        Matrix::square(&self.world, &rows, number)
     }
 
     /// The rows of this rank of what the fractures have in the tangent.
@@ -215,16 +220,17 @@ impl Distributed {
     }
 
     /// The entries of all ranks, each in its place.
-    fn all(&self, own: &[[f64; 3]]) -> Result<Vec<DVec3>, PetscFailure> {
+    fn all(&self, own: &[[f64; 3]]) -> Vec<DVec3> {
         let mut vector = vec![DVec3::ZERO; self.partition.all.len()];
-        self.partition.gather(&self.world, own, &mut vector)?;
-        Ok(vector)
+        self.partition
+            .gather(bytemuck::cast_slice(own), &mut vector);
+        vector
     }
 
     fn clusters_alone(&mut self, rest: &[DVec3]) -> Result<Vec<DVec3>, LinearFailure> {
         let own = self.own(rest);
         let alone = self.solver()?.apply(Preconditioner::Clusters, &own)?;
-        Ok(self.all(&alone)?)
+        Ok(self.all(&alone))
     }
 
     /// The correction for a residual, and its iterations.
@@ -244,7 +250,7 @@ impl Distributed {
             }
             // Rounding ends an iteration; whether it came far enough, Newton's tests tell.
             if solved.converged || solved.residual <= wanted.max(ROUNDED) {
-                return Ok((self.all(&solution)?, iterations));
+                return Ok((self.all(&solution), iterations));
             }
             let built_for = match &self.built_for {
                 Some(built_for) if self.stiffness.as_ref() == Some(built_for) => built_for.clone(),
@@ -291,9 +297,9 @@ impl TangentSolver for Distributed {
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
         let stiffness = self.stiffness.clone().unwrap_or_default();
-        let (world, partition) = (Arc::clone(&self.world), Arc::clone(&self.partition));
+        let partition = Arc::clone(&self.partition);
         let multiply = |vector: &[DVec3], product: &mut [DVec3]| {
-            partition.multiply(&world, fixed, &stiffness, (vector, product));
+            partition.multiply(fixed, &stiffness, (vector, product));
         };
         let mut failure = None;
         let alone = |rest: &[DVec3]| {
@@ -365,8 +371,7 @@ impl TangentSolver for Distributed {
         vector: &[DVec3],
         product: &mut [DVec3],
     ) {
-        let (world, both) = (&self.world, (vector, product));
-        self.partition.multiply(world, fixed, stiffness, both);
+        self.partition.multiply(fixed, stiffness, (vector, product));
     }
 
     fn precondition(
@@ -376,6 +381,6 @@ impl TangentSolver for Distributed {
     ) -> Result<Vec<DVec3>, LinearFailure> {
         let own = self.own(rhs);
         let cycled = self.solver()?.apply(Preconditioner::Cycle, &own)?;
-        Ok(self.all(&cycled)?)
+        Ok(self.all(&cycled))
     }
 }

@@ -3,17 +3,15 @@
 
 use std::sync::Arc;
 
-use kluft_solver::multigrid::{BlockList, CoarsestSolve, LevelPart, LowerLevels};
+use kluft_solver::multigrid::{BlockList, CoarsestSolve, LowerLevels};
 use kluft_solver::small::{product, transpose};
 
+use crate::lines::EntryShape;
 use crate::petsc::{Matrix, PetscFailure, World};
 
 /// Nodes that a rank should have of a level; ranks next to each other give theirs to one of them
 /// where they would have fewer, so that small levels need few messages.
 const FEWEST_NODES: usize = 32;
-
-/// Row, column and entries of a block.
-type BlockRecord = [f64; 38];
 
 /// The nodes of a level and the ranks that own them.
 #[derive(Debug)]
@@ -26,21 +24,10 @@ struct LevelNodes {
 }
 
 impl LevelNodes {
-    /// Gives each of `count` nodes to the rank of the first one above that it moves. `movers` tells
-    /// which nodes move one above.
-    fn of<I: IntoIterator<Item = u32>>(
-        world: &World,
-        owner_above: &[u32],
-        count: usize,
-        movers: impl Fn(usize) -> I,
-    ) -> Self {
-        let mut owner = vec![u32::MAX; count];
-        for (above, rank) in owner_above.iter().enumerate() {
-            for node in movers(above) {
-                let owner = &mut owner[node as usize];
-                *owner = if *owner == u32::MAX { *rank } else { *owner };
-            }
-        }
+    /// Gives each node to the rank of the first one above that it moves, `owner`, or the first rank
+    /// if there is none.
+    fn of(world: &World, mut owner: Vec<u32>) -> Self {
+        let count = owner.len();
         let neighbours = (FEWEST_NODES * world.ranks()).div_ceil(count.max(1)) as u32;
         for rank in &mut owner {
             *rank = match *rank {
@@ -68,19 +55,41 @@ impl LevelNodes {
         }
     }
 
-    /// The rows of a matrix between these nodes, on this rank.
-    fn matrix(&self, world: &Arc<World>, rows: &BlockList<6, 6>) -> Result<Matrix, PetscFailure> {
-        Matrix::of_level(world, rows, |node| self.number[node as usize])
-    }
-
-    /// The rows of the prolongator from these nodes, on this rank.
-    fn prolongator<const M: usize>(
+    /// The matrix of a level, whose nodes these are.
+    fn matrix(
         &self,
         world: &Arc<World>,
-        rows: &BlockList<M, 6>,
+        lower: &LowerLevels,
+        level: usize,
     ) -> Result<Matrix, PetscFailure> {
-        let number = |node: u32| self.number[node as usize];
-        Matrix::prolongator(world, rows, self.own.len(), number)
+        let sizes = (EntryShape::square(6), [self.own.len(); 2]);
+        Matrix::by_rows(world, sizes, |row, blocks| {
+            let entries = lower.matrix_row(level, self.own[row]);
+            blocks.extend(self.numbered(entries));
+        })
+    }
+
+    /// The prolongator to a level, whose nodes these are, from those `above`.
+    fn prolongator(
+        &self,
+        world: &Arc<World>,
+        lower: &LowerLevels,
+        (level, above): (usize, &Self),
+    ) -> Result<Matrix, PetscFailure> {
+        let sizes = [above.own.len(), self.own.len()];
+        let sizes = (EntryShape::of_prolongator(6), sizes);
+        Matrix::by_rows(world, sizes, |row, blocks| {
+            let entries = lower.prolongator_row(level - 1, above.own[row]);
+            blocks.extend(self.numbered(entries));
+        })
+    }
+
+    /// Blocks by the global numbers of their columns.
+    fn numbered<B>(
+        &self,
+        blocks: impl Iterator<Item = (u32, B)>,
+    ) -> impl Iterator<Item = (i64, B)> {
+        blocks.map(|(node, block)| (self.number[node as usize], block))
     }
 }
 
@@ -107,38 +116,41 @@ impl Levels {
         }
     }
 
-    /// From what the rows of this rank give to the hierarchy, and the levels that those of all
-    /// ranks make. `owner` is that of the rows, `movers` tells which nodes of the next level move
-    /// one. Takes the prolongator to the first level, scaled, out of the part.
+    /// From the rows of this rank of the prolongator to the first of the levels that all ranks have
+    /// made; `owners` are the ranks of the nodes of that one.
     ///
     /// # Errors
     /// Those of PETSc.
     pub fn of(
         world: &Arc<World>,
-        owner: &[u32],
-        part: &mut LevelPart,
+        owners: Vec<u32>,
+        rows: BlockList<3, 6>,
         lower: &LowerLevels,
-        movers: impl Fn(usize) -> Vec<u32>,
     ) -> Result<Self, PetscFailure> {
-        let mut prolongator = std::mem::take(&mut part.prolongator);
-        for (block, &column) in prolongator.blocks.iter_mut().zip(&prolongator.columns) {
-            *block = product(block, &transpose(&lower.factors()[column as usize]));
-        }
-        let mut nodes = LevelNodes::of(world, owner, lower.nodes(0), movers);
-        let mut prolongators = vec![nodes.prolongator(world, &prolongator)?];
-        drop(prolongator);
-        let mut matrices = vec![nodes.matrix(world, &lower.matrix(0, &nodes.own))?];
+        let mut nodes = LevelNodes::of(world, owners);
+        let sizes = [rows.rows(), nodes.own.len()];
+        let sizes = (EntryShape::of_prolongator(3), sizes);
+        let to_first = Matrix::by_rows(world, sizes, |row, blocks| {
+            let scaled = rows.row(row).map(|(column, block)| {
+                let factor = &lower.factors()[column as usize];
+                (column, product(block, &transpose(factor)))
+            });
+            blocks.extend(nodes.numbered(scaled));
+        })?;
+        drop(rows);
+        let mut prolongators = vec![to_first];
+        let mut matrices = vec![nodes.matrix(world, lower, 0)?];
         for level in 1..lower.count() {
             let above = nodes;
-            nodes = LevelNodes::of(world, &above.owner, lower.nodes(level), |node| {
-                lower.movers(level - 1, node).iter().copied()
-            });
-            let rows = lower.prolongator(level - 1, &above.own);
-            prolongators.push(nodes.prolongator(world, &rows)?);
-            matrices.push(nodes.matrix(world, &lower.matrix(level, &nodes.own))?);
+            nodes = LevelNodes::of(world, owners_below(&above.owner, lower, level));
+            prolongators.push(nodes.prolongator(world, lower, (level, &above))?);
+            matrices.push(nodes.matrix(world, lower, level)?);
         }
         let coarsest = match lower.coarsest_solve() {
-            CoarsestSolve::Inverse => Some(nodes.matrix(world, &lower.inverse(&nodes.own))?),
+            CoarsestSolve::Inverse => {
+                let number = |node: u32| nodes.number[node as usize];
+                Some(Matrix::square(world, &lower.inverse(&nodes.own), number)?)
+            }
             CoarsestSolve::Smoothing => None,
         };
         let bounds = (0..lower.count()).map(|level| lower.largest_eigenvalue(level));
@@ -151,50 +163,14 @@ impl Levels {
     }
 }
 
-/// What the rows of each rank give to the matrix of the next level.
-///
-/// # Errors
-/// Those of MPI.
-pub fn gathered_parts(
-    world: &World,
-    own: &BlockList<6, 6>,
-) -> Result<Vec<BlockList<6, 6>>, PetscFailure> {
-    let mut records: Vec<BlockRecord> = Vec::with_capacity(own.columns.len());
-    for row in 0..own.rows() {
-        for (column, block) in own.row(row) {
-            let mut record = [0.0; 38];
-            (record[0], record[1]) = (row as f64, f64::from(column));
-            record[2..].copy_from_slice(block.as_flattened());
-            records.push(record);
+/// Rank of the first node above that each node of a level moves; none where it moves none.
+fn owners_below(above: &[u32], lower: &LowerLevels, level: usize) -> Vec<u32> {
+    let mut owners = vec![u32::MAX; lower.nodes(level)];
+    for (node, &rank) in above.iter().enumerate() {
+        for &below in lower.movers(level - 1, node) {
+            let owner = &mut owners[below as usize];
+            *owner = if *owner == u32::MAX { rank } else { *owner };
         }
     }
-    let counts = world.gather(&[records.len() as u64])?;
-    let counts: Vec<i32> = counts.into_iter().map(|count| count as i32).collect();
-    let all = world.gather_records(&records, &counts)?;
-    drop(records);
-    let mut rest = all.as_slice();
-    let parts = counts.iter().map(|&count| {
-        let (part, tail) = rest.split_at(count as usize);
-        rest = tail;
-        part_of(part, own.rows())
-    });
-    Ok(parts.collect())
-}
-
-fn part_of(records: &[BlockRecord], rows: usize) -> BlockList<6, 6> {
-    let mut part = BlockList {
-        offset: vec![0; rows + 1],
-        ..BlockList::default()
-    };
-    for record in records {
-        part.offset[record[0] as usize + 1] += 1;
-        part.columns.push(record[1] as u32);
-        let mut block = [[0.0; 6]; 6];
-        block.as_flattened_mut().copy_from_slice(&record[2..]);
-        part.blocks.push(block);
-    }
-    for row in 0..rows {
-        part.offset[row + 1] += part.offset[row];
-    }
-    part
+    owners
 }

@@ -6,6 +6,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `petsc`, `shim.c` | PETSc and MPI behind safe types |
+//! | `communicator` | what the ranks tell each other |
 //! | `rows`, `lines`, `parts` | rows of blocks on their way to PETSc, and what a solver is made of |
 //! | `partition` | which rank owns which unknowns |
 //! | `levels` | the levels below the finest one, the rows of this rank |
@@ -14,6 +15,7 @@
 
 pub mod answers;
 pub mod args;
+pub mod communicator;
 pub mod distributed;
 pub mod levels;
 mod lines;

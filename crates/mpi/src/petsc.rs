@@ -188,29 +188,30 @@ impl World {
         Ok(all)
     }
 
-    /// The records of all ranks, rank by rank, rank `r` giving `counts[r]`.
+    /// Writes the records of `size` bytes of all ranks one behind the other, rank `r` giving
+    /// `counts[r]`.
     ///
     /// # Errors
     /// Those of MPI.
     ///
     /// # Panics
-    /// If `own` has not the length of this rank.
-    pub fn gather_records<const N: usize>(
+    /// If `own` or `all` has not the length that the counts say.
+    pub fn gather_records(
         &self,
-        own: &[[f64; N]],
-        counts: &[i32],
-    ) -> Result<Vec<[f64; N]>, PetscFailure> {
+        size: usize,
+        own: &[u8],
+        counts: &[usize],
+        all: &mut [u8],
+    ) -> Result<(), PetscFailure> {
         self.here();
         assert_eq!(counts.len(), self.ranks, "one length a rank");
-        assert_eq!(own.len(), counts[self.rank] as usize, "own length");
-        let sum: usize = counts.iter().map(|&count| count as usize).sum();
-        let mut all = vec![[0.0; N]; sum];
-        let size = size_of::<[f64; N]>() as c_int;
+        assert_eq!(own.len(), size * counts[self.rank], "own length");
+        assert_eq!(all.len(), size * counts.iter().sum::<usize>(), "length");
+        let counts: Vec<c_int> = counts.iter().map(|&count| count as c_int).collect();
         let (from, to) = (own.as_ptr().cast(), all.as_mut_ptr().cast());
         // SAFETY: PETSc runs on this thread; the records are plain numbers of `size` bytes, and
         // both arrays have the lengths that `counts` says.
-        done(unsafe { km_gather_records(size, from, counts.as_ptr(), to) })?;
-        Ok(all)
+        done(unsafe { km_gather_records(size as c_int, from, counts.as_ptr(), to) })
     }
 
     /// What was counted on this rank so far.

@@ -13,7 +13,7 @@ impl Matrix {
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn of_level<const N: usize>(
+    pub fn square<const N: usize>(
         world: &Arc<World>,
         rows: &BlockList<N, N>,
         number: impl Fn(u32) -> i64,
@@ -23,28 +23,6 @@ impl Matrix {
             let entries = rows.row(row);
             blocks.extend(entries.map(|(column, block)| (number(column), *block)));
         })
-    }
-
-    /// The prolongator whose rows of this rank are given in blocks; `number` gives a column its
-    /// global number, and `columns` of all of them are this rank's own.
-    ///
-    /// # Errors
-    /// Those of PETSc.
-    pub fn prolongator<const M: usize>(
-        world: &Arc<World>,
-        rows: &BlockList<M, 6>,
-        columns: usize,
-        number: impl Fn(u32) -> i64,
-    ) -> Result<Self, PetscFailure> {
-        let sizes = [rows.rows(), columns];
-        Self::by_rows(
-            world,
-            (EntryShape::of_prolongator(M), sizes),
-            |row, blocks| {
-                let entries = rows.row(row);
-                blocks.extend(entries.map(|(column, block)| (number(column), *block)));
-            },
-        )
     }
 
     /// The matrix with so many block rows and columns of this rank, of which `row` adds one to a

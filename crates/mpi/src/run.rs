@@ -14,6 +14,7 @@ use kluft_solver::{LinearFailure, LinearMethod, System, TangentSolver};
 
 use crate::answers::machine;
 use crate::args::RunArgs;
+use crate::communicator::communicator;
 use crate::distributed::Distributed;
 use crate::memory::solver_bytes;
 use crate::partition::Partition;
@@ -41,11 +42,10 @@ pub fn run(world: &Arc<World>, args: &RunArgs) -> Result<(), Failure> {
         })?;
     let partition = Mutex::new(None);
     let on_machine = world.on_machine().map_err(machine)?;
+    let communicator = communicator(world);
     let ranks = Ranks {
-        rank: world.rank(),
-        count: world.ranks(),
+        communicator: &communicator,
         on_machine,
-        gather: &|own| gathered(world, own),
         solver: &|system| solver(world, system, &partition),
         owner: &|| present(&partition).map_or(Vec::new(), |present| present.owner.clone()),
         solver_bytes: &solver_bytes,
@@ -92,17 +92,9 @@ fn verbosity(args: &RunArgs) -> Verbosity {
     }
 }
 
-/// The numbers of all ranks. A rank that cannot be asked any more ends the run.
-fn gathered(world: &World, own: &[u64]) -> Vec<u64> {
-    world.gather(own).unwrap_or_else(|failure| {
-        machine(failure).print();
-        World::abort(1)
-    })
-}
-
 fn solver(
     world: &Arc<World>,
-    system: &System<'_>,
+    system: &mut System<'_>,
     partition: &Mutex<Option<Arc<Partition>>>,
 ) -> Result<Box<dyn TangentSolver>, LinearFailure> {
     let solver = Distributed::new(world, system)?;

@@ -108,7 +108,7 @@ fn prepare<'r, 'a, 'p>(
     let mut system = run.assemble(&binding.problem)?;
     let plan = run.plan(&system, None)?;
     run.decide(binding);
-    let newton = run.set_up(&system, plan)?;
+    let newton = run.set_up(&mut system, plan)?;
     // The pressures of a step and those of the step before are cases of their own, so that all
     // between the two is defined.
     let unknowns = system.discretisation().points().len();

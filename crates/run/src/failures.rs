@@ -43,8 +43,8 @@ pub fn rank_too_large(ranks: Ranks<'_>, needed: usize, limit: usize) -> Defect {
     let problem = format!(
         "rank {} of {} needs {} for its part of the solver and the estimate of errors, and may \
          take {}",
-        ranks.rank,
-        ranks.count,
+        ranks.rank(),
+        ranks.count(),
         gigabytes(needed),
         gigabytes(limit)
     );

@@ -373,7 +373,7 @@ impl Output {
         let own = [piece.of_rock(grids[0]), piece.of_fractures(grids[1])];
         let mut written = Vec::new();
         for (name, grid) in names.iter().zip(own) {
-            let name = &parts(name, self.pieces)[ranks.rank];
+            let name = &parts(name, self.pieces)[ranks.rank()];
             written.push(self.write_grid(name, grid));
         }
         let written: Result<Vec<u128>, Defect> = written.into_iter().collect();

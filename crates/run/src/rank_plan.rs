@@ -27,7 +27,7 @@ impl Run<'_> {
         });
         let plan = solved(plan, system)?;
         let blocks = discretisation.pattern().blocks.columns.len();
-        let own = (ranks.solver_bytes)(points, blocks).div_ceil(ranks.count);
+        let own = (ranks.solver_bytes)(points, blocks).div_ceil(ranks.count());
         let needed = workload.extra.always + workload.extra.iterative + own;
         self.summary.predicted_memory_bytes = (memory::used_bytes() + needed) as u64;
         let fits = match needed <= limit {
@@ -35,7 +35,7 @@ impl Run<'_> {
             false => Err(vec![failures::rank_too_large(ranks, needed, limit)]),
         };
         ranks.agree(fits)?;
-        let why = match ranks.count {
+        let why = match ranks.count() {
             1 => "linear solver: iterative, on one rank".to_owned(),
             count => format!("linear solver: iterative, its rows divided among {count} ranks"),
         };

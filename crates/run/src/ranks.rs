@@ -5,23 +5,19 @@
 use std::fmt;
 
 use kluft_mesh::Defect;
-use kluft_solver::{LinearFailure, System, TangentSolver};
+use kluft_solver::{Communicator, LinearFailure, System, TangentSolver};
 
 /// The linear solver of a system, its rows divided among the ranks.
 pub type MakeSolver<'a> =
-    &'a (dyn Fn(&System<'_>) -> Result<Box<dyn TangentSolver>, LinearFailure> + Sync);
+    &'a (dyn Fn(&mut System<'_>) -> Result<Box<dyn TangentSolver>, LinearFailure> + Sync);
 
 /// This process as one of many. What it asks of the others, all of them must ask alike.
 #[derive(Clone, Copy)]
 pub struct Ranks<'a> {
-    /// Its number, from 0.
-    pub rank: usize,
-    /// Number of all.
-    pub count: usize,
+    /// Its number and that of all, and what one tells the others.
+    pub communicator: &'a Communicator,
     /// How many of them share the memory of this machine, this one included.
     pub on_machine: usize,
-    /// The numbers of all ranks, each giving as many as this one, rank by rank.
-    pub gather: &'a (dyn Fn(&[u64]) -> Vec<u64> + Sync),
     /// The linear solver.
     pub solver: MakeSolver<'a>,
     /// Rank of each point that has unknowns, once there is a solver.
@@ -33,14 +29,24 @@ pub struct Ranks<'a> {
 
 impl fmt::Debug for Ranks<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "rank {} of {}", self.rank, self.count)
+        self.communicator.fmt(formatter)
     }
 }
 
 impl Ranks<'_> {
     /// Whether this is the first rank.
     pub fn is_first(&self) -> bool {
-        self.rank == 0
+        self.rank() == 0
+    }
+
+    /// Number of this rank, from 0.
+    pub fn rank(&self) -> usize {
+        self.communicator.rank()
+    }
+
+    /// Number of all ranks.
+    pub fn count(&self) -> usize {
+        self.communicator.size()
     }
 
     /// What all ranks have done if each of them could, and else the defects; none where another
@@ -49,7 +55,7 @@ impl Ranks<'_> {
     /// # Errors
     /// If one of the ranks has an error.
     pub fn agree<T>(&self, result: Result<T, Vec<Defect>>) -> Result<T, Vec<Defect>> {
-        let failures = (self.gather)(&[u64::from(result.is_err())]);
+        let failures = self.communicator.gathered(&[u8::from(result.is_err())]);
         match failures.iter().all(|failed| *failed == 0) {
             true => result,
             false => result.and(Err(Vec::new())),

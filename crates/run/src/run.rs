@@ -36,7 +36,7 @@ fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome
     let version = env!("CARGO_PKG_VERSION");
     observer.note("kluft", &format!("{version}  {}", request.scene.title));
     let mut identity = resume::identity(request.scene, request.origin);
-    identity.ranks = request.ranks.map_or(1, |ranks| ranks.count) as u32;
+    identity.ranks = request.ranks.map_or(1, |ranks| ranks.count()) as u32;
     let mut former = None;
     if let Some(origin) = request.origin.filter(|_| request.resume) {
         let found = resume::find(origin.file, request.scene, &identity, &output);
@@ -71,7 +71,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
         return Output::nowhere();
     };
     if let Some(ranks) = request.ranks.filter(|ranks| !ranks.is_first()) {
-        return Ok(Output::beside(folder, ranks.count));
+        return Ok(Output::beside(folder, ranks.count()));
     }
     let mut names = OWN.to_vec();
     names.extend(request.scene.fluid.as_ref().map(|_| SOURCES));
@@ -93,7 +93,7 @@ fn output(request: &Request<'_>) -> Result<Output, Vec<Defect>> {
         None => Vec::new(),
     };
     let mut output = Output::prepare(folder, &names, &inputs)?;
-    output.pieces = request.ranks.map_or(1, |ranks| ranks.count);
+    output.pieces = request.ranks.map_or(1, |ranks| ranks.count());
     Ok(output.with_page(request.report))
 }
 

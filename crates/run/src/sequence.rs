@@ -90,13 +90,13 @@ impl Run<'_> {
         self.probes.all.clone_from(&binding.probes);
         self.summary.warnings.clone_from(&self.doubts);
         let mut prepared = match former {
-            Some(former) => self.go_on(&system, plan, former.progress)?,
-            None if self.finished.is_empty() => self.begin(&system, plan)?,
-            None => self.enter(&system, plan)?,
+            Some(former) => self.go_on(&mut system, plan, former.progress)?,
+            None if self.finished.is_empty() => self.begin(&mut system, plan)?,
+            None => self.enter(&mut system, plan)?,
         };
         prepared.stage = before;
         self.solve_until(&mut prepared, steps.end)?;
-        let end = system.leave(&prepared.state, &cells);
+        let end = prepared.system.leave(&prepared.state, &cells);
         if stage + 1 == staged.count() {
             let Prepared {
                 mut newton, state, ..

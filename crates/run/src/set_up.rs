@@ -27,8 +27,10 @@ impl Run<'_> {
             unknowns.total, unknowns.jump
         );
         self.note_timed("enriched", &text);
-        let system = self.stage(Stage::Assemble, |_| {
-            System::assemble(problem, discretisation)
+        let ranks = self.request.ranks;
+        let system = self.stage(Stage::Assemble, |_| match ranks {
+            Some(ranks) => System::divided(problem, discretisation, ranks.communicator),
+            None => System::assemble(problem, discretisation),
         });
         self.note_timed("assembled", "rock and loads, once for the run");
         Ok(system)
@@ -71,7 +73,7 @@ impl Run<'_> {
     }
 
     /// Prepares what the linear solver needs once a run.
-    pub fn set_up(&mut self, system: &System<'_>, plan: Plan) -> Result<Newton, Interruption> {
+    pub fn set_up(&mut self, system: &mut System<'_>, plan: Plan) -> Result<Newton, Interruption> {
         let name = plan.method.name();
         let settings = newton_settings(&self.request.scene.solver);
         let ranks = self.request.ranks;

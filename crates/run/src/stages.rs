@@ -373,9 +373,11 @@ impl<'a> Run<'a> {
         let peak = memory::peak_bytes() as u64;
         self.summary.peak_memory_bytes = self.summary.peak_memory_bytes.max(peak);
         if let Some(ranks) = self.request.ranks {
-            let peaks = (ranks.gather)(&[self.summary.peak_memory_bytes]);
+            let peaks = ranks
+                .communicator
+                .gathered(&[self.summary.peak_memory_bytes]);
             self.summary.ranks = Some(RankSummary {
-                count: ranks.count,
+                count: ranks.count(),
                 largest_peak_memory_bytes: peaks.iter().copied().max().unwrap_or(0),
                 sum_of_peak_memory_bytes: peaks.iter().sum(),
             });

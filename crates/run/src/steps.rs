@@ -67,7 +67,7 @@ impl Run<'_> {
         self.let_flow(binding, &mut system)?;
         let plan = self.plan(&system, None)?;
         let mut prepared = Prepared {
-            newton: self.set_up(&system, plan)?,
+            newton: self.set_up(&mut system, plan)?,
             state: system.initial_state(),
             system: &system,
             flow: None,
@@ -110,8 +110,8 @@ impl Run<'_> {
         self.doubts.extend(unbalanced);
         self.summary.warnings.clone_from(&self.doubts);
         let mut prepared = match former {
-            None => self.begin(&system, plan)?,
-            Some(former) => self.go_on(&system, plan, former.progress)?,
+            None => self.begin(&mut system, plan)?,
+            Some(former) => self.go_on(&mut system, plan, former.progress)?,
         };
         prepared.flow = flow.as_ref();
         prepared.fluid = binding.flow.as_ref();
@@ -157,7 +157,7 @@ impl Run<'_> {
     /// Prepares for the first load step.
     pub(crate) fn begin<'s, 'p>(
         &mut self,
-        system: &'s System<'p>,
+        system: &'s mut System<'p>,
         plan: Plan,
     ) -> Result<Prepared<'s, 'p>, Interruption> {
         let steps = system.problem().schedule.steps.len();
@@ -170,7 +170,7 @@ impl Run<'_> {
     /// Prepares for the first load step of a body.
     pub(crate) fn enter<'s, 'p>(
         &mut self,
-        system: &'s System<'p>,
+        system: &'s mut System<'p>,
         plan: Plan,
     ) -> Result<Prepared<'s, 'p>, Interruption> {
         Ok(Prepared {
@@ -187,7 +187,7 @@ impl Run<'_> {
     /// Prepares for the load step after the last one that a former run finished.
     pub(crate) fn go_on<'s, 'p>(
         &mut self,
-        system: &'s System<'p>,
+        system: &'s mut System<'p>,
         plan: Plan,
         former: Progress<'static>,
     ) -> Result<Prepared<'s, 'p>, Interruption> {
@@ -218,6 +218,7 @@ impl Run<'_> {
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
         let mut newton = self.set_up(system, plan)?;
+        let system = &*system;
         let restart = former.restart.filter(|restart| restart.fits(system));
         let Some(restart) = restart else {
             let path = self.output.path(checkpoint::NAME);
@@ -354,7 +355,7 @@ impl Run<'_> {
             flow,
         } = written;
         let time = prepared.state.load.time;
-        let ranks = self.request.ranks.filter(|ranks| ranks.count > 1);
+        let ranks = self.request.ranks.filter(|ranks| ranks.count() > 1);
         self.stage(Stage::Write, |run| {
             let rock = || in_plane(&problem.mesh, rock_grid(system, solution, Some(accuracy)));
             let fractures = || {
@@ -366,7 +367,7 @@ impl Run<'_> {
                 in_plane(&problem.mesh, grid)
             };
             if let Some(ranks) = ranks {
-                let piece = Piece::of(system, &(ranks.owner)(), ranks.rank);
+                let piece = Piece::of(system, &(ranks.owner)(), ranks.rank());
                 let grids = [&rock(), &fractures()];
                 return run.output.write_pieces(time, grids, &piece, ranks);
             }

@@ -50,8 +50,8 @@ pub use flow::{
     TransientFlow, TransientState,
 };
 pub use kluft_algebra::{
-    Analysis, BlockMatrix, BlockRows, Cholesky, FixedPart, InterfaceBlocks, LinearFailure, Lists,
-    NodeOrder, multigrid, norm, small,
+    AllGather, Analysis, BlockMatrix, BlockRows, Cholesky, Communicator, Division, FixedPart,
+    InterfaceBlocks, LinearFailure, Lists, NodeOrder, multigrid, norm, small,
 };
 pub use linear::{
     Condensed, Direct, ExtraMemory, FlowWorkload, Iterative, LinearMethod, LinearSolution,

@@ -1,7 +1,5 @@
 //! Aggregates: groups of nodes that become one node of the next level.
 
-use rayon::prelude::*;
-
 use super::sparse::{Sparse, rows_per_task};
 
 /// Blocks whose norm is not above this share of the diagonal do not tie nodes together.
@@ -23,42 +21,53 @@ pub(super) fn square<const N: usize>(block: &[[f32; N]; N]) -> f32 {
     block.as_flattened().iter().map(|x| x * x).sum()
 }
 
-/// Squared Frobenius norm of each block.
-fn norms<const N: usize>(matrix: &Sparse<N, N>) -> Vec<f32> {
-    let blocks = matrix.blocks.par_iter().with_min_len(rows_per_task::<N>());
-    blocks.map(square).collect()
+/// The neighbours of each node whose blocks have a norm beyond [`STRENGTH`] (of the unit diagonal),
+/// with the squares of these norms.
+pub(super) fn strong_neighbours<const N: usize>(matrix: &Sparse<N, N>) -> Sparse<1, 1> {
+    let strong = |row: usize| {
+        let squares = matrix.row(row).map(|(at, block)| (at, square(block)));
+        squares.filter(|(_, square)| *square > STRENGTH * STRENGTH)
+    };
+    Sparse::build(
+        matrix.rows(),
+        rows_per_task::<N>(),
+        || (),
+        |(), row| strong(row).count(),
+        #[inline(always)]
+        |(), row, columns, blocks| {
+            let targets = columns.iter_mut().zip(blocks);
+            for ((at, square), (column, block)) in strong(row).zip(targets) {
+                (*column, *block) = (at as u32, [[square]]);
+            }
+        },
+    )
 }
 
 /// Greedy aggregation (Vanek, Mandel, Brezina 1996): first whole neighbourhoods in the order of the
 /// nodes, then each node left over joins the strongest neighbouring one, and what is then left
-/// forms aggregates of its own. Neighbours count where the norm of their block exceeds [`STRENGTH`]
-/// (of the unit diagonal).
-pub(super) fn aggregate<const N: usize>(matrix: &Sparse<N, N>) -> Aggregates {
-    let greedy = Greedy {
-        matrix,
-        norms: norms(matrix),
-        least: STRENGTH * STRENGTH,
-    };
+/// forms aggregates of its own. Neighbours are the [`strong_neighbours`].
+pub(super) fn aggregate(neighbours: &Sparse<1, 1>) -> Aggregates {
+    let greedy = Greedy { neighbours };
     let mut aggregates = Aggregates {
-        of_node: vec![ALONE; matrix.rows()],
+        of_node: vec![ALONE; neighbours.rows()],
         count: 0,
     };
-    for node in 0..matrix.rows() {
+    for node in 0..neighbours.rows() {
         let is_free = |other: usize| aggregates.of_node[other] == ALONE;
-        let mut neighbours = greedy.strong(node).peekable();
-        if is_free(node) && neighbours.peek().is_some() && neighbours.all(|(at, _)| is_free(at)) {
+        let mut strong = greedy.strong(node).peekable();
+        if is_free(node) && strong.peek().is_some() && strong.all(|(at, _)| is_free(at)) {
             greedy.gather(node, &mut aggregates);
         }
     }
     let seeds = aggregates.of_node.clone();
-    for node in (0..matrix.rows()).filter(|&node| seeds[node] == ALONE) {
+    for node in (0..neighbours.rows()).filter(|&node| seeds[node] == ALONE) {
         let near = greedy.strong(node).filter(|(at, _)| seeds[*at] != ALONE);
         // `max_by` keeps the last of equals: the order of the columns decides.
         if let Some((at, _)) = near.max_by(|a, b| a.1.total_cmp(&b.1)) {
             aggregates.of_node[node] = seeds[at];
         }
     }
-    for node in 0..matrix.rows() {
+    for node in 0..neighbours.rows() {
         if aggregates.of_node[node] == ALONE && greedy.strong(node).next().is_some() {
             greedy.gather(node, &mut aggregates);
         }
@@ -66,21 +75,15 @@ pub(super) fn aggregate<const N: usize>(matrix: &Sparse<N, N>) -> Aggregates {
     aggregates
 }
 
-struct Greedy<'a, const N: usize> {
-    matrix: &'a Sparse<N, N>,
-    norms: Vec<f32>,
-    least: f32,
+struct Greedy<'a> {
+    neighbours: &'a Sparse<1, 1>,
 }
 
-impl<const N: usize> Greedy<'_, N> {
+impl Greedy<'_> {
     /// Strong neighbours of a node and the squared norms of their blocks.
     fn strong(&self, node: usize) -> impl Iterator<Item = (usize, f32)> {
-        let range = self.matrix.range(node);
-        let columns = self.matrix.columns[range.clone()].iter();
-        let all = columns
-            .map(|&at| at as usize)
-            .zip(self.norms[range].iter().copied());
-        all.filter(|(_, norm)| *norm > self.least)
+        let all = self.neighbours.row(node);
+        all.map(|(at, square)| (at, square[0][0]))
     }
 
     /// Makes an aggregate of a node and its free neighbours.

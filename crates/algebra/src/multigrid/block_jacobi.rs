@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::clusters::Clusters;
 use super::sparse::{Accumulator, Sparse, rows_per_task};
 use super::sum_rows::SumRows;
+use crate::division::Division;
 use crate::failure::MultigridFailure;
 use crate::lists::sum_up;
 use crate::ownership::RowOwnership;
@@ -31,7 +32,7 @@ pub(super) struct Factors {
 }
 
 /// Entries of a lower triangle of a cluster with this number of 3x3 blocks.
-fn entries(blocks: usize) -> usize {
+const fn entries(blocks: usize) -> usize {
     3 * blocks * (3 * blocks + 1) / 2
 }
 
@@ -116,6 +117,24 @@ impl Factors {
             fixed,
             inverse,
         })
+    }
+
+    /// Those of all clusters, each of them a single row, of which each rank has those of its own
+    /// rows.
+    pub(super) fn completed(self, division: &Division) -> Self {
+        if division.is_whole() {
+            return self;
+        }
+        const LENGTH: usize = entries(1);
+        let all = |own: Vec<f64>| {
+            let records: Vec<[f64; LENGTH]> = bytemuck::cast_slice(&own).to_vec();
+            division.gathered(records).into_flattened()
+        };
+        Self {
+            offset: (0..self.offset.len()).map(|at| LENGTH * at).collect(),
+            fixed: all(self.fixed),
+            inverse: all(self.inverse),
+        }
     }
 
     /// Whether a cluster was factorised.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::aggregation::square;
 use super::sparse::Sparse;
+use crate::division::Communicator;
 use crate::lists::Lists;
 
 /// Nodes tied by a block of this norm belong together; the blocks of both are scaled to the
@@ -39,9 +40,19 @@ impl Clusters {
 
     /// Clusters of a matrix whose nodes have the rows `node_offset[node]..node_offset[node + 1]`;
     /// the first of them is the mean motion. `means` is the scaled matrix of those, with one row
-    /// for each of `nodes`.
-    pub(super) fn of(means: &Sparse<3, 3>, nodes: &[u32], node_offset: &[u32]) -> Self {
-        let mut ties = ties(means, nodes);
+    /// for each of `nodes`, which ranks may share.
+    pub(super) fn of(
+        (means, communicator): (&Sparse<3, 3>, &Communicator),
+        nodes: &[u32],
+        node_offset: &[u32],
+    ) -> Self {
+        let own: Vec<[u32; 3]> = ties(means, nodes)
+            .into_iter()
+            .map(|(square, a, b)| [square.to_bits(), a, b])
+            .collect();
+        let ties = communicator.gathered(&own).into_iter();
+        let ties = ties.map(|[square, a, b]| (f32::from_bits(square), a, b));
+        let mut ties: Vec<(f32, u32, u32)> = ties.collect();
         ties.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let mut groups = ClusterGroups::single(node_offset.len() - 1);
         for (_, a, b) in ties {

@@ -7,6 +7,7 @@
 //! level. What all of them give makes the [`LowerLevels`].
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::block_jacobi::{self, Factors};
 use super::block_list::BlockList;
@@ -16,10 +17,12 @@ use super::setup::{FixedHierarchy, NodeMatrix};
 use super::sparse::{Sparse, Transpose};
 use super::spectrum;
 use super::sum_rows::SumRows;
+use super::triple_product::PartialProduct;
+use crate::block_matrix::BlockPattern;
 use crate::block_rows::BlockRows;
+use crate::division::{Communicator, Division};
 use crate::failure::MultigridFailure;
 use crate::interface::InterfaceBlocks;
-use crate::lists::Lists;
 use crate::small::{add, product, transpose, widen};
 
 /// Clusters and basis, made once for a fixed matrix.
@@ -37,7 +40,7 @@ pub struct OwnRows<'a> {
     factors: Factors,
 }
 
-/// What some rows give to a hierarchy. All lists but the last have one row for each of them.
+/// What some rows give to a hierarchy. The lists have one row for each of them.
 #[derive(Debug, Clone)]
 pub struct LevelPart {
     /// Upper bound of the eigenvalues of `A_CC^-1 A`.
@@ -46,35 +49,63 @@ pub struct LevelPart {
     pub inverse: BlockList<3, 3>,
     /// `A_CC^-1 R_CC P`; columns are nodes of the next level.
     pub prolongator: BlockList<3, 6>,
-    /// What they add to the matrix of the next level, one row for each of its nodes: the diagonal
-    /// block and those right of it.
-    pub next: BlockList<6, 6>,
+    /// What they add to the matrix of the next level.
+    pub next: NextPart,
 }
 
+/// What some rows add to the matrix of the next level.
+#[derive(Debug, Clone)]
+pub struct NextPart(PartialProduct);
+
 impl FirstCoarsening {
-    /// Prepares the coarsening of a fixed matrix; arguments are those of
-    /// [`super::Multigrid::with_basis`].
+    /// Prepares the coarsening of a fixed matrix, but for its basis, which is made of the mean
+    /// motions; other arguments are those of [`super::Multigrid::with_basis`]. The matrix needs the
+    /// rows that `division` gives this rank: those of whole nodes.
     ///
     /// # Errors
     /// If a diagonal block is not positive definite, or an entry not finite.
     pub fn of(
-        matrix: BlockRows<'_>,
+        (matrix, division): (BlockRows<'_>, &Division),
         first_row: &[u32],
         modes: &[[DVec3; 6]],
-        basis: impl FnOnce(&MeanField) -> CoarseBasis,
-    ) -> Result<Self, MultigridFailure> {
+    ) -> Result<(Self, MeanField), MultigridFailure> {
         let nodes = NodeMatrix {
             matrix,
             offset: first_row,
             modes,
         };
-        let (fixed, _) = FixedHierarchy::of(nodes, |means| basis(&means))?;
-        Ok(Self { fixed })
+        let (fixed, means, _) = FixedHierarchy::without_basis(nodes, division)?;
+        Ok((Self { fixed }, means))
     }
 
-    /// Rows of each cluster. The rows of a part are those of whole clusters.
-    pub fn clusters(&self) -> &Lists {
-        &self.fixed.clusters.members
+    /// Takes the motions of the next level. Those of the rows that [`Self::factorised`] has to do
+    /// with must be there.
+    pub fn set_basis(&mut self, basis: CoarseBasis) {
+        self.fixed.basis = basis;
+    }
+
+    /// Rank of each row: that of the lowest row of its cluster.
+    pub fn owners(&self, division: &Division) -> Vec<u32> {
+        let clusters = &self.fixed.clusters;
+        let lowest = clusters.place.par_iter().map(|(cluster, _)| {
+            let members = clusters.members.of(*cluster as usize);
+            division.owner(members[0] as usize) as u32
+        });
+        lowest.collect()
+    }
+
+    /// Rows of the clusters that have or are coupled to one of the rows `own`, ascending, in a
+    /// matrix with this pattern.
+    pub fn beside(&self, own: &[u32], pattern: &BlockPattern) -> Vec<u32> {
+        let clusters = &self.fixed.clusters;
+        let mut is_beside = vec![false; clusters.count()];
+        for column in own.iter().flat_map(|&row| pattern.row(row as usize)) {
+            let (cluster, _) = clusters.place[pattern.columns[column] as usize];
+            is_beside[cluster as usize] = true;
+        }
+        let rows = 0..clusters.place.len() as u32;
+        rows.filter(|&row| is_beside[clusters.place[row as usize].0 as usize])
+            .collect()
     }
 
     /// The motions of the next level as if the interface had no stiffness.
@@ -140,21 +171,26 @@ impl FirstCoarsening {
             .fixed
             .product(&rows.rows, &matrix, &prolongator, &transpose, is_own);
         drop(transpose);
-        let largest_eigenvalue = bound(&matrix, complete);
+        let largest_eigenvalue = spectrum::largest_eigenvalue_of_rows(&matrix, complete);
         drop(matrix);
         LevelPart {
             largest_eigenvalue,
             inverse: self.inverse(&rows.factors, rows.own),
             prolongator: self.unscaled(&rows.factors, &prolongator, rows.own),
-            next: next.into_blocks(),
+            next: NextPart(next.without_empty()),
         }
     }
 
-    /// The levels below, from what the rows of all processes give to the next one.
+    /// The levels below, from what the rows of each process give to the next one.
     ///
     /// # Errors
     /// If an entry is not finite.
-    pub fn levels_below(&self, parts: &[BlockList<6, 6>]) -> Result<LowerLevels, MultigridFailure> {
+    pub fn levels_below(
+        &self,
+        NextPart(own): NextPart,
+        communicator: &Communicator,
+    ) -> Result<LowerLevels, MultigridFailure> {
+        let parts = own.gathered(communicator);
         LowerLevels::of(parts, &self.fixed.basis.modes)
     }
 
@@ -201,13 +237,4 @@ impl FirstCoarsening {
         }
         prolongator
     }
-}
-
-/// Bound of the spectrum of a scaled matrix of which some rows are known.
-fn bound(matrix: &Sparse<3, 3>, mut complete: impl FnMut(&mut [[f32; 3]])) -> f64 {
-    spectrum::largest_eigenvalue_by(matrix.rows(), |vector, before, factor| {
-        let mut image = spectrum::image(matrix, vector, before, factor);
-        complete(&mut image);
-        image
-    })
 }

@@ -26,13 +26,12 @@ pub enum CoarsestSolve {
 }
 
 impl LowerLevels {
-    /// From parts of the matrix of the first of them, the diagonal blocks and those right of them,
-    /// which are summed in their order; and the modes of its nodes.
+    /// From parts of the matrix of the first of them, which are summed in their order; and the
+    /// modes of its nodes.
     pub(super) fn of(
-        parts: &[BlockList<6, 6>],
+        parts: Vec<PartialProduct>,
         modes: &[Modes<6>],
     ) -> Result<Self, MultigridFailure> {
-        let parts: Vec<PartialProduct> = parts.iter().map(PartialProduct::of_blocks).collect();
         let whole = PartialProduct::sum(modes.len(), &parts);
         drop(parts);
         let factors = galerkin::factors(&whole);
@@ -86,34 +85,25 @@ impl LowerLevels {
         }
     }
 
-    /// Rows of the matrix of a level.
-    pub fn matrix(&self, level: usize, own: &[u32]) -> BlockList<6, 6> {
-        let matrix = &self.levels[level].matrix;
+    /// A row of the matrix of a level: columns and blocks as rows.
+    pub fn matrix_row(&self, level: usize, node: u32) -> impl Iterator<Item = (u32, Block6)> {
         let identity =
             std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
-        let mut rows = BlockList::new();
-        for &node in own {
-            rows.push(node, identity);
-            for (column, block) in matrix.row(node as usize) {
-                rows.push(column as u32, transpose(&widen(block)));
-            }
-            rows.end_row();
-        }
-        rows
+        let others = self.levels[level].matrix.row(node as usize);
+        let others = others.map(|(column, block)| (column as u32, transpose(&widen(block))));
+        std::iter::once((node, identity)).chain(others)
     }
 
-    /// Rows of the prolongator from the level below; empty ones on the coarsest level.
-    pub fn prolongator(&self, level: usize, own: &[u32]) -> BlockList<6, 6> {
-        let mut rows = BlockList::new();
-        for &node in own {
-            if let Below::Level(transfer) = &self.levels[level].below {
-                for (column, block) in transfer.prolongator.row(node as usize) {
-                    rows.push(column as u32, widen(block));
-                }
-            }
-            rows.end_row();
-        }
-        rows
+    /// A row of the prolongator from the level below, blocks as rows; an empty one on the coarsest
+    /// level.
+    pub fn prolongator_row(&self, level: usize, node: u32) -> impl Iterator<Item = (u32, Block6)> {
+        let transfer = match &self.levels[level].below {
+            Below::Level(transfer) => Some(transfer),
+            _ => None,
+        };
+        let row = transfer.map(|transfer| transfer.prolongator.row(node as usize));
+        let row = row.into_iter().flatten();
+        row.map(|(column, block)| (column as u32, widen(block)))
     }
 
     /// Rows of the pseudo-inverse of the coarsest matrix, if it is solved by that.

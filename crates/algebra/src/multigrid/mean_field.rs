@@ -9,6 +9,7 @@ use super::sparse::{Sparse, Transpose, rows_per_task};
 use super::sum_rows::SumRows;
 use super::{aggregation, spectrum, tentative};
 use crate::block_rows::numbers;
+use crate::division::Division;
 use crate::failure::MultigridFailure;
 use crate::small::{Modes, narrow};
 
@@ -25,31 +26,38 @@ pub struct MeanField {
 
 impl MeanField {
     /// Aggregates rows that are all clusters of their own, the first ones of `nodes` among
-    /// `node_count`; and their scaled matrix.
+    /// `node_count`; and their scaled matrix, of which each rank has its own rows.
     pub(super) fn of(
-        rows: &SumRows<'_>,
+        (rows, division): (&SumRows<'_>, &Division),
         modes: &[[DVec3; 6]],
         nodes: Vec<u32>,
         node_count: usize,
     ) -> Result<(Self, Sparse<3, 3>), MultigridFailure> {
         let single = Clusters::single(rows.count());
-        let factors = Factors::of(rows, &single)?;
+        let own = division.own();
+        let is_own = |row: usize| own.contains(&row);
+        let factors = Factors::of_some(rows, &single, is_own);
+        let factors = division.communicator().agreed(factors)?;
+        let factors = factors.completed(division);
         let mut matrix = Sparse::default();
-        block_jacobi::set_matrix(&mut matrix, rows, &single, &factors, |_| true);
+        block_jacobi::set_matrix(&mut matrix, rows, &single, &factors, is_own);
         let modes = block_jacobi::modes(&factors, modes);
-        let bound = spectrum::largest_eigenvalue(&matrix);
+        let complete = |vector: &mut [[f32; 3]]| division.complete(vector);
+        let bound = spectrum::largest_eigenvalue_of_rows(&matrix, complete);
         if !bound.is_finite() {
             return Err(MultigridFailure::NotFinite);
         }
-        let aggregates = aggregation::aggregate(&matrix);
+        let strong = aggregation::strong_neighbours(&matrix);
+        let aggregates = aggregation::aggregate(&strong.completed(division));
         let tentative = tentative::tentative(&aggregates, &modes);
         let unsmoothed = Unsmoothed {
             aggregates: &aggregates,
             tentative: &tentative,
             modes: &modes,
         };
-        let mut prolongator = unsmoothed.smoothed(&matrix, bound);
+        let mut prolongator = unsmoothed.smoothed(&matrix, bound, is_own);
         block_jacobi::unscale(&factors, &mut prolongator);
+        let prolongator = prolongator.completed(division);
         let means = Self {
             transpose: Transpose::of(&prolongator, aggregates.count),
             modes: tentative.modes,

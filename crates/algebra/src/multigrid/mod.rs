@@ -44,7 +44,7 @@ use crate::interface::InterfaceBlocks;
 
 pub use crate::failure::MultigridFailure;
 pub use block_list::BlockList;
-pub use first_coarsening::{FirstCoarsening, LevelPart, OwnRows};
+pub use first_coarsening::{FirstCoarsening, LevelPart, NextPart, OwnRows};
 pub use lower_levels::{CoarsestSolve, LowerLevels};
 pub use mean_field::{CoarseBasis, MeanField};
 

@@ -25,8 +25,13 @@ impl<const N: usize> Unsmoothed<'_, N> {
     /// A neighbour in another aggregate that hardly resists the aggregate of the row moves as if it
     /// belonged to that one: `T` is extended to it by the modes, `B R^-1`. Rigid motions stay, and
     /// aggregates that hardly resist each other do not become neighbours on the next level
-    /// (filtered matrices in Vanek, Mandel, Brezina 1996).
-    pub(super) fn smoothed(&self, matrix: &Sparse<N, N>, largest_eigenvalue: f64) -> Sparse<N, 6> {
+    /// (filtered matrices in Vanek, Mandel, Brezina 1996). Rows that are not `is_wanted` are empty.
+    pub(super) fn smoothed(
+        &self,
+        matrix: &Sparse<N, N>,
+        largest_eigenvalue: f64,
+        is_wanted: impl Fn(usize) -> bool + Sync + Send,
+    ) -> Sparse<N, 6> {
         let omega = DAMPING / largest_eigenvalue;
         let moves = |row: usize| {
             let neighbours = matrix.row(row);
@@ -41,12 +46,18 @@ impl<const N: usize> Unsmoothed<'_, N> {
             rows_per_task::<N>(),
             || Accumulator::<N, 6>::new(self.aggregates.count),
             |sums, row| {
+                if !is_wanted(row) {
+                    return 0;
+                }
                 own(row).into_iter().for_each(|own| sums.touch(own));
                 moves(row).for_each(|(_, aggregate, _)| sums.touch(aggregate));
                 sums.take_count()
             },
             #[inline(always)]
             |sums, row, columns, blocks| {
+                if columns.is_empty() {
+                    return;
+                }
                 if let Some(own) = own(row) {
                     let motion = widen(&self.tentative.blocks[row]);
                     add(sums.at(own), 1.0 - omega, &motion);

@@ -16,6 +16,7 @@ use super::sum_rows::{RowSubset, SumRows};
 use super::triple_product::PartialProduct;
 use super::{aggregation, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
+use crate::division::Division;
 use crate::failure::MultigridFailure;
 use crate::small::Modes;
 
@@ -77,6 +78,23 @@ impl FixedHierarchy {
         nodes: NodeMatrix<'_>,
         split: impl FnOnce(MeanField) -> CoarseBasis,
     ) -> Result<(Self, LevelBuffers), MultigridFailure> {
+        let whole = Division::whole(nodes.matrix.rows());
+        let (mut hierarchy, means, scaled) = Self::without_basis(nodes, &whole)?;
+        hierarchy.basis = split(means);
+        let buffers = LevelBuffers {
+            matrix: scaled,
+            ..LevelBuffers::default()
+        };
+        Ok((hierarchy, buffers))
+    }
+
+    /// The clusters of a matrix, the mean motions and their scaled matrix. Each rank needs the rows
+    /// of its division, whose parts have the rows of whole nodes, and makes those of the scaled
+    /// matrix.
+    pub(super) fn without_basis(
+        nodes: NodeMatrix<'_>,
+        division: &Division,
+    ) -> Result<(Self, MeanField, Sparse<3, 3>), MultigridFailure> {
         let NodeMatrix {
             matrix,
             offset,
@@ -95,18 +113,15 @@ impl FixedHierarchy {
             subset: (!is_whole).then_some(subset),
             ..SumRows::of_fixed(matrix)
         };
-        let (means, scaled) = MeanField::of(&of_means, modes, used, offset.len() - 1)
+        let of_firsts = division.of_kept(&firsts);
+        let (means, scaled) = MeanField::of((&of_means, &of_firsts), modes, used, offset.len() - 1)
             .map_err(|failure| failure.of_rows(&firsts))?;
+        let ties = (&scaled, division.communicator());
         let hierarchy = Self {
-            clusters: Clusters::of(&scaled, means.nodes(), offset),
-            basis: split(means),
-            far: None,
+            clusters: Clusters::of(ties, means.nodes(), offset),
+            ..Self::default()
         };
-        let buffers = LevelBuffers {
-            matrix: scaled,
-            ..LevelBuffers::default()
-        };
-        Ok((hierarchy, buffers))
+        Ok((hierarchy, means, scaled))
     }
 
     /// Whether the next level is worth having.
@@ -246,7 +261,7 @@ fn below(
         let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
         return Ok((Below::Inverse(dense), None));
     }
-    let aggregates = aggregation::aggregate(matrix);
+    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(matrix));
     if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
         return Ok((Below::Nothing, None));
     }
@@ -256,7 +271,7 @@ fn below(
         tentative: &tentative,
         modes,
     };
-    let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue);
+    let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue, |_| true);
     let transpose = Transpose::of(&prolongator, aggregates.count);
     let product = PartialProduct::whole(matrix, &prolongator, &transpose);
     let storage = Sparse::default();

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::division::Division;
 use crate::lists::sum_up;
 use crate::ownership::RowOwnership;
 use crate::small::narrow;
@@ -123,6 +124,20 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
                 },
             );
         });
+    }
+}
+
+impl<const M: usize, const L: usize> Sparse<M, L> {
+    /// The rows of all ranks, of which each one has its own; the others are empty there.
+    pub(super) fn completed(mut self, division: &Division) -> Self {
+        if division.is_whole() {
+            return self;
+        }
+        let communicator = division.communicator();
+        division.complete_offsets(&mut self.offset);
+        self.columns = communicator.gathered(&self.columns);
+        self.blocks = communicator.gathered(&self.blocks);
+        self
     }
 }
 

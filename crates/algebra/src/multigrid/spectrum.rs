@@ -1,4 +1,5 @@
-//! An upper bound of the largest eigenvalue of a level matrix, known as a whole or by its products.
+//! An upper bound of the largest eigenvalue of a level matrix, known as a whole or by some of its
+//! rows.
 
 use faer::{Mat, Side};
 use rayon::prelude::*;
@@ -15,13 +16,24 @@ const INVARIANT: f64 = 1e-6;
 /// vector (Zhou and Li 2011), from a fixed start vector. At least 1, which the largest eigenvalue
 /// of a matrix with unit diagonal never falls below.
 pub(super) fn largest_eigenvalue<const N: usize>(matrix: &Sparse<N, N>) -> f64 {
+    largest_eigenvalue_of_rows(matrix, |_| {})
+}
+
+/// The same of a matrix of which some rows are known; `complete` replaces the entries of a vector
+/// that belong to the others.
+pub(super) fn largest_eigenvalue_of_rows<const N: usize>(
+    matrix: &Sparse<N, N>,
+    mut complete: impl FnMut(&mut [[f32; N]]),
+) -> f64 {
     largest_eigenvalue_by(matrix.rows(), |vector, before, factor| {
-        image(matrix, vector, before, factor)
+        let mut image = image(matrix, vector, before, factor);
+        complete(&mut image);
+        image
     })
 }
 
 /// The same of a matrix of so many rows whose products `A v - factor b` are given.
-pub(super) fn largest_eigenvalue_by<const N: usize>(
+fn largest_eigenvalue_by<const N: usize>(
     rows: usize,
     mut image: impl FnMut(&[[f32; N]], &[[f32; N]], f64) -> Vec<[f32; N]>,
 ) -> f64 {
@@ -77,7 +89,7 @@ fn start_vector<const N: usize>(rows: usize) -> Vec<[f32; N]> {
 }
 
 /// `A v - factor b`.
-pub(super) fn image<const N: usize>(
+fn image<const N: usize>(
     matrix: &Sparse<N, N>,
     vector: &[[f32; N]],
     before: &[[f32; N]],

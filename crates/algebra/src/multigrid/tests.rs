@@ -9,7 +9,9 @@ use crate::block_matrix::{BlockMatrix, BlockPattern};
 use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
+use crate::division::Division;
 use crate::small;
+use crate::thread_ranks::on_threads;
 
 struct Case {
     pattern: BlockPattern,
@@ -121,7 +123,7 @@ fn rigid_motions_are_prolonged_exactly() {
     let mut scaled = Sparse::default();
     block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
     let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&scaled);
+    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled));
     let tentative = tentative::tentative(&aggregates, &modes);
     for (node, &aggregate) in aggregates.of_node.iter().enumerate() {
         if aggregate == aggregation::ALONE {
@@ -167,7 +169,7 @@ fn weak_neighbours_cost_no_rigid_motion() {
     let mut scaled = Sparse::default();
     block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
     let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&scaled);
+    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled));
     let tentative = tentative::tentative(&aggregates, &modes);
     let unsmoothed = prolongation::Unsmoothed {
         aggregates: &aggregates,
@@ -175,7 +177,7 @@ fn weak_neighbours_cost_no_rigid_motion() {
         modes: &modes,
     };
     let bound = spectrum::largest_eigenvalue(&scaled);
-    let prolongator = unsmoothed.smoothed(&scaled, bound);
+    let prolongator = unsmoothed.smoothed(&scaled, bound, |_| true);
     let expected = smoothed_modes(&scaled, &modes, 4.0 / 3.0 / bound);
     let mut around = 0;
     for (row, expected) in expected.iter().enumerate() {
@@ -228,15 +230,9 @@ fn parts_of_the_rows_make_the_levels_of_the_whole() {
     let case = lattice(12);
     let rows = case.modes.len() as u32;
     let offset: Vec<u32> = (0..=rows).collect();
-    let means = |means: &MeanField| {
-        CoarseBasis::new(rows as usize, means.modes().to_vec(), |node| {
-            let motions = means.motions_of(node);
-            motions
-                .map(|(aggregate, block)| (aggregate as u32, small::widen(block)))
-                .collect()
-        })
-    };
-    let mut coarsening = FirstCoarsening::of(case.rows(), &offset, &case.modes, means).unwrap();
+    let whole = (case.rows(), &Division::whole(rows as usize));
+    let (mut coarsening, means) = FirstCoarsening::of(whole, &offset, &case.modes).unwrap();
+    coarsening.set_basis(means.into_basis());
     let nothing = crate::Lists::default();
     let interface = InterfaceBlocks {
         pattern: crate::InterfacePattern {
@@ -245,15 +241,16 @@ fn parts_of_the_rows_make_the_levels_of_the_whole() {
         },
         blocks: &[],
     };
-    let mut levels_of = |cuts: &[u32]| {
-        let ranges = cuts.windows(2);
-        let parts = ranges.map(|cut| {
-            let own: Vec<u32> = (cut[0]..cut[1]).collect();
+    let levels_of = |cuts: &[u32]| {
+        let of_ranks = on_threads(cuts.len() - 1, |communicator| {
+            let mut coarsening = coarsening.clone();
+            let rank = communicator.rank();
+            let own: Vec<u32> = (cuts[rank]..cuts[rank + 1]).collect();
             let rows = coarsening.factorised(case.rows(), interface, &own).unwrap();
-            coarsening.part(&rows, |_| {}).next
+            let part = coarsening.part(&rows, |_| {}).next;
+            coarsening.levels_below(part, communicator).unwrap()
         });
-        let parts: Vec<BlockList<6, 6>> = parts.collect();
-        coarsening.levels_below(&parts).unwrap()
+        of_ranks.into_iter().next_back().unwrap()
     };
     let (whole, of_three) = (levels_of(&[0, rows]), levels_of(&[0, 300, 301, rows]));
     let multigrid = Multigrid::new(case.rows(), &case.modes).unwrap();
@@ -262,13 +259,17 @@ fn parts_of_the_rows_make_the_levels_of_the_whole() {
         .map(|size| size.nodes)
         .collect();
     for (level, &nodes) in sizes.iter().enumerate() {
-        let own: Vec<u32> = (0..nodes as u32).collect();
-        let [one, other] = [&whole, &of_three].map(|levels| levels.matrix(level, &own));
-        assert_eq!((one.rows(), &one.columns), (nodes, &other.columns));
-        let entries = std::iter::zip(one.blocks.as_flattened(), other.blocks.as_flattened());
-        for (one, other) in entries.flat_map(|(one, other)| std::iter::zip(one, other)) {
-            // Single precision.
-            assert!((one - other).abs() < 1e-4, "{one} and {other}");
+        assert_eq!([whole.nodes(level), of_three.nodes(level)], [nodes; 2]);
+        for node in 0..nodes as u32 {
+            let [one, other] = [&whole, &of_three].map(|levels| levels.matrix_row(level, node));
+            for ((column, one), (at, other)) in one.zip(other) {
+                assert_eq!(column, at);
+                let entries = std::iter::zip(one.as_flattened(), other.as_flattened());
+                for (one, other) in entries {
+                    // Single precision.
+                    assert!((one - other).abs() < 1e-4, "{one} and {other}");
+                }
+            }
         }
     }
     assert_eq!(whole.count(), sizes.len());

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::block_list::BlockList;
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
+use crate::division::Communicator;
 use crate::lists::sum_up;
-use crate::small::{add, add_columns, add_product, narrow, widen};
+use crate::small::{add, add_columns, add_product, widen};
 
 /// Rows of a batch, fixed so that no result depends on the number of threads. `A P` of one is kept.
 const fn batch<const N: usize>() -> usize {
@@ -135,42 +135,62 @@ impl PartialProduct {
         }
     }
 
-    /// The diagonal blocks and those right of them, one row for each aggregate, if it has all.
-    pub(super) fn into_blocks(self) -> BlockList<6, 6> {
-        let mut blocks = BlockList::new();
-        for (row, diagonal) in self.diagonal.iter().enumerate() {
-            if *diagonal != [[0.0; 6]; 6] {
-                blocks.push(row as u32, *diagonal);
-            }
-            for (column, block) in self.upper.row(row) {
-                blocks.push(column as u32, widen(block));
-            }
-            blocks.end_row();
-        }
-        blocks
+    /// The same without aggregates that nothing is given to, if it has all.
+    pub(super) fn without_empty(mut self) -> Self {
+        let (diagonal, upper) = (&self.diagonal, &self.upper);
+        let has_any = |row: usize| diagonal[row] != [[0.0; 6]; 6] || !upper.range(row).is_empty();
+        let is_kept: Vec<bool> = (0..diagonal.len()).map(has_any).collect();
+        let is_kept = |row: usize| is_kept[row];
+        let ends = (0..self.diagonal.len()).filter(|&row| is_kept(row));
+        let ends = ends.map(|row| self.upper.offset[row + 1]);
+        // Rows that go have no blocks.
+        self.upper.offset = std::iter::once(0).chain(ends).collect();
+        let kept = |row: &u32| is_kept(*row as usize);
+        self.diagonal = (0..self.diagonal.len())
+            .filter(|&row| is_kept(row))
+            .map(|row| self.diagonal[row])
+            .collect();
+        self.aggregates.retain(kept);
+        self
     }
 
-    /// The part that such blocks came from.
-    pub(super) fn of_blocks(blocks: &BlockList<6, 6>) -> Self {
-        let mut diagonal = vec![[[0.0; 6]; 6]; blocks.rows()];
-        let mut upper = Sparse::empty();
-        for (row, diagonal) in diagonal.iter_mut().enumerate() {
-            for (column, block) in blocks.row(row) {
-                match column as usize == row {
-                    true => *diagonal = *block,
-                    false => {
-                        upper.columns.push(column);
-                        upper.blocks.push(narrow(block));
-                    }
-                }
-            }
-            upper.offset.push(upper.columns.len());
-        }
-        Self {
-            aggregates: (0..blocks.rows() as u32).collect(),
+    /// Those of all ranks, in their order.
+    pub(super) fn gathered(self, communicator: &Communicator) -> Vec<Self> {
+        let Self {
+            aggregates,
             diagonal,
             upper,
-        }
+        } = self;
+        let counts = communicator.gathered(&[aggregates.len() as u64]);
+        let lengths = upper
+            .offset
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]) as u32);
+        let lengths = communicator.gathered(&lengths.collect::<Vec<_>>());
+        let mut aggregates = communicator.gathered(&aggregates).into_iter();
+        let mut diagonal = communicator.gathered(&diagonal).into_iter();
+        let mut columns = communicator.gathered(&upper.columns).into_iter();
+        let mut blocks = communicator.gathered(&upper.blocks).into_iter();
+        drop(upper);
+        let mut lengths = lengths.into_iter().map(|length| length as usize);
+        let parts = counts.into_iter().map(|count| {
+            let count = count as usize;
+            let mut offset: Vec<usize> = std::iter::once(0)
+                .chain(lengths.by_ref().take(count))
+                .collect();
+            sum_up(&mut offset);
+            let length = offset[count];
+            Self {
+                aggregates: aggregates.by_ref().take(count).collect(),
+                diagonal: diagonal.by_ref().take(count).collect(),
+                upper: Sparse {
+                    columns: columns.by_ref().take(length).collect(),
+                    blocks: blocks.by_ref().take(length).collect(),
+                    offset,
+                },
+            }
+        });
+        parts.collect()
     }
 
     /// Bytes of storage.

@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{BlockMatrix, RowOwnership, trace};
+use kluft_algebra::{BlockMatrix, RowOwnership, sum_up, trace};
 use kluft_mesh::Shape;
 use lie_core::enrichment::coefficient;
 use lie_core::kernel::{self, MAX_NODES};
@@ -36,31 +36,34 @@ const MOST_WAVES: usize = 32;
 /// Stiffness of the rock over all unknowns, held directions included: there the diagonal keeps the
 /// scale of the rock, so the matrix stays positive definite.
 ///
-/// With `u = g + P T y` it is `T^T (P K P + s (I - P)) T`.
-pub(crate) fn rock_stiffness(space: Space<'_>) -> BlockMatrix {
-    assemble(space, &tetrahedra::nodes(space))
+/// With `u = g + P T y` it is `T^T (P K P + s (I - P)) T`. Only the rows of nodes that are
+/// `is_wanted` are there, one behind the other.
+pub(crate) fn rock_stiffness(space: Space<'_>, is_wanted: &[bool]) -> BlockMatrix {
+    assemble(space, (is_wanted, &tetrahedra::nodes(space)))
 }
 
 /// The stiffness, where [`Tetrahedra`] serves the nodes `in_tetrahedra`.
-fn assemble(space: Space<'_>, in_tetrahedra: &[bool]) -> BlockMatrix {
+fn assemble(space: Space<'_>, (is_wanted, in_tetrahedra): (&[bool], &[bool])) -> BlockMatrix {
     let is_plain = plain(space);
+    let lengths = is_wanted.iter().enumerate().map(|(node, is_wanted)| {
+        let rows = space.points.of_node(node);
+        let blocks = &space.pattern.blocks.row_offset;
+        usize::from(*is_wanted) * (blocks[rows.end] - blocks[rows.start])
+    });
+    let mut first_block: Vec<usize> = std::iter::once(0).chain(lengths).collect();
+    sum_up(&mut first_block);
     // Zeros of the allocator: memory that nobody has touched, as touching it costs more than all
     // sums.
-    let mut blocks: Vec<DMat3> = bytemuck::zeroed_vec(space.pattern.blocks.columns.len());
-    let first_block: Vec<usize> = space
-        .points
-        .offset
-        .iter()
-        .map(|&row| space.pattern.blocks.row_offset[row as usize])
-        .collect();
+    let mut blocks: Vec<DMat3> = bytemuck::zeroed_vec(first_block[is_wanted.len()]);
     let tasks = RowOwnership::even(is_plain.len(), NODES_PER_TASK);
     let mut shares = tasks.split(&mut blocks, &first_block);
-    let tetrahedra = Tetrahedra::of(space, in_tetrahedra, &is_plain);
+    let nodes = (is_wanted, in_tetrahedra);
+    let tetrahedra = Tetrahedra::of(space, nodes, &is_plain);
     shares.par_iter_mut().for_each_init(
         || tetrahedra.scratch(),
         |scratch, (nodes, rows)| tetrahedra.set_share(nodes.clone(), rows, scratch),
     );
-    let mut matrices = CellMatrices::of(space, in_tetrahedra, &is_plain);
+    let mut matrices = CellMatrices::of(space, nodes, &is_plain);
     for cells in matrices.waves() {
         matrices.compute(cells);
         shares.par_iter_mut().for_each_init(
@@ -87,6 +90,7 @@ fn plain(space: Space<'_>) -> Vec<bool> {
 struct CellMatrices<'a> {
     space: Space<'a>,
     elasticity: Vec<Elasticity<'a>>,
+    is_wanted: &'a [bool],
     in_tetrahedra: &'a [bool],
     is_plain: &'a [bool],
     /// Blocks of the largest matrix of a cell that is not a linear tetrahedron.
@@ -98,12 +102,17 @@ struct CellMatrices<'a> {
 }
 
 impl<'a> CellMatrices<'a> {
-    fn of(space: Space<'a>, in_tetrahedra: &'a [bool], is_plain: &'a [bool]) -> Self {
+    fn of(
+        space: Space<'a>,
+        (is_wanted, in_tetrahedra): (&'a [bool], &'a [bool]),
+        is_plain: &'a [bool],
+    ) -> Self {
         let shapes = space.problem.mesh.cells.shapes.par_iter();
         let stored = shapes.filter(|&&shape| shape != Shape::Tet4);
         Self {
             space,
             elasticity: space.problem.rocks.iter().map(Rock::elasticity).collect(),
+            is_wanted,
             in_tetrahedra,
             is_plain,
             stride: stored.map(|s| s.node_count().pow(2)).max().unwrap_or(0),
@@ -194,12 +203,13 @@ impl<'a> CellMatrices<'a> {
         // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
         // them.
         visits.clear();
-        for node in nodes.clone().filter(|&node| !self.in_tetrahedra[node]) {
+        let is_served = |node: &usize| self.is_wanted[*node] && !self.in_tetrahedra[*node];
+        for node in nodes.clone().filter(is_served) {
             let slots = self.space.slots(node, &self.slots).iter();
             visits.extend(slots.map(|&slot| self.visit(slot)));
         }
         let (mut rest, mut visits) = (rows, visits.as_slice());
-        for node in nodes {
+        for node in nodes.filter(|&node| self.is_wanted[node]) {
             let neighbours = pattern.neighbours.of(node);
             let mut length = 0;
             for &other in neighbours {
@@ -410,8 +420,9 @@ mod tests {
     fn compare(problem: &Problem) -> (f64, f64) {
         let largest = |block: DMat3| block.to_cols_array().map(f64::abs).into_iter();
         with_space(problem, |space| {
-            let fast = rock_stiffness(space).blocks;
-            let general = assemble(space, &vec![false; problem.mesh.nodes.len()]).blocks;
+            let all = vec![true; problem.mesh.nodes.len()];
+            let fast = rock_stiffness(space, &all).blocks;
+            let general = assemble(space, (&all, &vec![false; all.len()])).blocks;
             let pairs = std::iter::zip(&fast, &general);
             let apart = pairs.flat_map(|(fast, general)| largest(*fast - *general));
             let all = general.iter().flat_map(|block| largest(*block));
@@ -444,9 +455,10 @@ mod tests {
     #[test]
     fn threads_do_not_change_a_bit() {
         let problem = problem(|_| Cut::Tetrahedra);
+        let all = vec![true; problem.mesh.nodes.len()];
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let blocks = || with_space(&problem, |space| rock_stiffness(space).blocks);
+            let blocks = || with_space(&problem, |space| rock_stiffness(space, &all).blocks);
             pool.expect("threads").install(blocks)
         };
         let one = with(1);

@@ -3,7 +3,7 @@
 //! Springs act on few nodes, one facet after the other in the order of the mesh.
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::BlockMatrix;
+use kluft_algebra::{BlockMatrix, BlockPattern};
 use lie_core::enrichment::coefficient;
 use lie_core::{FacetQuadrature, facet_points};
 
@@ -82,33 +82,37 @@ pub(crate) fn of_facet(
     }
 }
 
-/// Adds the stiffness of all springs to that of the rock: `T^T P K P T`.
-pub(crate) fn add(space: Space<'_>, matrix: &mut BlockMatrix) {
+/// Adds the stiffness of all springs to that of the rock: `T^T P K P T`. Rows without blocks in the
+/// pattern of the matrix are left out.
+pub(crate) fn add(space: Space<'_>, pattern: &BlockPattern, matrix: &mut BlockMatrix) {
     for facet in facets(space.problem, space.points) {
         let pairs = facet.points.iter().flat_map(|&a| {
             let others = facet.points.iter();
             others.map(move |&b| (a as usize, b as usize))
         });
         for ((a, b), block) in pairs.zip(&facet.stiffness) {
-            scatter(
-                space,
-                (a, b),
-                space.supports.project_block(a, b, *block),
-                matrix,
-            );
+            let block = space.supports.project_block(a, b, *block);
+            scatter(space.points, (a, b), block, (pattern, matrix));
         }
     }
 }
 
 /// Adds a block between two points to the unknowns of their nodes, `K_kl += c_ik c_jl K_ij`.
-fn scatter(space: Space<'_>, (a, b): (usize, usize), block: DMat3, matrix: &mut BlockMatrix) {
-    let pattern = &space.pattern.blocks;
-    let ((sector, sectors), (other, others)) = (space.points.sector(a), space.points.sector(b));
+fn scatter(
+    points: &SectorNodes,
+    (a, b): (usize, usize),
+    block: DMat3,
+    (pattern, matrix): (&BlockPattern, &mut BlockMatrix),
+) {
+    let ((sector, sectors), (other, others)) = (points.sector(a), points.sector(b));
     let (first, other_first) = (a - sector as usize, b - other as usize);
     for k in 0..sectors {
         let row = first + k as usize;
         let start = pattern.row_offset[row];
         let columns = &pattern.columns[start..pattern.row_offset[row + 1]];
+        if columns.is_empty() {
+            return;
+        }
         // The unknowns of one node stand side by side.
         let at = start + columns.partition_point(|&column| (column as usize) < other_first);
         let weight = coefficient(sectors, sector, k);

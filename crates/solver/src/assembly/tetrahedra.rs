@@ -38,9 +38,10 @@ pub(crate) fn nodes(space: Space<'_>) -> Vec<bool> {
         .collect()
 }
 
-/// Source of the rows of the nodes `in_tetrahedra`.
+/// Source of the rows of the nodes `in_tetrahedra` that are `is_wanted`.
 pub(crate) struct Tetrahedra<'a> {
     space: Space<'a>,
+    is_wanted: &'a [bool],
     in_tetrahedra: &'a [bool],
     /// Whether a node has one sector and no constraint: its point is its unknown.
     is_plain: &'a [bool],
@@ -77,9 +78,14 @@ pub(crate) struct CellScratch {
 }
 
 impl<'a> Tetrahedra<'a> {
-    pub(crate) fn of(space: Space<'a>, in_tetrahedra: &'a [bool], is_plain: &'a [bool]) -> Self {
+    pub(crate) fn of(
+        space: Space<'a>,
+        (is_wanted, in_tetrahedra): (&'a [bool], &'a [bool]),
+        is_plain: &'a [bool],
+    ) -> Self {
         Self {
             space,
+            is_wanted,
             in_tetrahedra,
             is_plain,
             elasticity: space.problem.rocks.iter().map(Rock::elasticity).collect(),
@@ -98,7 +104,7 @@ impl<'a> Tetrahedra<'a> {
     }
 
     /// Writes the rows of those of consecutive nodes that are in tetrahedra only, and zeros into
-    /// the others.
+    /// the others, of nodes that are wanted.
     pub(crate) fn set_share(
         &self,
         nodes: Range<usize>,
@@ -108,12 +114,13 @@ impl<'a> Tetrahedra<'a> {
         let Space {
             points, pattern, ..
         } = self.space;
-        let served = nodes.clone().filter(|&node| self.in_tetrahedra[node]);
+        let is_served = |node: &usize| self.is_wanted[*node] && self.in_tetrahedra[*node];
+        let served = nodes.clone().filter(is_served);
         // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
         // them.
         scratch.gather(self, served);
         let (mut rest, mut visits) = (rows, scratch.visits.as_slice());
-        for node in nodes {
+        for node in nodes.filter(|&node| self.is_wanted[node]) {
             let own = points.of_node(node);
             let columns = match own.is_empty() {
                 true => &[],

@@ -19,7 +19,7 @@ use crate::newton::Newton;
 use crate::problem::Load;
 use crate::space::cell::{Cell, StrainOffsets, components};
 use crate::system::System;
-use kluft_algebra::LinearFailure;
+use kluft_algebra::{Division, LinearFailure, RowOwnership};
 use patches::Patches;
 
 pub use sizes::target_sizes;
@@ -48,6 +48,8 @@ pub(crate) fn estimate_bytes(mesh: &Mesh) -> usize {
 
 /// Recovers stresses on one mesh, for any number of states.
 pub struct Estimator {
+    /// Cells whose errors each rank estimates.
+    division: Division,
     patches: Patches,
     /// The fracture nearest to each cell; beyond all numbers where there is none.
     pub nearest_fracture: Vec<u32>,
@@ -113,15 +115,21 @@ pub struct MeanError {
 }
 
 impl Estimator {
-    /// Prepares for a system.
+    /// Prepares for a system, whose ranks divide the cells.
     pub fn of(system: &System<'_>) -> Self {
+        let cells = system.problem.mesh.cells.len();
+        let communicator = system.division().communicator();
+        let ranks = communicator.size();
+        let starts = (0..=ranks).map(|rank| rank * cells / ranks);
+        let division = communicator.divide(RowOwnership::of_starts(starts.collect()));
         Self {
-            patches: Patches::of(system.problem, &system.discretisation),
+            patches: Patches::of(system.problem, &system.discretisation, division.own()),
+            division,
             nearest_fracture: nearest_fracture::nearest_fracture(&system.problem.mesh),
         }
     }
 
-    /// Estimates the error of the stresses of `displacements` (m), one a point.
+    /// Estimates the error of the stresses of `displacements` (m), one a point. All ranks must ask.
     pub fn stress_error(&self, system: &System<'_>, displacements: &[DVec3]) -> StressError {
         self.error_beside(system, displacements, system.strain_offsets())
     }
@@ -161,12 +169,13 @@ impl Estimator {
             }
             (error, (energy, whole))
         };
-        let cells = (0..problem.mesh.cells.len()).into_par_iter();
+        let cells = self.division.own().into_par_iter();
         let (of_cell, others): (Vec<f64>, Vec<(f64, f64)>) = cells.map(of_cell).unzip();
+        let (energies, volumes): (Vec<f64>, Vec<f64>) = others.into_iter().unzip();
         let mut error = StressError {
-            of_cell,
-            energy: others.iter().map(|(energy, _)| energy).sum(),
-            volumes: others.into_iter().map(|(_, volume)| volume).collect(),
+            of_cell: self.division.gathered(of_cell),
+            energy: self.division.gathered(energies).iter().sum(),
+            volumes: self.division.gathered(volumes),
         };
         if problem.mesh.has_quarter_points {
             error.take_over_at_fronts(&problem.mesh);
@@ -213,5 +222,38 @@ impl Estimator {
             of_cell: of_cell.collect(),
             of_fracture,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kluft_algebra::thread_ranks::on_threads;
+
+    use super::*;
+    use crate::linear::fractured_tests::{problem, system};
+    use crate::system::Discretisation;
+
+    #[test]
+    fn ranks_estimate_the_errors_of_one_to_the_last_bit() {
+        let problem = problem(|z| z * z);
+        let whole = system(&problem);
+        let points = &whole.discretisation.points;
+        let moved = points.node.iter().enumerate().map(|(point, &node)| {
+            let place = problem.mesh.nodes[node as usize];
+            place * place.x + DVec3::splat(1e-2 * (point % 7) as f64)
+        });
+        let moved: Vec<DVec3> = moved.collect();
+        let expected = Estimator::of(&whole).stress_error(&whole, &moved);
+        assert!(expected.relative() > 0.1);
+        let found = on_threads(3, |communicator| {
+            let discretisation = Discretisation::of(&problem).expect("held");
+            let divided = System::divided(&problem, discretisation, communicator);
+            Estimator::of(&divided).stress_error(&divided, &moved)
+        });
+        for found in found {
+            assert!(found.of_cell == expected.of_cell);
+            assert!(found.volumes == expected.volumes);
+            assert_eq!(found.energy, expected.energy);
+        }
     }
 }

@@ -44,6 +44,9 @@ pub(super) struct Patches {
     sample_offset: Vec<usize>,
     /// Number of terms of the polynomials: quadratic ones if any cell is quadratic.
     terms: usize,
+    /// Patches of the cells that count, and cells that these may be fitted to.
+    is_fitted: Vec<bool>,
+    is_sampled: Vec<bool>,
 }
 
 /// No patch.
@@ -55,8 +58,13 @@ pub(super) struct Recovered {
 }
 
 impl Patches {
-    /// The patches of a mesh: one for each point that is a corner and each rock around it.
-    pub(super) fn of(problem: &Problem, discretisation: &Discretisation) -> Self {
+    /// The patches of a mesh: one for each point that is a corner and each rock around it. Stresses
+    /// are recovered in the cells `wanted`.
+    pub(super) fn of(
+        problem: &Problem,
+        discretisation: &Discretisation,
+        wanted: Range<usize>,
+    ) -> Self {
         let Discretisation {
             points, pattern, ..
         } = discretisation;
@@ -97,7 +105,10 @@ impl Patches {
             sample_offset: sample_offset(cells),
             samples: Vec::new(),
             terms: terms(cells),
+            is_fitted: Vec::new(),
+            is_sampled: Vec::new(),
         };
+        patches.restrict(cells, wanted);
         let middles = middles.into_par_iter().enumerate();
         patches.frames = middles
             .map(|(patch, middle)| (middle, patches.size(mesh, patch, middle)))
@@ -107,6 +118,35 @@ impl Patches {
             kernel::position(point, cell::positions(mesh, cell, &mut nodes))
         });
         patches
+    }
+
+    /// Restricts what is fitted to what some cells ask for.
+    fn restrict(&mut self, cells: &Elements, wanted: Range<usize>) {
+        let patches_of = |is_wanted: &dyn Fn(usize) -> bool| {
+            let mut is_met = vec![false; self.len()];
+            for cell in (0..cells.len()).filter(|&cell| is_wanted(cell)) {
+                let corners = cells.range(cell).take(cells.shapes[cell].corner_count());
+                corners.for_each(|slot| is_met[self.of_slot[slot] as usize] = true);
+            }
+            is_met
+        };
+        let cells_of = |is_met: &[bool]| {
+            let mut is_beside = vec![false; cells.len()];
+            for patch in (0..self.len()).filter(|&patch| is_met[patch]) {
+                self.cells_of(patch).for_each(|cell| is_beside[cell] = true);
+            }
+            is_beside
+        };
+        if wanted.len() == cells.len() {
+            let all = (vec![true; self.len()], vec![true; cells.len()]);
+            (self.is_fitted, self.is_sampled) = all;
+            return;
+        }
+        let is_fitted = patches_of(&|cell| wanted.contains(&cell));
+        let own = cells_of(&is_fitted);
+        // Patches beside lend their cells to those with too few.
+        let is_sampled = cells_of(&patches_of(&|cell| own[cell]));
+        (self.is_fitted, self.is_sampled) = (is_fitted, is_sampled);
     }
 
     fn len(&self) -> usize {
@@ -121,7 +161,7 @@ impl Patches {
         self.sample_offset[cell]..self.sample_offset[cell + 1]
     }
 
-    /// Values at all samples, cell by cell.
+    /// Values at all samples, cell by cell; zero in cells that no patch is fitted to.
     fn sampled<T: Send + Clone + Default>(
         &self,
         cells: &Elements,
@@ -134,10 +174,13 @@ impl Patches {
             for cell in owned {
                 let samples = &recovery_rule(cells.shapes[cell]).samples;
                 let (own, tail) = rest.split_at_mut(samples.len());
+                rest = tail;
+                if !self.is_sampled[cell] {
+                    continue;
+                }
                 for (target, sample) in own.iter_mut().zip(samples) {
                     *target = value(cell, sample);
                 }
-                rest = tail;
             }
         });
         values
@@ -168,7 +211,8 @@ impl Patches {
         });
         let mut coefficients = vec![[0.0; 6]; self.terms * self.len()];
         let patches = coefficients.par_chunks_mut(self.terms).enumerate();
-        patches.for_each(|(patch, coefficients)| match self.terms {
+        let fitted = patches.filter(|(patch, _)| self.is_fitted[*patch]);
+        fitted.for_each(|(patch, coefficients)| match self.terms {
             QUADRATIC => {
                 coefficients.copy_from_slice(&self.fit::<QUADRATIC>(cells, &stresses, patch));
             }

@@ -101,7 +101,7 @@ impl CoupledTangent<'_, '_> {
                 let unknown = self.interface.unknowns[row];
                 let own = blocks.row(row).find(|(column, _)| *column == unknown);
                 let own = own.map_or(DMat3::ZERO, |(_, block)| *block);
-                let block = self.fixed.matrix.diagonal(unknown as usize) + own;
+                let block = self.fixed.diagonal(row) + own;
                 let block = block + BARELY_STIFF * trace(block) * DMat3::IDENTITY;
                 (unknown, block.inverse() * forces[unknown as usize])
             })

@@ -96,7 +96,7 @@ fn prepared(system: &System<'_>) -> (Multigrid, CoarseBasis) {
         &space.points.offset,
         &modes(system.problem),
         |means| {
-            basis = SplitAggregates::of(space, means).basis();
+            basis = SplitAggregates::of(space, means).basis(|_| true);
             basis.clone()
         },
     );

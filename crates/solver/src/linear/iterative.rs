@@ -58,7 +58,7 @@ impl Iterative {
             system.rock_rows(),
             &space.points.offset,
             &modes(system),
-            |means| SplitAggregates::of(space, means).basis(),
+            |means| SplitAggregates::of(space, means).basis(|_| true),
         )?;
         Ok(Self {
             workspace: multigrid.workspace(),
@@ -91,32 +91,42 @@ impl Iterative {
 /// Whether a preconditioner that was made for a stiffness of the fractures, `built_for`, serves
 /// another one that is much like it.
 pub fn serves(fixed: FixedPart<'_>, built_for: &[DMat3], stiffness: &[DMat3]) -> bool {
-    let FixedPart { matrix, interface } = fixed;
+    let interface = fixed.interface;
     let numbered = interface.rows.par_iter().enumerate();
     let changed = numbered.filter(|&(row, unknown)| {
         let columns = interface.columns.of(row);
         let place = columns.partition_point(|column| column < unknown);
         let own = interface.columns.offset[row] + place;
-        let rock = trace(matrix.diagonal(*unknown as usize)) / 3.0;
+        let rock = trace(fixed.diagonal(row)) / 3.0;
         !is_spectrally_close(built_for[own], stiffness[own], BESIDE * rock)
     });
     changed.count() as f64 <= TOLERATED * interface.rows.len() as f64
 }
 
 /// Clusters of unknowns and the motions of cut aggregates, for a solver that divides the rows among
-/// processes.
+/// ranks; and the rank of each row. Lets the system hold the rows that this rank needs for it.
 ///
 /// # Errors
 /// If the rock is not positive definite.
-pub fn first_coarsening(system: &System<'_>) -> Result<FirstCoarsening, LinearFailure> {
-    let space = system.discretisation.space(system.problem);
-    let coarsening = FirstCoarsening::of(
-        system.rock_rows(),
-        &space.points.offset,
+pub fn first_coarsening(
+    system: &mut System<'_>,
+) -> Result<(FirstCoarsening, Vec<u32>), LinearFailure> {
+    let division = system.division().clone();
+    let (mut coarsening, means) = FirstCoarsening::of(
+        (system.rock_rows(), &division),
+        &system.discretisation.points.offset,
         &modes(system),
-        |means| SplitAggregates::of(space, means).basis(),
     )?;
-    Ok(coarsening)
+    let owner = coarsening.owners(&division);
+    let rank = division.communicator().rank() as u32;
+    let rows = 0..owner.len() as u32;
+    let own: Vec<u32> = rows.filter(|&row| owner[row as usize] == rank).collect();
+    let wanted = coarsening.beside(&own, &system.discretisation.pattern.blocks);
+    system.add_rows(&wanted);
+    let space = system.discretisation.space(system.problem);
+    let is_wanted = |row: usize| wanted.binary_search(&(row as u32)).is_ok();
+    coarsening.set_basis(SplitAggregates::of(space, &means).basis(is_wanted));
+    Ok((coarsening, owner))
 }
 
 /// Whether the stiffness of a fracture changes by less than a factor of [`FACTOR_OF_CHANGE`] in

@@ -6,7 +6,9 @@ mod cost;
 mod coupled;
 mod direct;
 #[cfg(test)]
-mod fractured_tests;
+mod divided_tests;
+#[cfg(test)]
+pub(crate) mod fractured_tests;
 mod iterative;
 mod moved_points;
 #[cfg(test)]

@@ -154,10 +154,13 @@ impl<'a> SplitAggregates<'a> {
     }
 
     /// The motions of all unknowns: the mean displacement is the mean of the motions of the points
-    /// of its node, jump `k` the motion of sector `k` less that of sector 0.
-    pub(super) fn basis(&self) -> CoarseBasis {
-        CoarseBasis::new(self.space.points.len(), self.modes(), |unknown| {
-            self.motion(unknown)
+    /// of its node, jump `k` the motion of sector `k` less that of sector 0. Those that are not
+    /// `is_wanted` have none.
+    pub(super) fn basis(&self, is_wanted: impl Fn(usize) -> bool + Sync + Send) -> CoarseBasis {
+        let rows = self.space.points.len();
+        CoarseBasis::new(rows, self.modes(), |unknown| match is_wanted(unknown) {
+            true => self.motion(unknown),
+            false => Vec::new(),
         })
     }
 

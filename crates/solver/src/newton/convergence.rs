@@ -84,7 +84,7 @@ pub(super) enum Unmet {
 /// soft rock, or rock that hardly changes its volume, multiplies the rounding of the displacements
 /// by a stiffness that has little to do with its forces.
 fn rounding(system: &System<'_>, iterate: &Iterate) -> f64 {
-    let unit = f64::EPSILON * system.rock_rows().absolute_norm(&iterate.state.unknowns);
+    let unit = f64::EPSILON * norm(&system.absolute_rock_forces(&iterate.state.unknowns));
     (ROUNDINGS * ratio(unit, iterate.sizes.force)).min(MOST_ROUNDING)
 }
 

@@ -2,6 +2,7 @@
 
 mod carried;
 mod discretisation;
+mod rock_stiffness;
 mod spread_displacements;
 mod stage;
 mod state;
@@ -9,7 +10,9 @@ mod state;
 use std::borrow::Cow;
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{BlockMatrix, BlockRows, FixedPart, LinearFailure, norm};
+use kluft_algebra::{
+    BlockMatrix, BlockRows, Communicator, Division, FixedPart, LinearFailure, norm,
+};
 use kluft_mesh::{Defect, Mesh};
 use lie_core::{FractureLaw, JointHistory, JointState, TrialState};
 use rayon::prelude::*;
@@ -17,12 +20,13 @@ use rayon::prelude::*;
 use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::interface::Interface;
 use crate::assembly::loads::Loads;
-use crate::assembly::{rock, springs};
 use crate::flow::{Coupling, FlowSystem, between_corners};
 use crate::problem::{Conduit, Field, Flow, Load, Problem};
 use crate::space::cell::StrainOffsets;
 
 use carried::Carried;
+use rock_stiffness::RockStiffness;
+
 pub use discretisation::Discretisation;
 
 pub use carried::StageEnd;
@@ -36,8 +40,7 @@ pub struct System<'a> {
     pub(crate) problem: &'a Problem,
     /// Numbering and topology, and the laws.
     pub(crate) discretisation: Discretisation,
-    /// Stiffness of rock and springs over all unknowns; it never changes.
-    rock: BlockMatrix,
+    rock: RockStiffness,
     /// Forces.
     loads: Loads,
     /// How often the laws were changed.
@@ -56,9 +59,18 @@ const CANCELLING: f64 = 1e-3;
 impl<'a> System<'a> {
     /// Assembles rock and loads.
     pub fn assemble(problem: &'a Problem, discretisation: Discretisation) -> Self {
+        Self::divided(problem, discretisation, &Communicator::alone())
+    }
+
+    /// Assembles loads, and of the stiffness of the rock the rows of this rank.
+    pub fn divided(
+        problem: &'a Problem,
+        discretisation: Discretisation,
+        communicator: &Communicator,
+    ) -> Self {
         let space = discretisation.space(problem);
-        let mut rock = rock::rock_stiffness(space);
-        springs::add(space, &mut rock);
+        let beside = discretisation.interface.pattern().rows;
+        let rock = RockStiffness::of(space, beside, communicator);
         let loads = Loads::of(space, &discretisation.interface);
         Self {
             problem,
@@ -315,15 +327,32 @@ impl<'a> System<'a> {
             .collect()
     }
 
-    /// The stiffness of the rock, row by row.
+    /// The stiffness of the rock, row by row; rows that this rank does not hold are empty.
     pub fn rock_rows(&self) -> BlockRows<'_> {
         self.rock.rows(&self.discretisation.pattern.blocks)
     }
 
-    /// Forces by which the rock resists the unknowns (N), `K y`.
+    /// Rows of the stiffness of the rock that each rank holds.
+    pub fn division(&self) -> &Division {
+        self.rock.division()
+    }
+
+    /// Holds these rows too, ascending, those of whole nodes.
+    pub(crate) fn add_rows(&mut self, rows: &[u32]) {
+        let space = self.discretisation.space(self.problem);
+        self.rock.add_rows(space, rows);
+    }
+
+    /// Forces by which the rock resists the unknowns (N), `K y`. All ranks must ask for them.
     pub fn rock_forces(&self, unknowns: &[DVec3]) -> Vec<DVec3> {
         self.rock
             .times(&self.discretisation.pattern.blocks, unknowns)
+    }
+
+    /// `|K| |y|`, both entry by entry (N). All ranks must ask for them.
+    pub(crate) fn absolute_rock_forces(&self, unknowns: &[DVec3]) -> Vec<DVec3> {
+        let pattern = &self.discretisation.pattern.blocks;
+        self.rock.absolute_times(pattern, unknowns)
     }
 
     /// Out-of-balance forces `loads - rock - fractures` (N) for given forces of the rock and
@@ -371,12 +400,16 @@ impl<'a> System<'a> {
         FixedPart {
             matrix: self.rock_rows(),
             interface: self.discretisation.interface.pattern(),
+            diagonal: self.rock.diagonal(),
         }
     }
 
-    /// `K + fractures`: the whole tangent for given tangents of the fractures.
+    /// `K + fractures`: the whole tangent for given tangents of the fractures, where one rank holds
+    /// all rows.
     pub fn tangent(&self, tangents: &[DMat3]) -> BlockMatrix {
-        let mut whole = self.rock.clone();
+        let mut whole = BlockMatrix {
+            blocks: self.rock_rows().blocks.to_vec(),
+        };
         let stiffness = self.discretisation.interface.stiffness(tangents);
         let row_offset = &self.discretisation.pattern.blocks.row_offset;
         let fixed = self.fixed_part();

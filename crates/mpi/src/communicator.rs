@@ -1,0 +1,20 @@
+//! What the ranks tell each other, as the solver asks for it.
+
+use std::sync::Arc;
+
+use kluft_solver::Communicator;
+
+use crate::answers::machine;
+use crate::petsc::World;
+
+/// This rank among all. One that cannot be asked any more ends the run.
+pub fn communicator(world: &Arc<World>) -> Communicator {
+    let gathering = Arc::clone(world);
+    let all_gather = move |size: usize, own: &[u8], counts: &[usize], all: &mut [u8]| {
+        if let Err(failure) = gathering.gather_records(size, own, counts, all) {
+            machine(failure).print();
+            World::abort(1);
+        }
+    };
+    Communicator::new(world.rank(), world.ranks(), Arc::new(all_gather))
+}

@@ -1,0 +1,160 @@
+//! The stiffness of rock and springs: all rows, or those that one of many ranks needs.
+
+use glam::{DMat3, DVec3};
+use kluft_algebra::{
+    BlockMatrix, BlockPattern, BlockRows, Communicator, Division, RowOwnership, sum_up,
+};
+
+use crate::assembly::{rock, springs};
+use crate::space::Space;
+
+/// The stiffness of rock and springs over all unknowns. Apart from rows that are added it never
+/// changes.
+#[derive(Debug, Clone)]
+pub(super) struct RockStiffness {
+    division: Division,
+    /// Pattern of the rows that are held, the others being empty there, if not all are held.
+    pattern: Option<BlockPattern>,
+    matrix: BlockMatrix,
+    /// Diagonal blocks of the rows beside fractures, if not all rows are held.
+    diagonal: Option<Vec<DMat3>>,
+}
+
+impl RockStiffness {
+    /// Assembles the rows that are this rank's among those of a communicator. `beside` are the rows
+    /// beside fractures, ascending.
+    pub(super) fn of(space: Space<'_>, beside: &[u32], communicator: &Communicator) -> Self {
+        let division = divided(space, communicator);
+        if division.is_whole() {
+            let mut matrix = rock::rock_stiffness(space, &vec![true; nodes(space)]);
+            springs::add(space, &space.pattern.blocks, &mut matrix);
+            return Self {
+                division,
+                pattern: None,
+                matrix,
+                diagonal: None,
+            };
+        }
+        let own = division.own();
+        let is_own = |node: usize| own.contains(&(space.points.offset[node] as usize));
+        let (pattern, matrix) = some(space, is_own);
+        let rows = matrix.rows(&pattern);
+        let of_beside = division.of_kept(beside);
+        let diagonal = of_beside.map(|index| rows.diagonal(beside[index] as usize));
+        Self {
+            division,
+            diagonal: Some(diagonal),
+            pattern: Some(pattern),
+            matrix,
+        }
+    }
+
+    /// Which rank makes the products with which rows.
+    pub(super) fn division(&self) -> &Division {
+        &self.division
+    }
+
+    /// Holds these rows too, those of whole nodes.
+    pub(super) fn add_rows(&mut self, space: Space<'_>, rows: &[u32]) {
+        let Some(held) = &self.pattern else {
+            return;
+        };
+        let mut is_new = vec![false; nodes(space)];
+        for &row in rows
+            .iter()
+            .filter(|&&row| held.row(row as usize).is_empty())
+        {
+            is_new[space.points.node[row as usize] as usize] = true;
+        }
+        let (pattern, matrix) = some(space, |node| is_new[node]);
+        let (pattern, matrix) = joined([self.matrix.rows(held), matrix.rows(&pattern)]);
+        (self.pattern, self.matrix) = (Some(pattern), matrix);
+    }
+
+    /// The rows that are held, the others being empty; `whole` is the pattern of all.
+    pub(super) fn rows<'a>(&'a self, whole: &'a BlockPattern) -> BlockRows<'a> {
+        self.matrix.rows(self.pattern.as_ref().unwrap_or(whole))
+    }
+
+    /// Diagonal blocks of the rows beside fractures, if not all rows are held.
+    pub(super) fn diagonal(&self) -> Option<&[DMat3]> {
+        self.diagonal.as_deref()
+    }
+
+    /// `K y`.
+    pub(super) fn times(&self, whole: &BlockPattern, vector: &[DVec3]) -> Vec<DVec3> {
+        match self.division.is_whole() {
+            true => self.matrix.times(whole, vector),
+            false => {
+                let rows = self.rows(whole);
+                self.division.map(|row| rows.row_product(row, vector))
+            }
+        }
+    }
+
+    /// `|K| |y|`, both entry by entry.
+    pub(super) fn absolute_times(&self, whole: &BlockPattern, vector: &[DVec3]) -> Vec<DVec3> {
+        let rows = self.rows(whole);
+        self.division.map(|row| rows.absolute_product(row, vector))
+    }
+}
+
+fn nodes(space: Space<'_>) -> usize {
+    space.problem.mesh.nodes.len()
+}
+
+/// Rows of consecutive nodes, which lie together, with about as many blocks for each rank.
+fn divided(space: Space<'_>, communicator: &Communicator) -> Division {
+    let (firsts, blocks) = (&space.points.offset, &space.pattern.blocks.row_offset);
+    let (ranks, all) = (communicator.size(), blocks[blocks.len() - 1]);
+    let start = |rank: usize| {
+        let before = |row: &u32| blocks[*row as usize] < rank * all / ranks;
+        firsts[firsts.partition_point(before)] as usize
+    };
+    let starts = (0..ranks).map(start).chain([space.points.len()]);
+    communicator.divide(RowOwnership::of_starts(starts.collect()))
+}
+
+/// The rows of some nodes and their pattern, in which the others are empty.
+fn some(space: Space<'_>, is_wanted: impl Fn(usize) -> bool) -> (BlockPattern, BlockMatrix) {
+    let whole = &space.pattern.blocks;
+    let is_wanted: Vec<bool> = (0..nodes(space)).map(is_wanted).collect();
+    let is_held = |row: &usize| is_wanted[space.points.node[*row] as usize];
+    let rows = 0..whole.rows();
+    let lengths = rows.clone().map(|row| match is_held(&row) {
+        true => whole.row(row).len(),
+        false => 0,
+    });
+    let mut row_offset: Vec<usize> = std::iter::once(0).chain(lengths).collect();
+    sum_up(&mut row_offset);
+    let columns = rows.filter(is_held);
+    let columns = columns.flat_map(|row| &whole.columns[whole.row(row)]);
+    let pattern = BlockPattern {
+        columns: columns.copied().collect(),
+        row_offset,
+    };
+    let mut matrix = rock::rock_stiffness(space, &is_wanted);
+    springs::add(space, &pattern, &mut matrix);
+    (pattern, matrix)
+}
+
+/// Rows of which each is empty in one of two matrices.
+fn joined(parts: [BlockRows<'_>; 2]) -> (BlockPattern, BlockMatrix) {
+    let count = parts.iter().map(|part| part.columns.len()).sum();
+    let mut pattern = BlockPattern {
+        row_offset: vec![0],
+        columns: Vec::with_capacity(count),
+    };
+    let mut blocks = Vec::with_capacity(count);
+    for row in 0..parts[0].rows() {
+        for part in &parts {
+            let range = part.row_offset[row]..part.row_offset[row + 1];
+            pattern
+                .columns
+                .extend_from_slice(&part.columns[range.clone()]);
+            blocks.extend_from_slice(&part.blocks[range]);
+        }
+        pattern.row_offset.push(blocks.len());
+    }
+    (pattern, BlockMatrix { blocks })
+}
