@@ -54,8 +54,8 @@ impl<'a> MovedPoints<'a> {
         all.map(|place| sets.root(place)).collect()
     }
 
-    /// Whether each point lies on a wall whose other side is in the same set, at a node with several
-    /// points in one set, if such walls have a part in the motion.
+    /// Whether each point lies on a wall whose other side is in the same set, at a node with
+    /// several points in one set, if such walls have a part in the motion.
     fn walls(&self, set: &[u32]) -> Vec<bool> {
         let node = |place: usize| self.space.points.node[self.points[place].0 as usize];
         let places: Vec<usize> = (0..self.points.len()).collect();
@@ -80,8 +80,8 @@ impl<'a> MovedPoints<'a> {
     }
 
     /// Divides sets that hold both walls of a fracture: each point goes with the wall from which
-    /// the fewest cells lead to it. So walls move apart as far as the edge of the fracture, and what
-    /// lies ahead of the edge tears along with them instead of holding them together.
+    /// the fewest cells lead to it. So walls move apart as far as the edge of the fracture, and
+    /// what lies ahead of the edge tears along with them instead of holding them together.
     fn nearest_walls(&self, is_wall: &[bool], set: &[u32]) -> Vec<u32> {
         let wall = self.connected(|place| is_wall[place]);
         let mut nearest: Vec<u32> = wall
