@@ -74,6 +74,7 @@ fn class_name(section: &KeySection) -> &'static str {
         "[boundary.NAME]" => "Boundary",
         "[boundary.NAME.fluid_pressure]" => "FluidPressure",
         "[fluid.initial_pressure]" => "InitialPressure",
+        "[source.pressure]" => "SourcePressure",
         "a value that varies" => "Varying",
         "[probe.NAME]" => "Probe",
         "[[fixed_point]]" => "FixedPoint",

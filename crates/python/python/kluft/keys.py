@@ -370,7 +370,7 @@ class InitialStress(Section):
         )
 
 
-class Unnamed(Section):
+class SourcePressure(Section):
     """Pressure `value + per_metre (z - at)`, or one that varies.
 
     Args:
@@ -475,7 +475,7 @@ class Source(Section):
         curve: str | None = None,
         points: Sequence[Sequence[float]] | None = None,
         rate: Quantity | Varying | Mapping[str, Any] | None = None,
-        pressure: Quantity | Unnamed | Mapping[str, Any] | None = None,
+        pressure: Quantity | SourcePressure | Mapping[str, Any] | None = None,
         radius: Quantity | None = None,
         history: Sequence[Sequence[float]] | None = None,
     ) -> None:
@@ -1173,9 +1173,9 @@ __all__ = [
     "Rock",
     "Solver",
     "Source",
+    "SourcePressure",
     "StrengthReduction",
     "StressProfile",
-    "Unnamed",
     "Varying",
     "Warnings",
 ]

@@ -13,6 +13,12 @@ mesh = { file = 'a.msh', scale = 1e3 }
 aperture = { table = [[0, 1e-4]], over = 'depth', ground = 3, beyond = 'nearest', unit = 'mm' }
 normal_stiffness = { expression = '1e10 + x' }
 shear_stiffness = { file = 'a.csv', column = 'k', method = 'linear', reach = 1.0 }
+[[source]]
+fracture = 'a'
+pressure = { value = 1e6, per_metre = -9810, at = 3.0 }
+[[source]]
+fracture = 'a'
+pressure = { water_table = 3.0 }
 [probe.a]
 at = [0, 0, 0]
 fracture = 'joint'
