@@ -1,6 +1,6 @@
 //! Boundaries of a project that are meshes of their own, as faces of the mesh of the body.
 
-use kluft_mesh::{Draft, Group, Shape, TaggedElements};
+use kluft_mesh::{Draft, Group};
 
 use super::extent::{Extent, NEAR};
 
@@ -24,20 +24,16 @@ pub fn add_faces(body: &mut Draft, boundary: &Draft, name: &str) -> Option<()> {
     body.groups.push(group);
     body.group_sets.push(vec![body.groups.len() - 1]);
     let set = (body.group_sets.len() - 1) as u32;
-    for (face, &shape) in faces.elements.shapes.iter().enumerate() {
+    let last = target.tags.iter().max().copied().unwrap_or(0);
+    let shapes = faces.elements.shapes.iter().enumerate();
+    for ((face, &shape), tag) in shapes.zip(last + 1..) {
         let own = faces.elements.nodes_of(face).iter();
         let own: Vec<u32> = own.map(|&node| nodes[node as usize]).collect();
-        push(target, (shape, &own), set);
+        target.elements.push(shape, &own);
+        target.tags.push(tag);
+        target.group_set.push(set);
     }
     Some(())
-}
-
-/// Adds an element, with a number of its own.
-fn push(target: &mut TaggedElements, (shape, nodes): (Shape, &[u32]), set: u32) {
-    let last = target.tags.iter().max().copied().unwrap_or(0);
-    target.elements.push(shape, nodes);
-    target.tags.push(last + 1);
-    target.group_set.push(set);
 }
 
 /// The nodes of a mesh, ascending in x.

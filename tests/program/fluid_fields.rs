@@ -119,17 +119,26 @@ fn a_pressure_that_varies_along_a_boundary_fades_as_its_closed_form() {
     assert!(rate.map(f64::abs).fold(0.0, f64::max) < 1e-15);
 }
 
+/// A pressure that falls from the left end of the west joint to that of the line, by its place.
+const LINEAR: &str = "{ expression = \"3e5 - 2e5*x\" }";
+
+/// The flow star with a pressure given all over the west joint, in the place of that at its end.
+fn given_in_west(pressure: &str, edits: &[(&str, &str)]) -> Workshop {
+    let own = "hydraulic_aperture = 1e-4";
+    let given = format!("{own}\nfluid_pressure = {pressure}");
+    let west = [
+        (own, &given[..]),
+        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
+    ];
+    let edits: Vec<(&str, &str)> = west.iter().chain(edits).copied().collect();
+    Workshop::new("flow-star", &edits)
+}
+
 /// In a joint whose pressure is given all over, linear to the value at the line, what enters is
 /// what the others take from there.
 #[test]
 fn a_pressure_given_all_over_a_fracture_may_vary_in_it() {
-    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
-    let given = format!("{own}\nfluid_pressure = {{ expression = \"3e5 - 2e5*x\" }}");
-    let edits = [
-        (own, &given[..]),
-        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
-    ];
-    let workshop = Workshop::new("flow-star", &edits);
+    let workshop = given_in_west(LINEAR, &[]);
     let out = workshop.solve("out", &[]);
     let found = sources(&out);
     let rate = |name: &str| found.iter().find(|row| row.0 == name).expect("a row").2;
@@ -214,11 +223,8 @@ fn pressures_on_boundaries_and_in_fractures_change_with_time() {
     for (found, time) in found.into_iter().zip([1.0, 2.0, 3.0]) {
         assert_near(found, driven(of_time(time)), 1e-11);
     }
-    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
-    let given = format!("[load]\ntimes = [1.0, 2.0, 3.0]\n\n{own}\nfluid_pressure = {wave}");
-    let edits = [
-        (own, &given[..]),
-        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
+    let held = [
+        TIMED,
         (
             "fluid_pressure = 1e5",
             "fluid_pressure = 1e5\nhistory = [[0, 1]]",
@@ -228,7 +234,7 @@ fn pressures_on_boundaries_and_in_fractures_change_with_time() {
             "fluid_pressure = 2e5\nhistory = [[0, 1]]",
         ),
     ];
-    let workshop = Workshop::new("flow-star", &edits);
+    let workshop = given_in_west(wave, &held);
     let out = workshop.solve("out", &[]);
     let found = rates_of(&out, "[fracture.west]");
     for (found, time) in found.into_iter().zip([1.0, 2.0, 3.0]) {
@@ -278,15 +284,9 @@ fn fed(source: &str, timed: &[(&str, &str)]) -> Workshop {
 /// says, and no weight on top.
 #[test]
 fn a_source_holds_pressures_that_vary() {
-    let field = "{ expression = \"3e5 - 2e5*x\" }";
+    let field = LINEAR;
     let of_source = fed(&format!("fracture = \"west\"\npressure = {field}"), &[]);
-    let own = "[fracture.west]\nhydraulic_aperture = 1e-4";
-    let given = format!("{own}\nfluid_pressure = {field}");
-    let edits = [
-        (own, &given[..]),
-        ("[boundary.left]\nfluid_pressure = 3e5\n", ""),
-    ];
-    let of_fracture = Workshop::new("flow-star", &edits);
+    let of_fracture = given_in_west(field, &[]);
     let found = rates_of(&of_source.solve("out", &[]), "pump");
     let wanted = rates_of(&of_fracture.solve("out", &[]), "[fracture.west]");
     assert_eq!(found, wanted);

@@ -94,18 +94,23 @@ fn imported_project(project: &str) -> (Workshop, Run) {
 }
 
 fn project_on([mesh, geometry, project]: [&str; 3]) -> (Workshop, Run) {
-    let workshop = Workshop::of("");
-    fs::remove_file(workshop.scene()).expect("removed");
-    for (name, text) in [
+    imported(&[
+        ("column.prj", project),
         ("column.vtu", mesh),
         ("column.gml", geometry),
-        ("column.prj", project),
-    ] {
+    ])
+}
+
+/// Imports a project, the first of some files, into the folder `made`.
+pub fn imported(files: &[(&str, &str)]) -> (Workshop, Run) {
+    let workshop = Workshop::of("");
+    fs::remove_file(workshop.scene()).expect("removed");
+    for (name, text) in files {
         fs::write(workshop.path(name), text).expect("written");
     }
     let run = kluft(&[
         "import".as_ref(),
-        workshop.path("column.prj").as_os_str(),
+        workshop.path(files[0].0).as_os_str(),
         "-o".as_ref(),
         workshop.path("made").as_os_str(),
         "-v".as_ref(),
@@ -113,10 +118,10 @@ fn project_on([mesh, geometry, project]: [&str; 3]) -> (Workshop, Run) {
     (workshop, run)
 }
 
-type Rows = Vec<std::collections::BTreeMap<String, String>>;
+pub type Rows = Vec<std::collections::BTreeMap<String, String>>;
 
 /// Runs the scene that was made; its history.
-fn solved(workshop: &Workshop) -> Rows {
+pub fn solved(workshop: &Workshop) -> Rows {
     let scene = workshop.path("made/scene.toml");
     let run = kluft(&["run".as_ref(), scene.as_os_str()]);
     assert_eq!(run.code, Some(0), "{}", run.err);
@@ -125,7 +130,7 @@ fn solved(workshop: &Workshop) -> Rows {
     table.deserialize().map(|row| row.expect("a row")).collect()
 }
 
-fn numbers(rows: &Rows, name: &str, column: &str) -> Vec<f64> {
+pub fn numbers(rows: &Rows, name: &str, column: &str) -> Vec<f64> {
     let own = rows.iter().filter(|row| row["name"] == name);
     own.map(|row| row[column].parse().expect("a number"))
         .collect()

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
-use std::fs;
 
 use crate::fields::assert_near;
-use crate::harness::{Run, Workshop, kluft};
+use crate::harness::{Run, Workshop};
+use crate::opengeosys::{imported, numbers, solved};
 
 /// Cells along the radius and around.
 const COUNTS: [usize; 2] = [16, 24];
@@ -122,63 +122,38 @@ const PROJECT: &str = r#"<?xml version="1.0"?>
 "#;
 
 /// Imports the project, with its inner boundary moved off the ring (m).
-fn imported(shifted: f64) -> (Workshop, Run) {
+fn ring(shifted: f64) -> (Workshop, Run) {
     let ring = Ring::new();
     let [out, around] = COUNTS;
     let inner = Ring::line((0..=around).map(|j| [0, j]));
-    let files = [
-        ("ring.prj", PROJECT.to_owned()),
-        ("ring.vtu", ring.grid(&Ring::cells(), 9, 0.0)),
-        ("inner.vtu", ring.grid(&inner, 3, shifted)),
-        (
-            "x_axis.vtu",
-            ring.grid(&Ring::line((0..=out).map(|i| [i, 0])), 3, 0.0),
-        ),
-        (
-            "y_axis.vtu",
-            ring.grid(&Ring::line((0..=out).map(|i| [i, around])), 3, 0.0),
-        ),
-    ];
-    let workshop = Workshop::of("");
-    fs::remove_file(workshop.scene()).expect("removed");
-    for (name, text) in files {
-        fs::write(workshop.path(name), text).expect("written");
-    }
-    let run = kluft(&[
-        "import".as_ref(),
-        workshop.path("ring.prj").as_os_str(),
-        "-o".as_ref(),
-        workshop.path("made").as_os_str(),
-        "-v".as_ref(),
-    ]);
-    (workshop, run)
+    let [x_axis, y_axis] = [0, around].map(|j| Ring::line((0..=out).map(|i| [i, j])));
+    imported(&[
+        ("ring.prj", PROJECT),
+        ("ring.vtu", &ring.grid(&Ring::cells(), 9, 0.0)),
+        ("inner.vtu", &ring.grid(&inner, 3, shifted)),
+        ("x_axis.vtu", &ring.grid(&x_axis, 3, 0.0)),
+        ("y_axis.vtu", &ring.grid(&y_axis, 3, 0.0)),
+    ])
 }
 
 /// Lame's ring in plane strain, `u(r) = (1 + nu)/E p a^2/(b^2 - a^2) ((1 - 2 nu) r + b^2/r)`; the
 /// mean of its inner side along x is 2/pi of that.
 #[test]
 fn a_pressure_on_an_arc_widens_a_ring_as_in_closed_form() {
-    let (workshop, run) = imported(0.0);
+    let (workshop, run) = ring(0.0);
     assert_eq!(run.code, Some(0), "{}", run.err);
-    let scene = workshop.path("made/scene.toml");
-    let run = kluft(&["run".as_ref(), scene.as_os_str()]);
-    assert_eq!(run.code, Some(0), "{}", run.err);
-    let history = fs::read_to_string(workshop.path("made/out/history.csv")).expect("a history");
-    let mut table = csv::Reader::from_reader(history.as_bytes());
-    let mut rows = table.deserialize::<std::collections::BTreeMap<String, String>>();
-    let row = rows.find_map(|row| row.ok().filter(|row| row["name"] == "inner"));
-    let row = row.expect("a row of the arc");
+    let rows = solved(&workshop);
     let [a, b] = RADII;
     let widened = 1.3 / 20e9 * 10e6 * a * a / (b * b - a * a) * (0.4 * a + b * b / a);
     for axis in ["displacement_x", "displacement_y"] {
-        let found: f64 = row[axis].parse().expect("a number");
+        let found = numbers(&rows, "inner", axis)[0];
         assert_near(found, widened * 2.0 / PI, 2e-3);
     }
 }
 
 #[test]
 fn a_boundary_whose_nodes_are_not_those_of_the_body_is_told() {
-    let (_workshop, run) = imported(1e-3);
+    let (_workshop, run) = ring(1e-3);
     assert_eq!(run.code, Some(0), "{}", run.err);
     let said = "no counterpart: `inner` is not there, or lies along no plane x, y or z";
     assert!(

@@ -29,6 +29,14 @@ pub struct Facets {
     pub plus_slots: Vec<u32>,
 }
 
+impl Facets {
+    /// The facets of a fracture, ascending.
+    pub fn of_fracture(&self, fracture: usize) -> impl Iterator<Item = usize> + Clone {
+        let all = 0..self.fracture.len();
+        all.filter(move |&facet| self.fracture[facet] as usize == fracture)
+    }
+}
+
 /// Facets of one named part of the outer surface.
 #[derive(Debug, Clone)]
 pub struct Boundary {

@@ -132,11 +132,9 @@ pub fn conduits(mesh: &Mesh, fields: &FlowFields) -> Vec<ConduitSummary> {
         .collect();
     let names = mesh.fractures.iter().enumerate();
     let all = names.filter_map(|(fracture, name)| {
-        let own = |facet: &usize| {
-            let belongs = mesh.facets.fracture[*facet] as usize == fracture;
-            belongs && fields.transmissivities[*facet] > 0.0
-        };
-        let facets: Vec<usize> = (0..areas.len()).filter(own).collect();
+        let own = mesh.facets.of_fracture(fracture);
+        let conducting = own.filter(|&facet| fields.transmissivities[facet] > 0.0);
+        let facets: Vec<usize> = conducting.collect();
         if facets.is_empty() {
             return None;
         }

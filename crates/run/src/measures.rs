@@ -75,8 +75,7 @@ struct MeasuredFracture<'a> {
 impl<'a> MeasuredFracture<'a> {
     fn of(system: &'a System<'_>, solution: &'a Solution, index: usize) -> Self {
         let facets = &system.problem().mesh.facets;
-        let own = |&facet: &usize| facets.fracture[facet] as usize == index;
-        let own: Vec<usize> = (0..facets.elements.len()).filter(own).collect();
+        let own: Vec<usize> = facets.of_fracture(index).collect();
         let points = system.discretisation().interface().points().iter();
         let points = points.zip(&solution.facet_points);
         let points = points.filter(|(point, _)| point.fracture as usize == index);

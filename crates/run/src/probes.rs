@@ -265,8 +265,7 @@ impl Solved<'_> {
             return Row::at(position);
         };
         let (facets, areas) = (&self.mesh.facets, self.mesh.facet_areas());
-        let own = (0..areas.len()).filter(|&facet| facets.fracture[facet] as usize == fracture);
-        let rows = own.map(|facet| {
+        let rows = facets.of_fracture(fracture).map(|facet| {
             let count = facets.elements.shapes[facet].corner_count();
             let corners = &fluid.apertures[facets.elements.range(facet)][..count];
             let mut row = Row::at(position);

@@ -9,7 +9,7 @@ use kluft_solver::Conduit;
 use crate::cases::Bound;
 use crate::conduit::HydraulicParameter;
 use crate::field::FieldEntry;
-use crate::history::Timetable;
+use crate::history::{Timetable, moments};
 use crate::look::Look;
 use crate::scene::Scene;
 
@@ -79,10 +79,7 @@ impl Conduits {
         (parameter, entry): (HydraulicParameter, &FieldEntry),
         look: &mut Look<'_>,
     ) {
-        let facets = 0..mesh.facets.elements.len();
-        let own: Vec<usize> = facets
-            .filter(|&facet| mesh.facets.fracture[facet] as usize == fracture)
-            .collect();
+        let own: Vec<usize> = mesh.facets.of_fracture(fracture).collect();
         let middle = |&facet: &usize| {
             let corners = mesh.corners(&mesh.facets.elements, facet);
             corners.iter().sum::<DVec3>() / corners.len() as f64
@@ -110,8 +107,7 @@ fn look_at_times(bound: &Bound<'_>, look: &mut Look<'_>) {
         Timetable::Times { ends, .. } => &ends[..],
         Timetable::Factors(_) => &[],
     };
-    let times = [0.0].into_iter().chain(ends.iter().map(|end| end.time));
-    let times: Vec<f64> = times.collect();
+    let times: Vec<f64> = moments(ends).collect();
     let sources = bound.sources.iter().map(|entry| &entry.value.drive);
     let boundaries = bound.boundaries.iter();
     let boundaries = boundaries.filter_map(|entry| entry.value.fluid.as_ref());
@@ -166,8 +162,7 @@ fn look_at_pressures(mesh: &Mesh, bound: &Bound<'_>, look: &mut Look<'_>) {
 
 /// The nodes of a fracture, as often as its facets have them.
 pub(crate) fn nodes_of_fracture(mesh: &Mesh, fracture: usize) -> impl Iterator<Item = u32> {
-    let all = 0..mesh.facets.elements.len();
-    let own = all.filter(move |&facet| mesh.facets.fracture[facet] as usize == fracture);
+    let own = mesh.facets.of_fracture(fracture);
     let nodes = own.flat_map(|facet| mesh.facets.elements.nodes_of(facet));
     nodes.copied()
 }

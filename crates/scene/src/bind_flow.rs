@@ -49,7 +49,7 @@ pub(crate) fn bind_flow(
     let mut refused = [leaks_in_no_time(scene, bound), unweighed(scene, bound)].concat();
     if let Ok(drilled) = &drilled {
         let mut look = Look::of(scene, decisions);
-        look_at_pressures(mesh, bound, (drilled, &lines), &mut look);
+        look_at_sources(mesh, bound, (drilled, &lines), &mut look);
         refused.extend(look.defects);
     }
     let drilled = match (drilled, refused) {
@@ -108,7 +108,7 @@ fn from_sources(
 }
 
 /// Looks at pressures of sources that change from place to place, at the nodes where they act.
-fn look_at_pressures(
+fn look_at_sources(
     mesh: &Mesh,
     bound: &Bound<'_>,
     (drilled, lines): (&[Vec<FlowCondition>], &[Vec<LineShare>]),

@@ -241,7 +241,7 @@ fn on_fracture(
 ) -> Result<Vec<ProbePoint>, Defect> {
     let index = fracture_called(mesh, entry, fracture)?;
     let elements = &mesh.facets.elements;
-    let own = (0..elements.len()).filter(|&facet| mesh.facets.fracture[facet] as usize == index);
+    let own = mesh.facets.of_fracture(index);
     if entry.value.points.is_empty() {
         let hit = Hit::WholeFracture(index);
         let own: Vec<usize> = own.collect();

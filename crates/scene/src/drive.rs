@@ -4,7 +4,7 @@ use glam::DVec3;
 use kluft_solver::{Field, FlowDrive, Profile};
 
 use crate::field::{FieldEntry, InTime, Value, read_value};
-use crate::history::{LoadHistory, StepEnd};
+use crate::history::{LoadHistory, StepEnd, moments};
 use crate::load::Clock;
 use crate::profile::{read_profile_or_field, says};
 use crate::reader::Section;
@@ -96,9 +96,8 @@ impl DriveEntry {
             let factor = history.map_or(1.0, |own| own.at(time));
             [time, factor * entry.field.at(DVec3::ZERO, time)]
         };
-        let times = [0.0].into_iter().chain(ends.iter().map(|end| end.time));
         Some(LoadHistory {
-            points: times.map(scaled).collect(),
+            points: moments(ends).map(scaled).collect(),
         })
     }
 

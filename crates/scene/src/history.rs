@@ -43,6 +43,11 @@ pub struct StepEnd {
     pub phase: Option<String>,
 }
 
+/// Time 0 and the ends of the load steps.
+pub(crate) fn moments(ends: &[StepEnd]) -> impl Iterator<Item = f64> {
+    [0.0].into_iter().chain(ends.iter().map(|end| end.time))
+}
+
 /// The load steps of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Timetable {

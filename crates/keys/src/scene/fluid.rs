@@ -175,29 +175,23 @@ pub static SOURCE: KeySection = KeySection {
     also: None,
 };
 
-/// A pressure on a boundary that is linear in the elevation.
-pub static FLUID_PROFILE: KeySection = KeySection {
-    pattern: "[boundary.NAME.fluid_pressure]",
-    says: "Pressure `value + per_metre (z - at)`, or one that varies",
-    keys: &PROFILE_KEYS,
-    also: Some(&FIELD),
-};
+/// A pressure on a boundary that is linear in the elevation, or varies otherwise.
+pub static FLUID_PROFILE: KeySection = profile("[boundary.NAME.fluid_pressure]");
 
-/// A pressure of a source that is linear in the elevation.
-pub static SOURCE_PROFILE: KeySection = KeySection {
-    pattern: "[source.pressure]",
-    says: "Pressure `value + per_metre (z - at)`, or one that varies",
-    keys: &PROFILE_KEYS,
-    also: Some(&FIELD),
-};
+/// A pressure of a source that is linear in the elevation, or varies otherwise.
+pub static SOURCE_PROFILE: KeySection = profile("[source.pressure]");
 
 /// A pressure before any load that is linear in the elevation, or varies otherwise.
-pub static INITIAL_PROFILE: KeySection = KeySection {
-    pattern: "[fluid.initial_pressure]",
-    says: "Pressure `value + per_metre (z - at)`, or one that varies",
-    keys: &PROFILE_KEYS,
-    also: Some(&FIELD),
-};
+pub static INITIAL_PROFILE: KeySection = profile("[fluid.initial_pressure]");
+
+const fn profile(pattern: &'static str) -> KeySection {
+    KeySection {
+        pattern,
+        says: "Pressure `value + per_metre (z - at)`, or one that varies",
+        keys: &PROFILE_KEYS,
+        also: Some(&FIELD),
+    }
+}
 
 static PROFILE_KEYS: [Key; 4] = [
     Key {

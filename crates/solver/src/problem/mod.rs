@@ -150,9 +150,7 @@ impl Problem {
     /// Positions (m) at which a law and a fluid pressure of a fracture are asked for.
     pub fn places_of_fracture(&self, fracture: usize) -> Vec<DVec3> {
         let facets = &self.mesh.facets;
-        let own =
-            (0..facets.elements.len()).filter(|&facet| facets.fracture[facet] as usize == fracture);
-        let places = own.flat_map(|facet| {
+        let places = facets.of_fracture(fracture).flat_map(|facet| {
             let nodes = facets.elements.nodes_of(facet).iter();
             let nodes: Vec<DVec3> = nodes.map(|&node| self.mesh.nodes[node as usize]).collect();
             let rule = self.rule_of(fracture as u32);
