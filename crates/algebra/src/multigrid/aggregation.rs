@@ -1,5 +1,9 @@
 //! Aggregates: groups of nodes that become one node of the next level.
 
+use crate::lists::Lists;
+use crate::small::Modes;
+
+use super::places::Places;
 use super::sparse::{Sparse, rows_per_task};
 
 /// Blocks whose norm is not above this share of the diagonal do not tie nodes together.
@@ -21,12 +25,21 @@ pub(super) fn square<const N: usize>(block: &[[f32; N]; N]) -> f32 {
     block.as_flattened().iter().map(|x| x * x).sum()
 }
 
-/// The neighbours of each node whose blocks have a norm beyond [`STRENGTH`] (of the unit diagonal),
-/// with the squares of these norms.
-pub(super) fn strong_neighbours<const N: usize>(matrix: &Sparse<N, N>) -> Sparse<1, 1> {
-    let strong = |row: usize| {
+/// The neighbours of each node whose blocks have a norm beyond [`STRENGTH`] (of the unit diagonal)
+/// and which are near, with the squares of these norms. The mass-like part of the stiffness ties
+/// the ends of slender cells together by norms that are large, although they resist no motion.
+pub(super) fn strong_neighbours<const N: usize>(
+    matrix: &Sparse<N, N>,
+    modes: &[Modes<N>],
+) -> Sparse<1, 1> {
+    let places = Places::of(modes);
+    let tied = |row: usize| {
         let squares = matrix.row(row).map(|(at, block)| (at, square(block)));
         squares.filter(|(_, square)| *square > STRENGTH * STRENGTH)
+    };
+    let strong = |row: usize| {
+        let near = places.near(row, || tied(row).map(|(at, _)| at));
+        tied(row).filter(move |(at, _)| near.contains(*at))
     };
     Sparse::build(
         matrix.rows(),
@@ -73,6 +86,35 @@ pub(super) fn aggregate(neighbours: &Sparse<1, 1>) -> Aggregates {
         }
     }
     aggregates
+}
+
+/// Neighbourhoods of a graph, of which the neighbours of each node are given: that of each node,
+/// and how many there are.
+pub fn neighbourhoods(graph: &Lists) -> (Vec<u32>, usize) {
+    let others = |node: usize| {
+        let own = graph.of(node).iter().copied();
+        own.filter(move |&other| other as usize != node)
+    };
+    let neighbours = Sparse::build(
+        graph.count(),
+        rows_per_task::<1>(),
+        || (),
+        |(), node| others(node).count(),
+        |(), node, columns, blocks| {
+            for ((other, column), block) in others(node).zip(columns).zip(blocks) {
+                (*column, *block) = (other, [[1.0]]);
+            }
+        },
+    );
+    let Aggregates {
+        mut of_node,
+        mut count,
+    } = aggregate(&neighbours);
+    for own in of_node.iter_mut().filter(|own| **own == ALONE) {
+        *own = count as u32;
+        count += 1;
+    }
+    (of_node, count)
 }
 
 struct Greedy<'a> {

@@ -47,7 +47,7 @@ impl MeanField {
         if !bound.is_finite() {
             return Err(MultigridFailure::NotFinite);
         }
-        let strong = aggregation::strong_neighbours(&matrix);
+        let strong = aggregation::strong_neighbours(&matrix, &modes);
         let aggregates = aggregation::aggregate(&strong.completed(division));
         let tentative = tentative::tentative(&aggregates, &modes);
         let unsmoothed = Unsmoothed {

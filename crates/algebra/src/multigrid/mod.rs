@@ -18,6 +18,7 @@ mod first_coarsening;
 mod galerkin;
 mod lower_levels;
 mod mean_field;
+mod places;
 mod prolongation;
 mod setup;
 mod smoother;
@@ -43,6 +44,7 @@ use crate::block_rows::BlockRows;
 use crate::interface::InterfaceBlocks;
 
 pub use crate::failure::MultigridFailure;
+pub use aggregation::neighbourhoods;
 pub use block_list::BlockList;
 pub use first_coarsening::{FirstCoarsening, LevelPart, NextPart, OwnRows};
 pub use lower_levels::{CoarsestSolve, LowerLevels};

@@ -261,7 +261,7 @@ fn below(
         let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
         return Ok((Below::Inverse(dense), None));
     }
-    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(matrix));
+    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(matrix, modes));
     if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
         return Ok((Below::Nothing, None));
     }

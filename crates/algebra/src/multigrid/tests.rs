@@ -123,7 +123,7 @@ fn rigid_motions_are_prolonged_exactly() {
     let mut scaled = Sparse::default();
     block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
     let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled));
+    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled, &modes));
     let tentative = tentative::tentative(&aggregates, &modes);
     for (node, &aggregate) in aggregates.of_node.iter().enumerate() {
         if aggregate == aggregation::ALONE {
@@ -169,7 +169,7 @@ fn weak_neighbours_cost_no_rigid_motion() {
     let mut scaled = Sparse::default();
     block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
     let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled));
+    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled, &modes));
     let tentative = tentative::tentative(&aggregates, &modes);
     let unsmoothed = prolongation::Unsmoothed {
         aggregates: &aggregates,

@@ -284,6 +284,25 @@ fn flat_cells_take_no_more_iterations() {
 }
 
 #[test]
+fn slender_cells_take_hardly_more_iterations() {
+    for shape in [Shape::Tet4, Shape::Hex8, Shape::Prism6] {
+        for ratio in [4.0, 10.0] {
+            let case = Box {
+                shape,
+                counts: [12; 3],
+                sides: [1.0, 1.0, ratio],
+                ..CLAMPED
+            };
+            let iterations = case.case().solve().1;
+            assert!(
+                iterations <= 25,
+                "{shape:?}, {ratio}:1: {iterations} iterations"
+            );
+        }
+    }
+}
+
+#[test]
 fn threads_do_not_change_a_bit() {
     let counts = [14; 3];
     let case = Box { counts, ..CLAMPED }.case();
