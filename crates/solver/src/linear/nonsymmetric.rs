@@ -3,11 +3,9 @@
 use std::cell::RefCell;
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{
-    ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, ScalarCholesky, gmres,
-};
+use kluft_algebra::{ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, gmres};
 
-use crate::flow::LinearisedFlow;
+use crate::flow::{LinearisedFlow, PressureSchur};
 use crate::linear::coupled::{CoupledRhs, CoupledSolution, CoupledTangent};
 use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};
 use crate::system::System;
@@ -27,7 +25,7 @@ pub struct NonsymmetricSolver {
     /// What `inner` has, where a flow is solved with it.
     positive: Vec<DMat3>,
     /// Factor of the pressures, where there are any.
-    pressures: Option<ScalarCholesky>,
+    pressures: Option<PressureSchur>,
 }
 
 impl NonsymmetricSolver {
