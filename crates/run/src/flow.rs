@@ -6,8 +6,8 @@ use kluft_io::printable::cell;
 use kluft_io::{Field, write_atomically};
 use kluft_mesh::{Defect, Mesh};
 use kluft_solver::{
-    Flow, FlowFields, FlowState, FlowSystem, LinearFailure, Load, Problem, Schedule, State, System,
-    TransientFlow,
+    Flow, FlowFields, FlowState, FlowSystem, FluxError, LinearFailure, Load, Problem, Schedule,
+    State, System, TransientFlow,
 };
 
 use crate::flow_summary::{self, FlowSummary, Hydraulics, StepFlow};
@@ -32,6 +32,8 @@ pub struct SolvedFlow {
     pub step: StepFlow,
     /// Its fields.
     pub fields: FlowFields,
+    /// Estimated error of the flux along each facet (m^2/s).
+    pub flux_errors: Vec<f64>,
 }
 
 impl<'p> RunFlow<'p> {
@@ -96,9 +98,15 @@ impl<'p> RunFlow<'p> {
 
     /// The flow in a state.
     pub fn told(&self, state: &FlowState) -> SolvedFlow {
+        self.solved(state, self.system.fields(state, &self.apertures))
+    }
+
+    fn solved(&self, state: &FlowState, fields: FlowFields) -> SolvedFlow {
+        let error = FluxError::of(self.mesh, &fields, self.flow.fluid.viscosity);
         SolvedFlow {
-            step: flow_summary::of_step(self.flow, state),
-            fields: self.system.fields(state, &self.apertures),
+            step: flow_summary::of_step(self.flow, state, error.relative),
+            fields,
+            flux_errors: error.of_facet,
         }
     }
 
@@ -112,10 +120,8 @@ impl<'p> RunFlow<'p> {
     ) -> Option<SolvedFlow> {
         let (coupling, fluid) = system.coupling().zip(state.fluid.as_ref())?;
         let flow = coupling.state(fluid, &state.load);
-        Some(SolvedFlow {
-            step: flow_summary::of_step(self.flow, &flow),
-            fields: coupling.fields(fluid, &state.load, apertures),
-        })
+        let fields = coupling.fields(fluid, &state.load, apertures);
+        Some(self.solved(&flow, fields))
     }
 
     /// How large it is, in words.
@@ -152,12 +158,13 @@ impl SolvedFlow {
     }
 
     /// Fields of the cells of the fracture grid.
-    pub fn cell_fields(&self) -> [Field; 2] {
+    pub fn cell_fields(&self) -> [Field; 3] {
         let transmissivities = self.fields.transmissivities.iter();
         let fluxes = self.fields.fluxes.iter().map(|flux| flux.to_array());
         [
             real_field("transmissivity", transmissivities.map(|value| [*value])),
             real_field("flux", fluxes),
+            real_field("flux_error", self.flux_errors.iter().map(|error| [*error])),
         ]
     }
 }

@@ -7,7 +7,7 @@ use crate::flow_summary::{ConduitSummary, StepFlow};
 use crate::rows::{self, HEAD, Row};
 
 /// The columns of a flow.
-pub const OF_FLOW: [&str; 14] = [
+pub const OF_FLOW: [&str; 15] = [
     "pressure_min",
     "pressure_mean",
     "pressure_max",
@@ -22,6 +22,7 @@ pub const OF_FLOW: [&str; 14] = [
     "outflow",
     "stored",
     "mass_error",
+    "flux_error",
 ];
 
 /// The columns in rigid rock.
@@ -44,6 +45,7 @@ impl FlowEntry<'_> {
         row.number("outflow", self.flow.outflow);
         row.number("stored", self.flow.stored);
         row.number("mass_error", self.flow.mass_error);
+        row.number("flux_error", self.flow.flux_error);
     }
 
     /// Adds the flow in a fracture to its row, if it conducts.

@@ -34,6 +34,9 @@ pub struct StepFlow {
     /// The part of it that rounding explains; large where next to nothing moves any more.
     #[serde(default)]
     pub mass_rounding: f64,
+    /// Estimated error of the flux as a share of it, in the energy norm, for the sake of the mesh.
+    #[serde(default)]
+    pub flux_error: f64,
     /// What flows where it is driven.
     pub sources: Vec<SourceFlow>,
 }
@@ -84,7 +87,7 @@ pub struct FlowSummary {
 }
 
 /// The numbers of a state.
-pub fn of_step(flow: &Flow, state: &FlowState) -> StepFlow {
+pub fn of_step(flow: &Flow, state: &FlowState, flux_error: f64) -> StepFlow {
     let sources = flow.conditions.iter().zip(&state.conditions);
     let sources = sources.zip(&state.entered);
     let sources = sources.map(|((condition, found), volume)| SourceFlow {
@@ -99,6 +102,7 @@ pub fn of_step(flow: &Flow, state: &FlowState) -> StepFlow {
         stored: state.balance.stored,
         mass_error: state.balance.mass_error,
         mass_rounding: state.balance.rounding,
+        flux_error,
         sources: sources.collect(),
     }
 }

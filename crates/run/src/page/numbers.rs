@@ -95,7 +95,12 @@ pub fn add_accuracy(page: &mut Page, summary: &Summary) {
     let compared = summary.measures.iter();
     let compared: Vec<_> = compared.filter(|measure| measure.error.is_some()).collect();
     let is_estimated = summary.steps.iter().any(|step| step.measures.is_some());
-    if !is_estimated && compared.is_empty() {
+    let last_flow = summary
+        .steps
+        .iter()
+        .rev()
+        .find_map(|step| step.flow.as_ref());
+    if !is_estimated && compared.is_empty() && last_flow.is_none() {
         return;
     }
     page.heading("Accuracy");
@@ -105,6 +110,12 @@ pub fn add_accuracy(page: &mut Page, summary: &Summary) {
             100.0 * summary.stress_error
         ));
         add_path_error(page, &summary.steps);
+    }
+    if let Some(flow) = last_flow {
+        page.text(&format!(
+            "Estimated error of the flux in the fractures: {:.2} % of it in the energy norm, for the sake of the mesh.",
+            100.0 * flow.flux_error
+        ));
     }
     if compared.is_empty() {
         return;

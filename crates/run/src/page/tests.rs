@@ -69,6 +69,7 @@ fn hostile(fractures: usize) -> Summary {
         stored: 0.0,
         mass_error: 0.0,
         mass_rounding: 0.0,
+        flux_error: 0.05,
         sources: vec![SourceFlow {
             name: BAD.into(),
             pressure: 1.0,

@@ -6,6 +6,7 @@
 //! with `e` and `e_z` the errors of both solutions, the error of the mean jump is `a(e, e_z) / A <=
 //! sum |e|_K |e_z|_K / A`, in energy norms (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
 
+mod flux;
 mod nearest_fracture;
 mod patches;
 mod sizes;
@@ -22,6 +23,7 @@ use crate::system::System;
 use kluft_algebra::{Division, LinearFailure, RowOwnership};
 use patches::Patches;
 
+pub use flux::FluxError;
 pub use sizes::target_sizes;
 
 /// Error of the linear solve for `z`, as a share of its forces: the errors of the means are then
