@@ -69,8 +69,8 @@ impl Near<'_> {
     }
 }
 
-/// The place `x` for which `r_k - T (e_k x x)` is least, with the translations `T` and the rotations
-/// `r_k` about the axes `e_k`. That of an aggregate is its centre.
+/// The place `x` for which `r_k - T (e_k x x)` is least, with the translations `T` and the
+/// rotations `r_k` about the axes `e_k`. That of an aggregate is its centre.
 fn place<const N: usize>(modes: &Modes<N>) -> Option<DVec3> {
     let (mut matrix, mut rhs) = (DMat3::ZERO, DVec3::ZERO);
     for row in modes {

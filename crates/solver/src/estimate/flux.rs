@@ -1,6 +1,7 @@
-//! How wrong the flux in the fractures is, estimated from itself as the stress is (O. C. Zienkiewicz
-//! and J. Z. Zhu, Int. J. Numer. Meth. Engng 24, 1987 and 33, 1992): the difference between the flux
-//! `q` of the facets and a smoother one `q*` is taken for the error, with the energy norm
+//! How wrong the flux in the fractures is, estimated from itself as the stress is (O. C.
+//! Zienkiewicz and J. Z. Zhu, Int. J. Numer. Meth. Engng 24, 1987 and 33, 1992): the difference
+//! between the flux `q` of the facets and a smoother one `q*` is taken for the error, with the
+//! energy norm
 //!
 //! ```text
 //! |q|^2 = sum_f int |q|^2 / T_f dA

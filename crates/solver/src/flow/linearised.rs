@@ -179,8 +179,8 @@ impl LinearisedFlow<'_, '_> {
     }
 
     /// The Schur complement of the unknowns, where the openings of the facet points under a unit
-    /// pressure everywhere (m/Pa), with the stiffness of the joints and without, tell the compliance
-    /// of the walls; `made` is that of a former flow.
+    /// pressure everywhere (m/Pa), with the stiffness of the joints and without, tell the
+    /// compliance of the walls; `made` is that of a former flow.
     ///
     /// # Errors
     /// If a number is not finite.
