@@ -27,7 +27,7 @@ pub struct Junction {
 pub enum Fineness {
     /// Large cells of order 1.
     Coarse,
-    /// Large cells of order 2.
+    /// Larger cells of order 2.
     Quadratic,
     /// Cells of order 1 so small that the iterative solver is the cheapest.
     Fine,
@@ -129,7 +129,7 @@ impl Fineness {
     fn size(self) -> (f64, u32) {
         match self {
             Self::Coarse => (0.4, 1),
-            Self::Quadratic => (0.4, 2),
+            Self::Quadratic => (0.6, 2),
             Self::Fine => (0.09, 1),
         }
     }
