@@ -110,3 +110,22 @@ fn a_fracture_that_carries_little_of_the_loads_slides_on() {
     let error = steps[1].0.iterations[0].closure_error;
     assert!(error < 5e-3, "{error:e}");
 }
+
+/// However often a step is divided, the first half of a substep serves as the whole of the next
+/// one: no increment is solved twice.
+#[test]
+fn no_increment_of_a_divided_step_is_solved_twice() {
+    let mut problem = cube(Shape::Tet4);
+    scenes::load(&mut problem, "top", DVec3::new(8e6, 2e6, -10e6));
+    let settings = NewtonSettings {
+        path: 0.0,
+        ..NewtonSettings::default()
+    };
+    let (steps, _) = scenes::solve_path(&problem, settings, [1.0])
+        .pop()
+        .expect("a step");
+    let mut shares: Vec<f64> = steps.iterations.iter().map(|own| own.share).collect();
+    shares.dedup();
+    assert!(steps.converged() && shares.len() > 6, "{shares:?}");
+    assert_eq!(shares[..6], [1.0, 0.5, 1.0, 0.25, 0.5, 0.125]);
+}

@@ -175,6 +175,36 @@ fn rounding_does_not_keep_a_run_from_ending() {
     }
 }
 
+/// Rock that hardly changes its volume beside a contact that slides: systems that the iterative
+/// solver cannot solve well enough for Newton's method to end. A direct one goes on, and says so.
+#[test]
+fn where_the_iterative_solver_gives_up_a_direct_one_goes_on() {
+    let answers = solved("small_corner.toml", &[]);
+    assert_one_answer(&answers, &["f", "g"]);
+    let tells = |said: &Value| {
+        said["decisions"]
+            .to_string()
+            .contains("direct from step 1 on")
+    };
+    let tell: Vec<bool> = answers.iter().map(tells).collect();
+    assert_eq!(tell, [false, false, true]);
+}
+
+/// A bond that breaks and lets its walls slide at once: however short a step is divided, one
+/// increment and two differ by hundredths. What is left of it is not divided to thousandths any
+/// more; the path is said not to be resolved.
+#[test]
+fn a_path_that_is_lost_is_not_followed_ever_more_closely() {
+    for said in solved_by(&SOLVERS[..1], "breaking_bond.toml", &[]) {
+        for step in said["steps"].as_array().expect("steps") {
+            let path = step["unresolved"].as_str().expect("words");
+            assert!(path.contains("however short it is divided"), "{path}");
+            let substeps = step["substeps"].as_array().expect("substeps").len();
+            assert!((10..100).contains(&substeps), "{substeps}");
+        }
+    }
+}
+
 /// Initial stress of a million times what the joint's stiffness and aperture make of a stress: its
 /// aperture is less than the smallest number, its stiffness more than the largest.
 #[test]

@@ -336,6 +336,7 @@ impl TangentSolver for Distributed {
             stiffness: self.stiffness.clone(),
             preconditioned: self.built_for.clone(),
             margin: Some(self.margin),
+            ..SolverHistory::default()
         }
     }
 

@@ -5,6 +5,14 @@ use kluft_solver::{
     Flow, LinearMethod, Plan, Prediction, Problem, Schedule, Spring, SpringStiffness, Step, Support,
 };
 
+/// That a direct solver went on in a load step.
+pub fn of_fallback(number: usize) -> String {
+    format!(
+        "linear solver: direct from step {number} on, where the iterative one gave up or came close \
+         to it"
+    )
+}
+
 /// How much model a problem needs; `path` is how exactly its path is to be followed.
 pub fn of_problem(problem: &Problem, flow: Option<&Flow>, path: f64) -> Vec<String> {
     let mut lines: Vec<String> = rock_outside(problem).into_iter().collect();

@@ -260,6 +260,11 @@ impl Run<'_> {
         });
         self.summary.seconds.factorise += record.factorise_seconds;
         self.summary.seconds.solve += record.solve_seconds;
+        if record.fell_back {
+            let text = decisions::of_fallback(index + 1);
+            self.observer.note("decided", &text);
+            self.summary.decisions.push(text);
+        }
         let unresolved = unresolved::of_step(system, &record);
         let measures = StepMeasures::of(&record, unresolved);
         let summary = StepSummary {

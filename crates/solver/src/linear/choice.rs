@@ -23,6 +23,8 @@ pub struct Plan {
     /// What all solvers that were considered would cost.
     pub predictions: Vec<Prediction>,
     analysis: Option<Analysis>,
+    /// Memory for all that the solver needs (bytes).
+    limit: usize,
 }
 
 impl Plan {
@@ -68,7 +70,27 @@ impl Plan {
             method,
             predictions,
             analysis: analysis.map(|(_, analysis)| analysis),
+            limit: memory_bytes,
         })
+    }
+
+    /// A direct solver of a system, unless it needs more than `memory_bytes` or takes hopelessly
+    /// long.
+    pub(crate) fn direct_within(system: &System<'_>, memory_bytes: usize) -> Option<Self> {
+        let unknowns = Unknowns::from(&system.discretisation);
+        let workload = Workload::of_system(system, 1.0);
+        let method = LinearMethod::Direct;
+        let limit = HOPELESS * iterative(unknowns, workload).seconds;
+        if in_solid(unknowns, workload, method) >= limit {
+            return None;
+        }
+        let plan = Self::of(unknowns, workload, Some(method), memory_bytes).ok()?;
+        (plan.prediction().memory_bytes <= memory_bytes).then_some(plan)
+    }
+
+    /// Memory (bytes) that the chosen solver leaves for another one.
+    pub(crate) fn memory_left(&self) -> usize {
+        self.limit.saturating_sub(self.prediction().memory_bytes)
     }
 
     /// What the chosen solver will cost.

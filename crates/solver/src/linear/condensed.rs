@@ -90,8 +90,7 @@ impl TangentSolver for Condensed {
     fn history(&self) -> SolverHistory {
         SolverHistory {
             stiffness: self.jumps.factored().map(<[DMat3]>::to_vec),
-            preconditioned: None,
-            margin: None,
+            ..SolverHistory::default()
         }
     }
 

@@ -237,6 +237,7 @@ impl TangentSolver for Iterative {
             stiffness: self.stiffness.clone(),
             preconditioned: self.built_for.clone(),
             margin: Some(self.margin),
+            ..SolverHistory::default()
         }
     }
 
@@ -339,7 +340,7 @@ mod tests {
         let history = SolverHistory {
             stiffness: Some(loose.clone()),
             preconditioned: Some(stiffness(|point| 10_f64.powi(point as i32 % 16))),
-            margin: None,
+            ..SolverHistory::default()
         };
         outdated
             .restore(system.fixed_part(), history)

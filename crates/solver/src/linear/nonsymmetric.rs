@@ -6,26 +6,35 @@ use glam::{DMat3, DVec3};
 use kluft_algebra::{ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, gmres};
 
 use crate::flow::{LinearisedFlow, PressureSchur};
+use crate::linear::choice::Plan;
 use crate::linear::coupled::{CoupledRhs, CoupledSolution, CoupledTangent};
 use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};
 use crate::system::System;
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 240;
+/// Iterations of one solve after which a direct solver goes on: twenty times those that the choice
+/// between them counts on.
+const SLOW: usize = 400;
 /// Residual, as a share of the right-hand side, that an iteration which gains nothing more may
 /// leave.
 const ROUNDED: f64 = 1e-3;
 
 /// Solves with the exact tangents: directly where they are symmetric and positive, and by GMRES,
-/// preconditioned by the solver for the positive ones, where they are not.
+/// preconditioned by the solver for the positive ones, where they are not. Where an iteration gives
+/// up, a direct solver goes on from there if it may and fits in memory.
 pub struct NonsymmetricSolver {
     inner: Box<dyn TangentSolver>,
     /// Exact stiffness of the fractures, where it differs from what `inner` has.
     exact: Option<Vec<DMat3>>,
-    /// What `inner` has, where a flow is solved with it.
+    /// What `inner` has.
     positive: Vec<DMat3>,
     /// Factor of the pressures, where there are any.
     pressures: Option<PressureSchur>,
+    /// Memory (bytes) for a direct solver that goes on where `inner` gives up; none if none may.
+    fallback_memory: Option<usize>,
+    /// Whether a direct solver goes on.
+    has_fallen_back: bool,
 }
 
 impl NonsymmetricSolver {
@@ -36,7 +45,45 @@ impl NonsymmetricSolver {
             exact: None,
             positive: Vec::new(),
             pressures: None,
+            fallback_memory: None,
+            has_fallen_back: false,
         }
+    }
+
+    /// With this memory (bytes) for a direct solver that goes on where the prepared one gives up.
+    pub(crate) fn with_fallback(self, memory_bytes: usize) -> Self {
+        Self {
+            fallback_memory: Some(memory_bytes),
+            ..self
+        }
+    }
+
+    /// Whether a direct solver has gone on.
+    pub(crate) fn has_fallen_back(&self) -> bool {
+        self.has_fallen_back
+    }
+
+    /// Lets a direct solver go on, if it may and fits; whether it does from now on. It has the last
+    /// tangents.
+    pub(crate) fn fall_back(&mut self, system: &System<'_>) -> bool {
+        let memory = self.fallback_memory.take();
+        let direct = memory.and_then(|memory| Plan::direct_within(system, memory));
+        let direct = direct.and_then(|plan| plan.prepare(system).ok());
+        let Some(mut direct) = direct else {
+            return false;
+        };
+        // One without tangents yet gets them before it solves.
+        let has_tangents = !self.positive.is_empty();
+        if has_tangents
+            && direct
+                .update(system.fixed_part(), self.positive.clone())
+                .is_err()
+        {
+            return false;
+        }
+        self.inner = direct;
+        self.has_fallen_back = true;
+        true
     }
 
     /// Takes over the tangents of the facet points.
@@ -54,10 +101,8 @@ impl NonsymmetricSolver {
             .is_some()
             .then(|| interface.stiffness(&tangents.exact));
         let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
-        let stiffness = interface.stiffness(positive);
-        if system.coupling().is_some() {
-            self.positive.clone_from(&stiffness);
-        }
+        self.positive = interface.stiffness(positive);
+        let stiffness = self.positive.clone();
         self.inner.update(system.fixed_part(), stiffness)
     }
 
@@ -71,18 +116,27 @@ impl NonsymmetricSolver {
         flow: &LinearisedFlow<'_, '_>,
         rhs: &CoupledRhs<'_>,
     ) -> Result<CoupledSolution, LinearFailure> {
-        let tangent = |stiffness| coupled(system, stiffness, flow);
-        tangent(&self.positive).factorise(&mut self.pressures)?;
-        let exact = self.exact.as_ref().unwrap_or(&self.positive);
-        let (tangent, factor) = (tangent(exact), self.pressures.as_ref());
-        match tangent.solve(&mut *self.inner, factor, rhs) {
-            Err(LinearFailure::Stalled(spent)) if self.inner.rebuild(system.fixed_part())? => {
-                let mut solution = tangent.solve(&mut *self.inner, factor, rhs)?;
-                solution.iterations += spent;
-                Ok(solution)
+        coupled(system, &self.positive, flow).factorise(&mut self.pressures)?;
+        let mut spent = 0;
+        loop {
+            let exact = self.exact.as_ref().unwrap_or(&self.positive);
+            let factor = self.pressures.as_ref();
+            let solved = coupled(system, exact, flow).solve(&mut *self.inner, factor, rhs);
+            match solved {
+                Err(LinearFailure::Stalled(count)) if self.improve(system)? => spent += count,
+                done => {
+                    let mut solution = done?;
+                    solution.iterations += spent;
+                    return Ok(solution);
+                }
             }
-            done => done,
         }
+    }
+
+    /// Makes `inner` serve better after it has given up: anew for the tangents at hand what it kept
+    /// from others, else a direct solver in its place; whether either was possible.
+    fn improve(&mut self, system: &System<'_>) -> Result<bool, LinearFailure> {
+        Ok(self.inner.rebuild(system.fixed_part())? || self.fall_back(system))
     }
 
     /// A change that leaves nothing missing in a flow where every unknown and pressure answers as
@@ -113,30 +167,39 @@ impl NonsymmetricSolver {
         rhs: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
-        self.rebuilding(system, |own| {
+        self.improving(system, |own| {
             own.inner.solve(system.fixed_part(), rhs, tolerance)
         })
     }
 
-    /// A solution, with what `inner` kept from other tangents made anew if that stands in the way.
-    fn rebuilding(
+    /// A solution, with `inner` improved as long as it gives up.
+    fn improving(
         &mut self,
         system: &System<'_>,
         attempt: impl Fn(&mut Self) -> Result<LinearSolution, LinearFailure>,
     ) -> Result<LinearSolution, LinearFailure> {
-        match attempt(self) {
-            Err(LinearFailure::Stalled(spent)) if self.inner.rebuild(system.fixed_part())? => {
-                let mut solution = attempt(self)?;
-                solution.iterations += spent;
-                Ok(solution)
+        let mut spent = 0;
+        loop {
+            match attempt(self) {
+                Err(LinearFailure::Stalled(count)) if self.improve(system)? => spent += count,
+                done => {
+                    let mut solution = done?;
+                    if solution.iterations > SLOW {
+                        self.fall_back(system);
+                    }
+                    solution.iterations += spent;
+                    return Ok(solution);
+                }
             }
-            done => done,
         }
     }
 
     /// What later solves depend on beside the tangents and the forces.
     pub fn history(&self) -> SolverHistory {
-        self.inner.history()
+        SolverHistory {
+            has_fallen_back: self.has_fallen_back,
+            ..self.inner.history()
+        }
     }
 
     /// Brings a solver that has just been prepared to where one with this history is.
@@ -148,6 +211,10 @@ impl NonsymmetricSolver {
         system: &System<'_>,
         history: SolverHistory,
     ) -> Result<(), LinearFailure> {
+        if history.has_fallen_back && !self.fall_back(system) {
+            let why = "the direct solver that the run went on with does not fit in memory";
+            return Err(LinearFailure::Analysis(why.to_owned()));
+        }
         self.inner.restore(system.fixed_part(), history)
     }
 
@@ -161,7 +228,7 @@ impl NonsymmetricSolver {
         rhs: &[DVec3],
         tolerance: f64,
     ) -> Result<LinearSolution, LinearFailure> {
-        self.rebuilding(system, |own| own.attempt(system, rhs, tolerance))
+        self.improving(system, |own| own.attempt(system, rhs, tolerance))
     }
 
     /// Solves with `inner` as it stands.
@@ -216,5 +283,68 @@ fn coupled<'s, 'a>(
         interface: &system.discretisation.interface,
         stiffness,
         flow,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kluft_algebra::FixedPart;
+
+    use super::*;
+    use crate::linear::fractured_tests::{problem, remaining, system};
+
+    /// An iterative solver that never comes to an end.
+    struct Stalling;
+
+    impl TangentSolver for Stalling {
+        fn update(&mut self, _: FixedPart<'_>, _: Vec<DMat3>) -> Result<(), LinearFailure> {
+            Ok(())
+        }
+
+        fn solve(
+            &mut self,
+            _: FixedPart<'_>,
+            _: &[DVec3],
+            _: f64,
+        ) -> Result<LinearSolution, LinearFailure> {
+            Err(LinearFailure::Stalled(7))
+        }
+    }
+
+    #[test]
+    fn a_direct_solver_goes_on_where_an_iteration_gives_up() {
+        let problem = problem(|z| z);
+        let system = system(&problem);
+        let interface = &system.discretisation.interface;
+        let tangents: Tangents = vec![DMat3::IDENTITY; interface.points.len()].into();
+        let mut rhs = vec![DVec3::ZERO; system.discretisation.points.len()];
+        rhs[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
+        let solve = |memory: Option<usize>| {
+            let mut solver = NonsymmetricSolver::new(Box::new(Stalling));
+            if let Some(memory) = memory {
+                solver = solver.with_fallback(memory);
+            }
+            solver.update(&system, &tangents).expect("definite");
+            (solver.solve(&system, &rhs, 1e-8), solver.history())
+        };
+        // None is allowed, and none fits in memory.
+        for memory in [None, Some(1000)] {
+            let (stalled, history) = solve(memory);
+            assert!(matches!(stalled, Err(LinearFailure::Stalled(7))));
+            assert!(!history.has_fallen_back);
+        }
+        let (solved, history) = solve(Some(usize::MAX));
+        let solution = solved.expect("solved");
+        let stiffness = interface.stiffness(&tangents.exact);
+        assert!(remaining(&system, &stiffness, &solution.unknowns, &rhs) < 1e-9);
+        assert_eq!(solution.iterations, 7);
+        // A run that is continued from here goes on with the direct solver.
+        assert!(history.has_fallen_back);
+        let mut restored = NonsymmetricSolver::new(Box::new(Stalling)).with_fallback(usize::MAX);
+        restored.restore(&system, history).expect("room for it");
+        restored.update(&system, &tangents).expect("definite");
+        let again = restored.solve(&system, &rhs, 1e-8).expect("solved");
+        assert_eq!(again.unknowns, solution.unknowns);
+        assert_eq!(again.iterations, 0);
     }
 }

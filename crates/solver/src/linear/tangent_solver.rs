@@ -26,6 +26,8 @@ pub struct SolverHistory {
     /// Factor by which the spectrum of the preconditioner turned out to reach further than
     /// estimated.
     pub margin: Option<f64>,
+    /// Whether it is a direct one that goes on where another gave up.
+    pub has_fallen_back: bool,
 }
 
 impl SolverHistory {

@@ -97,12 +97,7 @@ impl Newton {
             (Ok(()), _) => Ok(()),
             (Err(outcome), Some(start)) if outcome != StepOutcome::Stopped => {
                 *iterate = start;
-                let split = self.iterate_by_splitting(step, iterate);
-                split.map_err(|failed| match failed {
-                    // The law that no longer answers is known.
-                    StepOutcome::NotFinite(None) => outcome,
-                    failed => failed,
-                })
+                self.iterate_by_splitting(step, iterate, outcome)
             }
             (failed, _) => failed,
         }

@@ -28,6 +28,7 @@ impl Newton {
     ) -> StepRecord {
         let start = Instant::now();
         let mut step = Step::new(system, load, &mut observe);
+        let had_fallen_back = self.linear.has_fallen_back();
         let outcome = match self.solve_in_substeps(&mut step, state, load) {
             Ok(end) => {
                 *state = end;
@@ -35,6 +36,7 @@ impl Newton {
             }
             Err(outcome) => outcome,
         };
+        step.record.fell_back = self.linear.has_fallen_back() && !had_fallen_back;
         let seconds = start.elapsed().as_secs_f64();
         step.finished(outcome, seconds)
     }

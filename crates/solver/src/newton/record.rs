@@ -45,6 +45,23 @@ pub enum StepOutcome {
     Stopped,
 }
 
+impl StepOutcome {
+    /// Why an increment fails after two attempts at it. Numbers and linear solves fail where an
+    /// attempt goes astray, so they are the reason only if both did.
+    pub(super) fn and(self, later: Self) -> Self {
+        let rank = |outcome: &Self| match outcome {
+            Self::Linear(_) => 0,
+            Self::NotFinite(None) => 1,
+            Self::NotFinite(Some(_)) => 2,
+            _ => 3,
+        };
+        match rank(&later) > rank(&self) || rank(&later) == 3 {
+            true => later,
+            false => self,
+        }
+    }
+}
+
 /// A part of a load step that does not tell where the loads lead: walls jump or fall to another
 /// place there, and another number of load steps may lead to another equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +107,8 @@ pub struct StepRecord {
     /// is allowed, however short the step was divided; see
     /// [`NewtonSettings::time`](super::NewtonSettings::time).
     pub time_error: Option<f64>,
+    /// Whether the iterative linear solver gave up in it, and a direct one went on.
+    pub fell_back: bool,
     /// Blocks that nothing held when it failed, each with its free motions.
     pub rigid_motions: Vec<FreeBody>,
     /// The facet point with the largest closure error at the end.
@@ -110,6 +129,7 @@ impl StepRecord {
             unresolved: None,
             path_error: 0.0,
             time_error: None,
+            fell_back: false,
             rigid_motions: Vec::new(),
             outcome: StepOutcome::OutOfIterations,
             worst_facet_point: None,
@@ -127,5 +147,36 @@ impl StepRecord {
     /// Whether the step converged.
     pub fn converged(&self) -> bool {
         self.outcome == StepOutcome::Converged
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An attempt that goes astray tells less than one that came to no end; of those that went
+    /// astray the one tells most that names a place.
+    #[test]
+    fn an_increment_fails_for_what_its_attempts_have_in_common() {
+        let stalled = StepOutcome::Linear(LinearFailure::Stalled(60));
+        let [placed, nowhere] = [Some(3), None].map(StepOutcome::NotFinite);
+        let endless = StepOutcome::OutOfIterations;
+        for astray in [&stalled, &placed, &nowhere] {
+            for (first, later) in [(astray, &endless), (&endless, astray)] {
+                assert_eq!(first.clone().and(later.clone()), endless);
+            }
+            assert_eq!(astray.clone().and(astray.clone()), *astray);
+            let pushed = StepOutcome::RigidBodyMotion;
+            assert_eq!(astray.clone().and(pushed.clone()), pushed);
+        }
+        for (first, later) in [
+            (&stalled, &placed),
+            (&placed, &stalled),
+            (&placed, &nowhere),
+        ] {
+            assert_eq!(first.clone().and(later.clone()), placed);
+        }
+        let stopped = StepOutcome::Stopped;
+        assert_eq!(endless.and(stopped.clone()), stopped);
     }
 }

@@ -35,7 +35,8 @@ impl Newton {
         Self::planned(system, settings, plan)
     }
 
-    /// Prepares the linear solver of a plan.
+    /// Prepares the linear solver of a plan. Where an iterative one gives up, a direct one goes on,
+    /// if the memory of the plan has room for both.
     ///
     /// # Errors
     /// If it cannot be prepared.
@@ -45,7 +46,15 @@ impl Newton {
         plan: Plan,
     ) -> Result<Self, LinearFailure> {
         let iterates = plan.method == LinearMethod::Iterative;
-        Ok(Self::on(system, settings, plan.prepare(system)?, iterates))
+        let memory = iterates.then(|| plan.memory_left());
+        let own = Self::on(system, settings, plan.prepare(system)?, iterates);
+        Ok(match memory {
+            Some(memory) => Self {
+                linear: own.linear.with_fallback(memory),
+                ..own
+            },
+            None => own,
+        })
     }
 
     /// On top of a linear solver of the system, which may be the caller's own; whether it iterates.

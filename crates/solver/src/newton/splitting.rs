@@ -30,13 +30,14 @@ impl Newton {
     /// Iterates by the splitting and by Newton's method in turn until the tests hold.
     ///
     /// # Errors
-    /// Why they do not, or that the observer stops the step.
+    /// Why neither they nor the attempt before them, which had this `outcome`, do; or that the
+    /// observer stops the step.
     pub(super) fn iterate_by_splitting(
         &mut self,
         step: &mut Step<'_>,
         iterate: &mut Iterate,
+        mut outcome: StepOutcome,
     ) -> Result<(), StepOutcome> {
-        let mut outcome = StepOutcome::OutOfIterations;
         let trials = match step.is_tried_briefly {
             true => BRIEF_TRIALS,
             false => TRIALS,
@@ -45,14 +46,14 @@ impl Newton {
             iterate.linearisation = Linearisation::Springs;
             match self.iterate_at_most(FIRST_ITERATIONS << trial, step, iterate) {
                 Err(StepOutcome::OutOfIterations) => {}
-                ended => return ended,
+                ended => return ended.map_err(|failed| outcome.and(failed)),
             }
             let mut tried = iterate.clone();
             tried.linearisation = Linearisation::Tangents;
             tried.last_trials = vec![LastTrial::default(); iterate.last_trials.len()];
             match self.iterate_at_most(NEWTON_ITERATIONS, step, &mut tried) {
                 Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
-                Err(failed) => outcome = failed,
+                Err(failed) => outcome = outcome.and(failed),
                 Ok(()) => {
                     *iterate = tried;
                     return Ok(());

@@ -6,7 +6,7 @@ use crate::space::rigid_modes::FreeBody;
 
 use super::free_blocks;
 use super::iterate::Iterate;
-use super::{Iteration, StepOutcome, StepRecord, UnresolvedPath};
+use super::{Iteration, StepOutcome, StepRecord, UnresolvedCause, UnresolvedPath};
 use crate::problem::Load;
 use crate::system::{State, System};
 
@@ -21,6 +21,11 @@ pub(super) struct Step<'a> {
     pub(super) share: f64,
     /// Whether the increment at hand is given up soon, because shorter ones are to be tried.
     pub(super) is_tried_briefly: bool,
+    /// How far jumps, against the largest, are off the path because no division resolved it: the
+    /// sum over its substeps.
+    pub(super) lost: f64,
+    /// Whether, however short it was divided, one increment ended and two shorter ones did not.
+    pub(super) is_torn: bool,
     /// Blocks that an increment from the same state as that at hand pushed.
     pub(super) pushed: Vec<FreeBody>,
     /// Whether the state is kept in which an increment failed.
@@ -38,6 +43,8 @@ impl<'a> Step<'a> {
             record: StepRecord::new(load.clone()),
             share: 1.0,
             is_tried_briefly: false,
+            lost: 0.0,
+            is_torn: false,
             pushed: Vec::new(),
             keeps_end: false,
             end: None,
@@ -67,6 +74,7 @@ impl<'a> Step<'a> {
 
     /// Records a part of the step whose path is not resolved, if it is the least resolved so far.
     pub(super) fn leave_unresolved(&mut self, path: UnresolvedPath) {
+        self.is_torn |= path.cause == UnresolvedCause::HalvesDoNotEnd;
         let former = self.record.unresolved.as_ref();
         if former.is_none_or(|former| former.cause < path.cause) {
             self.record.unresolved = Some(path);

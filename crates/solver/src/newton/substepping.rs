@@ -26,11 +26,15 @@ use crate::system::{State, System};
 const SMALLEST_SUBSTEP: f64 = 1.0 / 64.0;
 /// Below this share of the error allowed the next substep is twice as long.
 const GROWTH_SHARE: f64 = 0.25;
+/// Error allowed in what is left of a load step whose path is lost by more, in path accuracies.
+const MOST_LOST: f64 = 100.0;
 
 /// A part of a load step.
 struct Substep {
     middle: End,
     end: End,
+    /// Its end in one increment, if a longer substep has found it.
+    whole: Option<State>,
     /// Whether it is not divided any more.
     is_smallest: bool,
 }
@@ -42,32 +46,49 @@ struct End {
     share: f64,
 }
 
+/// The end of a substep in one increment and in two.
+struct Both<'a> {
+    whole: &'a State,
+    halves: State,
+    /// Whether anything slid or broke on the way.
+    slides: bool,
+    /// Whether the substep is not divided any more.
+    is_smallest: bool,
+}
+
 /// What a substep came to.
 enum Solved {
     /// Its end, and whether the next may be longer.
-    Accepted { end: State, may_grow: bool },
+    Accepted { end: Box<State>, may_grow: bool },
     /// It is to be divided.
-    TooLong {
-        /// Why, if it is not for accuracy.
-        why: Option<StepOutcome>,
-        /// Its end in one increment, if that was found.
-        whole: Option<State>,
-    },
+    TooLong(TooLong),
 }
 
-impl Solved {
-    fn failed(outcome: StepOutcome, whole: Option<State>) -> Self {
-        Self::TooLong {
-            why: Some(outcome),
-            whole,
-        }
-    }
+/// What is known of a substep that is to be divided.
+#[derive(Default)]
+struct TooLong {
+    /// Why, if it is not for accuracy.
+    why: Option<StepOutcome>,
+    /// Its end and its middle in one increment each, if they were found.
+    whole: Option<Box<State>>,
+    half: Option<Box<State>>,
 }
 
 /// A state on the way, and the share of the step that leads to it.
 struct Reached {
     state: State,
     share: f64,
+}
+
+/// How far a load step is solved.
+struct Way {
+    here: Reached,
+    /// Length of the next substep.
+    increment: f64,
+    /// The end of the shortest substep from here that converged in one increment.
+    coarse: Option<Reached>,
+    /// The middle of the last substep, in one increment, if that was too long.
+    half: Option<Reached>,
 }
 
 impl Newton {
@@ -87,107 +108,196 @@ impl Newton {
             false => state.load.clone(),
         };
         tell_falls(step, state, load);
-        let mut here = Reached {
-            state: state.clone(),
-            share: 0.0,
+        let mut way = Way {
+            here: Reached {
+                state: state.clone(),
+                share: 0.0,
+            },
+            increment: 1.0,
+            coarse: None,
+            half: None,
         };
-        let mut increment = 1.0_f64;
-        // The end of the shortest substep from here that converged in one increment.
-        let mut coarse: Option<Reached> = None;
-        while here.share < 1.0 {
-            let end = f64::min(here.share + increment, 1.0);
+        while way.here.share < 1.0 {
+            let end = f64::min(way.here.share + way.increment, 1.0);
+            let middle = 0.5 * (way.here.share + end);
+            let known = way.half.take().filter(|half| half.share == end);
             let substep = Substep {
-                middle: End::between(&start, load, 0.5 * (here.share + end)),
+                middle: End::between(&start, load, middle),
                 end: End::between(&start, load, end),
-                is_smallest: increment <= SMALLEST_SUBSTEP,
+                whole: known.map(|half| half.state),
+                is_smallest: way.increment <= SMALLEST_SUBSTEP,
             };
             // Whole steps are tried in earnest before they are divided.
             step.is_tried_briefly =
-                step.system.is_path_dependent() && increment < 1.0 && !substep.is_smallest;
-            let reached = |state: State| Reached { state, share: end };
-            let next = match self.solve_substep(step, &here.state, &substep) {
-                Solved::Accepted { end, may_grow } => {
-                    increment *= if may_grow { 2.0 } else { 1.0 };
-                    Some(reached(end))
+                step.system.is_path_dependent() && way.increment < 1.0 && !substep.is_smallest;
+            let next = match self.solve_substep(step, &way.here.state, substep) {
+                Solved::Accepted {
+                    end: state,
+                    may_grow,
+                } => {
+                    way.increment *= if may_grow { 2.0 } else { 1.0 };
+                    Some(Reached {
+                        state: *state,
+                        share: end,
+                    })
                 }
-                Solved::TooLong { why, whole } => {
-                    coarse = whole.map(reached).or(coarse);
-                    let is_final = |why: &StepOutcome| is_final(step.system, why, increment);
-                    if let Some(outcome) = why.filter(is_final) {
-                        let end = let_be(step, outcome, coarse.take())?;
-                        increment = end.share - here.share;
-                        Some(end)
-                    } else {
-                        increment *= 0.5;
-                        None
-                    }
-                }
+                Solved::TooLong(found) => self.divide(step, &mut way, found, [middle, end])?,
             };
             if let Some(next) = next {
-                self.path.remember(step.system, &here.state);
-                (here, coarse) = (next, None);
+                self.path.remember(step.system, &way.here.state);
+                (way.here, way.coarse) = (next, None);
                 step.pushed.clear();
-                step.record.completed = here.share;
+                step.record.completed = way.here.share;
             }
         }
-        Ok(here.state)
+        Ok(way.here.state)
     }
 
-    fn solve_substep(&mut self, step: &mut Step<'_>, from: &State, substep: &Substep) -> Solved {
-        let whole = match self.solve_counted(step, from, &substep.end) {
+    /// Goes on after a substep to `end` that is too long: by a shorter one, or by the direct
+    /// solver; where neither is left, from the end that stands for it.
+    ///
+    /// # Errors
+    /// If there is none.
+    fn divide(
+        &mut self,
+        step: &mut Step<'_>,
+        way: &mut Way,
+        found: TooLong,
+        [middle, end]: [f64; 2],
+    ) -> Result<Option<Reached>, StepOutcome> {
+        let is_torn = step.is_torn && found.whole.is_some();
+        let reached = |share: f64| {
+            move |state: Box<State>| Reached {
+                state: *state,
+                share,
+            }
+        };
+        way.coarse = found.whole.map(reached(end)).or(way.coarse.take());
+        let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way.increment);
+        match found.why.filter(is_final) {
+            None => {
+                way.increment *= 0.5;
+                way.half = found.half.map(reached(middle));
+                Ok(None)
+            }
+            Some(outcome) if self.may_fall_back(step, &outcome) => Ok(None),
+            Some(outcome) => {
+                let end = let_be(step, outcome, way.coarse.take())?;
+                way.increment = end.share - way.here.share;
+                Ok(Some(end))
+            }
+        }
+    }
+
+    /// Whether a direct solver goes on where an increment of an iterative one fails for good; of
+    /// blocks that are pushed the linear solver is no cause.
+    fn may_fall_back(&mut self, step: &Step<'_>, outcome: &StepOutcome) -> bool {
+        let has_other_cause = [StepOutcome::Stopped, StepOutcome::RigidBodyMotion];
+        !has_other_cause.contains(outcome) && self.linear.fall_back(step.system)
+    }
+
+    fn solve_substep(&mut self, step: &mut Step<'_>, from: &State, substep: Substep) -> Solved {
+        let solved = match substep.whole {
+            Some(known) => Ok(known),
+            None => self.solve_counted(step, from, &substep.end),
+        };
+        let mut found = TooLong::default();
+        let whole = match solved {
             Ok(whole) => whole,
-            Err(outcome) => return Solved::failed(outcome, None),
+            Err(outcome) => {
+                found.why = Some(outcome);
+                return Solved::TooLong(found);
+            }
         };
         let slides = step.system.is_path_dependent() && !is_elastic(from, &whole);
         let flows = step.system.coupling().is_some_and(Coupling::is_transient);
         if !slides && (!flows || self.settings.time >= 1.0) {
             return Solved::Accepted {
-                end: whole,
+                end: Box::new(whole),
                 may_grow: true,
             };
         }
         if step.system.is_smooth() {
             self.path.lead_to(step.system, &whole);
         }
-        let halves = self
-            .solve_counted(step, from, &substep.middle)
-            .and_then(|half| self.solve_counted(step, &half, &substep.end));
+        let half = self.solve_counted(step, from, &substep.middle);
+        let halves = match &half {
+            Ok(half) => self.solve_counted(step, half, &substep.end),
+            Err(outcome) => Err(outcome.clone()),
+        };
         if step.system.is_smooth() {
             self.path.lead_on();
         }
-        let halves = match halves {
-            Ok(halves) => halves,
-            Err(outcome) => return Solved::failed(outcome, Some(whole)),
+        found.half = half.ok().map(Box::new);
+        let accepted = match halves {
+            Ok(halves) => {
+                let both = Both {
+                    whole: &whole,
+                    halves,
+                    slides,
+                    is_smallest: substep.is_smallest,
+                };
+                self.accept(step, both)
+            }
+            Err(outcome) => {
+                found.why = Some(outcome);
+                None
+            }
         };
-        let apart = slides.then(|| difference(step.system, &whole, &halves, self.settings.path));
-        let in_time = flows.then(|| flows_apart(step.system, &whole, &halves));
+        accepted.unwrap_or_else(|| {
+            found.whole = Some(Box::new(whole));
+            Solved::TooLong(found)
+        })
+    }
+
+    /// Takes for the end of a substep that in two increments, and records how far that in one is
+    /// from it; none if that is too far for a substep that may be divided.
+    fn accept(&self, step: &mut Step<'_>, both: Both<'_>) -> Option<Solved> {
+        let (whole, halves) = (both.whole, both.halves);
+        let flows = step.system.coupling().is_some_and(Coupling::is_transient);
+        let slid = both.slides.then_some(self.settings.path);
+        let apart = slid.map(|tolerance| difference(step.system, whole, &halves, tolerance));
+        let in_time = flows.then(|| flows_apart(step.system, whole, &halves));
         let flow = in_time.map(|apart| apart / self.settings.time);
         let path = apart
             .as_ref()
-            .map(|apart| apart.share() / self.settings.path);
+            .map(|apart| apart.share() / self.path_tolerance(step));
         let error = path.into_iter().chain(flow).fold(0.0, f64::max);
-        if error > 1.0 && !substep.is_smallest {
-            return Solved::TooLong {
-                why: None,
-                whole: Some(whole),
-            };
+        if error > 1.0 && !both.is_smallest {
+            return None;
         }
         if let Some(apart) = in_time.filter(|_| flow.is_some_and(|flow| flow > 1.0)) {
             step.leave_time_error(apart);
         }
         if let Some(apart) = apart {
-            step.record.path_error += apart.length;
-            if apart.share() > self.settings.path {
-                step.leave_unresolved(UnresolvedPath {
-                    cause: UnresolvedCause::Differs(apart.share()),
-                    facet_point: apart.facet_point,
-                });
-            }
+            self.leave_apart(step, &apart, both.is_smallest);
         }
-        Solved::Accepted {
-            end: halves,
-            may_grow: error <= GROWTH_SHARE,
+        Some(Solved::Accepted {
+            end: Box::new(halves),
+            may_grow: error <= GROWTH_SHARE || (step.lost > 0.0 && error <= 1.0),
+        })
+    }
+
+    /// Records how far the jumps of one increment and of two are apart in a substep that stands.
+    fn leave_apart(&self, step: &mut Step<'_>, apart: &Apart, is_smallest: bool) {
+        step.record.path_error += apart.length;
+        if apart.share() <= self.settings.path {
+            return;
         }
+        step.lost += apart.share();
+        if is_smallest {
+            step.leave_unresolved(UnresolvedPath {
+                cause: UnresolvedCause::Differs(apart.share()),
+                facet_point: apart.facet_point,
+            });
+        }
+    }
+
+    /// How far the jumps of one increment and of two may be apart: what is left of a path that is
+    /// lost is not followed more closely than it has been.
+    fn path_tolerance(&self, step: &Step<'_>) -> f64 {
+        let accuracy = self.settings.path;
+        step.lost.clamp(accuracy, MOST_LOST * accuracy)
     }
 
     /// Solves an increment and records its iterations if it converges.

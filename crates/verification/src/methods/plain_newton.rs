@@ -116,6 +116,7 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
     };
     let converged = outcome == StepOutcome::Converged;
     let record = StepRecord {
+        fell_back: false,
         load,
         completed: f64::from(u8::from(converged)),
         iterations,
