@@ -93,4 +93,4 @@ pub use interface::{FixedPart, InterfaceBlocks, InterfacePattern};
 pub use lists::{Lists, sum_up};
 pub use ownership::RowOwnership;
 pub use schur::SchurComplement;
-pub use vectors::{add_at, dot, largest, norm, pack_scalars, trace, unpack_scalars};
+pub use vectors::{add_at, dot, largest, norm, trace};

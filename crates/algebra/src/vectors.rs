@@ -78,16 +78,3 @@ pub fn add_at(rows: &[u32], sum: impl Fn(usize) -> DVec3 + Sync, to: &mut [DVec3
 pub fn trace(block: DMat3) -> f64 {
     block.x_axis.x + block.y_axis.y + block.z_axis.z
 }
-/// Writes scalars by threes into vectors, with zeros at the end.
-pub fn pack_scalars(scalars: &[f64], vectors: &mut [DVec3]) {
-    for (vector, three) in vectors.iter_mut().zip(scalars.chunks(3)) {
-        let of = |index: usize| three.get(index).copied().unwrap_or(0.0);
-        *vector = DVec3::new(of(0), of(1), of(2));
-    }
-}
-
-/// The first `count` scalars of vectors.
-pub fn unpack_scalars(vectors: &[DVec3], count: usize) -> Vec<f64> {
-    let scalars = vectors.iter().flat_map(|vector| vector.to_array());
-    scalars.take(count).collect()
-}

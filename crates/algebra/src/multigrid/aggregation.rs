@@ -1,6 +1,5 @@
 //! Aggregates: groups of nodes that become one node of the next level.
 
-use crate::lists::Lists;
 use crate::small::Modes;
 
 use super::places::Places;
@@ -86,35 +85,6 @@ pub(super) fn aggregate(neighbours: &Sparse<1, 1>) -> Aggregates {
         }
     }
     aggregates
-}
-
-/// Neighbourhoods of a graph, of which the neighbours of each node are given: that of each node,
-/// and how many there are.
-pub fn neighbourhoods(graph: &Lists) -> (Vec<u32>, usize) {
-    let others = |node: usize| {
-        let own = graph.of(node).iter().copied();
-        own.filter(move |&other| other as usize != node)
-    };
-    let neighbours = Sparse::build(
-        graph.count(),
-        rows_per_task::<1>(),
-        || (),
-        |(), node| others(node).count(),
-        |(), node, columns, blocks| {
-            for ((other, column), block) in others(node).zip(columns).zip(blocks) {
-                (*column, *block) = (other, [[1.0]]);
-            }
-        },
-    );
-    let Aggregates {
-        mut of_node,
-        mut count,
-    } = aggregate(&neighbours);
-    for own in of_node.iter_mut().filter(|own| **own == ALONE) {
-        *own = count as u32;
-        count += 1;
-    }
-    (of_node, count)
 }
 
 struct Greedy<'a> {

@@ -44,7 +44,6 @@ use crate::block_rows::BlockRows;
 use crate::interface::InterfaceBlocks;
 
 pub use crate::failure::MultigridFailure;
-pub use aggregation::neighbourhoods;
 pub use block_list::BlockList;
 pub use first_coarsening::{FirstCoarsening, LevelPart, NextPart, OwnRows};
 pub use lower_levels::{CoarsestSolve, LowerLevels};

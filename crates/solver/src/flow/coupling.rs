@@ -26,7 +26,6 @@ use super::fields::FlowFields;
 use super::loaded::{FlowState, Loaded, Stored};
 use super::numbering::FlowNodes;
 use super::operator::FlowOperator;
-use super::patches::Patches;
 use super::push::Push;
 use super::steady::FlowSystem;
 use super::topology::Topology;
@@ -57,9 +56,7 @@ pub struct Coupling<'a> {
     /// Networks that keep what they hold; none where the flow takes time.
     pub(super) undrained: Vec<Undrained>,
     /// Area of the facets that belongs to each node (m^2).
-    pub(super) areas: Vec<f64>,
-    /// Patches of nodes, where the flow takes time.
-    pub(super) patches: Option<Arc<Patches>>,
+    areas: Vec<f64>,
     /// What belongs to each node before any load (m^3).
     initial_volumes: Vec<f64>,
     /// Pressure before any load at each row (Pa).
@@ -163,7 +160,6 @@ impl<'a> Coupling<'a> {
         };
         Ok(Self {
             hydraulic: facets.enumerate().map(conduit).collect(),
-            patches: is_transient.then(|| Arc::new(Patches::of(&topology.nodes.columns))),
             areas,
             undrained,
             initial_volumes: points.at_rows(apertures),

@@ -15,10 +15,8 @@ use glam::DVec3;
 use kluft_algebra::{LinearFailure, ScalarCholesky, ScalarMatrix};
 use rayon::prelude::*;
 
-use super::compliance::{OwnCompliance, PatchCompliance};
 use super::coupling::{Coupling, FlowAtWalls, FlowIncrement, FluidState};
 use super::places::Place;
-use super::schur::PressureSchur;
 use crate::problem::Load;
 
 /// A linearised flow. Its unknowns are the potentials that are not given.
@@ -178,54 +176,26 @@ impl LinearisedFlow<'_, '_> {
         fluid.compressibility * self.flow.spaces[row]
     }
 
-    /// The Schur complement of the unknowns, where the openings of the facet points under a unit
-    /// pressure everywhere (m/Pa), with the stiffness of the joints and without, tell the
-    /// compliance of the walls; `made` is that of a former flow.
+    /// A factor of the Schur complement of the unknowns, where the openings of the facet points
+    /// under a unit pressure everywhere (m/Pa) stand for the compliance of the rock.
     ///
     /// # Errors
     /// If a number is not finite.
     pub(crate) fn schur(
         &self,
-        [whole, rock]: [&[f64]; 2],
-        made: Option<PressureSchur>,
-    ) -> Result<PressureSchur, LinearFailure> {
-        let opened = [whole, rock].map(|openings| self.coupling.points.at_rows(openings));
-        let matrix = self.with_own_compliance(&opened[0]);
-        if matrix.values.iter().any(|value| !value.is_finite()) {
-            return Err(LinearFailure::NotFinite);
-        }
-        let mut factor = match made {
-            Some(made) => made.factor,
-            None => ScalarCholesky::of(&matrix.pattern)?,
-        };
-        factor.factorise(&matrix)?;
-        let patches = self.coupling.patches.clone().map(|patches| {
-            let own = OwnCompliance {
-                areas: &self.coupling.areas,
-                opened: [&opened[0], &opened[1]],
-            };
-            PatchCompliance::of(patches, &own, |row| self.storing[row])
-        });
-        Ok(PressureSchur {
-            factor,
-            matrix,
-            patches,
-            free: self.coupling.topology.free.clone(),
-            number: self.coupling.topology.number.clone(),
-        })
-    }
-
-    /// `E` and what every row opens by itself under a unit pressure (m^3/Pa).
-    fn with_own_compliance(&self, opened: &[f64]) -> ScalarMatrix {
+        compliance: &[f64],
+        factor: &mut Option<ScalarCholesky>,
+    ) -> Result<(), LinearFailure> {
         let topology = &self.coupling.topology;
-        let mut extra: Vec<f64> = opened.iter().map(|opened| opened.max(0.0)).collect();
+        let spaces = self.coupling.points.at_rows(compliance);
+        let mut extra: Vec<f64> = spaces.iter().map(|space| space.max(0.0)).collect();
         for (row, extra) in extra.iter_mut().enumerate() {
             *extra *= self.storing[row];
         }
         // Each node keeps its part by itself, which is the same for a pressure that is even.
         for (network, rate) in self.coupling.undrained.iter().zip(&self.flow.keeping) {
             for &row in network.rows() {
-                let opened = self.flow.density[row] * opened[row].max(0.0);
+                let opened = self.flow.density[row] * spaces[row].max(0.0);
                 extra[row] = rate * (opened + self.compressed(row));
             }
         }
@@ -236,6 +206,15 @@ impl LinearisedFlow<'_, '_> {
             let own = columns.partition_point(|&column| (column as usize) < unknown);
             matrix.values[range.start + own] += extra[row as usize];
         }
-        matrix
+        if matrix.values.iter().any(|value| !value.is_finite()) {
+            return Err(LinearFailure::NotFinite);
+        }
+        let mut made = match factor.take() {
+            Some(made) => made,
+            None => ScalarCholesky::of(&matrix.pattern)?,
+        };
+        made.factorise(&matrix)?;
+        *factor = Some(made);
+        Ok(())
     }
 }

@@ -26,14 +26,11 @@
 //! | `permeability` | how the body conducts as a whole |
 //! | `steady`, `solve` | the discrete flow, factorised once; the flow at a load |
 //! | `balance` | what enters, what leaves |
-//! | `coupling`, `linearised` | flow between walls that follow, and its answer to small changes |
-//! | `patches`, `compliance`, `schur` | what pressures open, for the preconditioner |
 //! | `push` | how pressures push on the walls that follow them, as a matrix |
 //! | `walls` | the push of the fluid on the walls of fractures |
 //! | `fields` | pressure, hydraulic aperture and flux for results |
 
 mod balance;
-mod compliance;
 mod conductance;
 mod coupling;
 mod edges;
@@ -47,11 +44,9 @@ mod nodal;
 mod node_radius;
 mod numbering;
 mod operator;
-mod patches;
 mod permeability;
 mod places;
 mod push;
-mod schur;
 mod solve;
 mod steady;
 mod steady_state;
@@ -70,7 +65,6 @@ pub(crate) use linearised::LinearisedFlow;
 pub use loaded::FlowState;
 pub use networks::FlowNetwork;
 pub use permeability::{EquivalentPermeability, NoPermeability, PermeabilityTensor};
-pub(crate) use schur::PressureSchur;
 pub use steady::FlowSystem;
 pub use steady_state::NO_PRESSURE;
 pub use transient::{TimeStep, TransientFlow, TransientState};

@@ -9,19 +9,20 @@
 //! ```
 //!
 //! goes to GMRES, preconditioned from the right by `[ K  -B ; 0  S ]`: the solver for `K` as it
-//! stands, and the Schur complement `S` of the pressures as `flow::schur` has it.
+//! stands, and a factor of `S = E + rho / dt B^T diag(K)^-1 B`, in which every node answers by
+//! itself.
 
 use std::cell::RefCell;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{
     ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks, LinearFailure,
-    gmres, norm, pack_scalars, trace, unpack_scalars,
+    ScalarCholesky, gmres, norm, trace,
 };
 use rayon::prelude::*;
 
 use crate::assembly::interface::Interface;
-use crate::flow::{LinearisedFlow, PressureSchur};
+use crate::flow::LinearisedFlow;
 use crate::linear::tangent_solver::TangentSolver;
 
 /// Iterations after which a linear solve has failed.
@@ -65,34 +66,34 @@ pub(super) struct CoupledTangent<'s, 'a> {
 }
 
 impl CoupledTangent<'_, '_> {
-    /// Prepares the preconditioner of the pressures.
+    /// Factorises the preconditioner of the pressures.
     ///
     /// # Errors
     /// If a number is not finite, or memory runs out.
-    pub(super) fn factorise(&self, schur: &mut Option<PressureSchur>) -> Result<(), LinearFailure> {
+    pub(super) fn factorise(
+        &self,
+        factor: &mut Option<ScalarCholesky>,
+    ) -> Result<(), LinearFailure> {
         if self.flow.len() == 0 {
             return Ok(());
         }
-        let nothing = vec![DMat3::ZERO; self.stiffness.len()];
-        let [whole, rock] = [self.stiffness, &nothing].map(|joints| self.compliance(joints));
-        *schur = Some(self.flow.schur([&whole, &rock], schur.take())?);
-        Ok(())
+        self.flow.schur(&self.compliance(), factor)
     }
 
     /// Openings of the facet points under a unit pressure everywhere (m/Pa), if every unknown
-    /// answers by itself, with these stiffnesses of the fractures.
-    fn compliance(&self, joints: &[DMat3]) -> Vec<f64> {
+    /// answers by itself.
+    fn compliance(&self) -> Vec<f64> {
         let mut forces = vec![DVec3::ZERO; self.fixed.matrix.rows()];
         self.flow.add_unit_push(&mut forces);
-        self.interface.openings(&self.alone(&forces, joints))
+        self.interface.openings(&self.alone(&forces))
     }
 
-    /// What forces (N) move the unknowns by (m) if every one answers by itself, with these
-    /// stiffnesses of the fractures; those away from them stay.
-    fn alone(&self, forces: &[DVec3], joints: &[DMat3]) -> Vec<DVec3> {
+    /// What forces (N) move the unknowns by (m) if every one answers by itself; those away from
+    /// fractures stay.
+    fn alone(&self, forces: &[DVec3]) -> Vec<DVec3> {
         let blocks = InterfaceBlocks {
             pattern: self.fixed.interface,
-            blocks: joints,
+            blocks: self.stiffness,
         };
         let answers: Vec<(u32, DVec3)> = (0..self.interface.unknowns.len())
             .into_par_iter()
@@ -112,21 +113,21 @@ impl CoupledTangent<'_, '_> {
         moved
     }
 
-    /// Solves, preconditioned by a solver for the stiffness and by what [`Self::factorise`] has
-    /// made.
+    /// Solves, preconditioned by a solver for the stiffness and by the factor of
+    /// [`Self::factorise`].
     ///
     /// # Errors
     /// If the iteration fails.
     pub(super) fn solve(
         &self,
         inner: &mut dyn TangentSolver,
-        schur: Option<&PressureSchur>,
+        factor: Option<&ScalarCholesky>,
         rhs: &CoupledRhs<'_>,
     ) -> Result<CoupledSolution, LinearFailure> {
         let packing = Packing {
             unknowns: rhs.forces.len(),
             pressures: rhs.missing.len(),
-            scales: self.scales(inner, schur, rhs)?,
+            scales: self.scales(inner, factor, rhs)?,
         };
         let packed = packing.scaled(rhs.forces, rhs.missing);
         let size = norm(&packed);
@@ -149,7 +150,7 @@ impl CoupledTangent<'_, '_> {
             |residual, correction| {
                 let (forces, missing) = packing.unscaled(residual);
                 let rest = (forces, &missing[..]);
-                match self.precondition(&mut **inner.borrow_mut(), schur, rest) {
+                match self.precondition(&mut **inner.borrow_mut(), factor, rest) {
                     Ok((unknowns, pressures)) => packing.pack(&unknowns, &pressures, correction),
                     Err(error) => failure = Some(error),
                 }
@@ -178,13 +179,13 @@ impl CoupledTangent<'_, '_> {
     /// The change that leaves nothing missing if every unknown answers by itself.
     pub(super) fn conserving(
         &self,
-        schur: &PressureSchur,
+        factor: &ScalarCholesky,
         missing: &[f64],
     ) -> (Vec<DVec3>, Vec<f64>) {
-        let pressures = schur.solve_alone(missing);
+        let pressures = factor.solve(missing);
         let mut push = vec![DVec3::ZERO; self.fixed.matrix.rows()];
         self.flow.add_push(&pressures, 1.0, &mut push);
-        (self.alone(&push, self.stiffness), pressures)
+        (self.alone(&push), pressures)
     }
 
     /// Factors of forces (1/N) and rates (s/m^3) that make what may be left of each 1. Either may
@@ -193,13 +194,13 @@ impl CoupledTangent<'_, '_> {
     fn scales(
         &self,
         inner: &mut dyn TangentSolver,
-        schur: Option<&PressureSchur>,
+        factor: Option<&ScalarCholesky>,
         rhs: &CoupledRhs<'_>,
     ) -> Result<[f64; 2], LinearFailure> {
         let moved = inner.precondition(self.fixed, rhs.forces)?;
         let openings = self.interface.openings(&moved);
         let rates = self.flow.answer(&openings, &vec![0.0; rhs.missing.len()]);
-        let pressures = schur.map_or_else(Vec::new, |schur| schur.solve(rhs.missing));
+        let pressures = factor.map_or_else(Vec::new, |factor| factor.solve(rhs.missing));
         let mut push = vec![DVec3::ZERO; rhs.forces.len()];
         self.flow.add_push(&pressures, 1.0, &mut push);
         let goals = (rhs.goals)([
@@ -225,10 +226,10 @@ impl CoupledTangent<'_, '_> {
     fn precondition(
         &self,
         inner: &mut dyn TangentSolver,
-        schur: Option<&PressureSchur>,
+        factor: Option<&ScalarCholesky>,
         (mut forces, missing): (Vec<DVec3>, &[f64]),
     ) -> Result<(Vec<DVec3>, Vec<f64>), LinearFailure> {
-        let pressures = schur.map_or_else(Vec::new, |schur| schur.solve(missing));
+        let pressures = factor.map_or_else(Vec::new, |factor| factor.solve(missing));
         self.flow.add_push(&pressures, 1.0, &mut forces);
         Ok((inner.precondition(self.fixed, &forces)?, pressures))
     }
@@ -246,6 +247,13 @@ struct Packing {
     pressures: usize,
     /// Factors of forces (1/N) and rates (s/m^3).
     scales: [f64; 2],
+}
+
+fn pack_scalars(scalars: &[f64], blocks: &mut [DVec3]) {
+    for (block, three) in blocks.iter_mut().zip(scalars.chunks(3)) {
+        let of = |index: usize| three.get(index).copied().unwrap_or(0.0);
+        *block = DVec3::new(of(0), of(1), of(2));
+    }
 }
 
 impl Packing {
@@ -271,7 +279,8 @@ impl Packing {
 
     fn split<'v>(&self, packed: &'v [DVec3]) -> (&'v [DVec3], Vec<f64>) {
         let (first, rest) = packed.split_at(self.unknowns);
-        (first, unpack_scalars(rest, self.pressures))
+        let scalars = rest.iter().flat_map(|block| block.to_array());
+        (first, scalars.take(self.pressures).collect())
     }
 
     fn unscaled(&self, packed: &[DVec3]) -> (Vec<DVec3>, Vec<f64>) {

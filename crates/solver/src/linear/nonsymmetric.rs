@@ -3,9 +3,11 @@
 use std::cell::RefCell;
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, gmres};
+use kluft_algebra::{
+    ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, ScalarCholesky, gmres,
+};
 
-use crate::flow::{LinearisedFlow, PressureSchur};
+use crate::flow::LinearisedFlow;
 use crate::linear::choice::Plan;
 use crate::linear::coupled::{CoupledRhs, CoupledSolution, CoupledTangent};
 use crate::linear::tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};
@@ -30,7 +32,7 @@ pub struct NonsymmetricSolver {
     /// What `inner` has.
     positive: Vec<DMat3>,
     /// Factor of the pressures, where there are any.
-    pressures: Option<PressureSchur>,
+    pressures: Option<ScalarCholesky>,
     /// Memory (bytes) for a direct solver that goes on where `inner` gives up; none if none may.
     fallback_memory: Option<usize>,
     /// Whether a direct solver goes on.
