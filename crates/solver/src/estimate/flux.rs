@@ -13,7 +13,7 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{Lists, trace};
-use kluft_mesh::Mesh;
+use kluft_mesh::{DisjointSets, Mesh};
 
 use crate::flow::FlowFields;
 
@@ -179,44 +179,29 @@ impl Facets {
         let mut around: HashMap<[u32; 2], Vec<(u32, [u32; 2])>> = HashMap::new();
         for (index, facet) in (0..).zip(&self.all) {
             let count = facet.corners.len();
+            let first = self.first[index as usize];
             for at in 0..count {
-                let next = (at + 1) % count;
-                let ends = [at, next]
-                    .map(|at| (facet.corners[at], (self.first[index as usize] + at) as u32));
-                let [a, b] = if ends[0].0 < ends[1].0 {
-                    ends
-                } else {
-                    [ends[1], ends[0]]
-                };
-                around
-                    .entry([a.0, b.0])
-                    .or_default()
-                    .push((index, [a.1, b.1]));
+                let mut ends =
+                    [at, (at + 1) % count].map(|at| (facet.corners[at], (first + at) as u32));
+                ends.sort_unstable();
+                let [a, b] = ends;
+                let own = around.entry([a.0, b.0]).or_default();
+                own.push((index, [a.1, b.1]));
             }
         }
         let of = |index: u32| mesh.facets.fracture[self.all[index as usize].facet];
-        let mut ties: Vec<[u32; 2]> = Vec::new();
+        let mut sets = DisjointSets::new(self.patch.len());
         for own in around.values() {
-            if let [(one, ends), (other, others)] = own[..]
+            if let [(one, [a, b]), (other, [c, d])] = own[..]
                 && of(one) == of(other)
             {
-                ties.extend([[ends[0], others[0]], [ends[1], others[1]]]);
+                sets.join(a, c);
+                sets.join(b, d);
             }
         }
-        for [a, b] in ties {
-            let [a, b] = [a, b].map(|corner| self.lowest(corner));
-            self.patch[a.max(b) as usize] = a.min(b);
+        for corner in &mut self.patch {
+            *corner = sets.root(*corner);
         }
-        for corner in 0..self.patch.len() as u32 {
-            self.patch[corner as usize] = self.lowest(corner);
-        }
-    }
-
-    fn lowest(&self, mut corner: u32) -> u32 {
-        while self.patch[corner as usize] != corner {
-            corner = self.patch[corner as usize];
-        }
-        corner
     }
 
     /// Numbers the patches.

@@ -29,7 +29,7 @@ pub struct NonsymmetricSolver {
     inner: Box<dyn TangentSolver>,
     /// Exact stiffness of the fractures, where it differs from what `inner` has.
     exact: Option<Vec<DMat3>>,
-    /// What `inner` has.
+    /// What `inner` has, where a flow is solved with it or a direct solver may go on.
     positive: Vec<DMat3>,
     /// Factor of the pressures, where there are any.
     pressures: Option<ScalarCholesky>,
@@ -103,8 +103,10 @@ impl NonsymmetricSolver {
             .is_some()
             .then(|| interface.stiffness(&tangents.exact));
         let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
-        self.positive = interface.stiffness(positive);
-        let stiffness = self.positive.clone();
+        let stiffness = interface.stiffness(positive);
+        if system.coupling().is_some() || self.fallback_memory.is_some() {
+            self.positive.clone_from(&stiffness);
+        }
         self.inner.update(system.fixed_part(), stiffness)
     }
 
