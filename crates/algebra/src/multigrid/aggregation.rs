@@ -1,5 +1,6 @@
 //! Aggregates: groups of nodes that become one node of the next level.
 
+use crate::lists::Lists;
 use crate::small::Modes;
 
 use super::places::Places;
@@ -16,6 +17,14 @@ pub(super) struct Aggregates {
     pub(super) of_node: Vec<u32>,
     /// Number of aggregates.
     pub(super) count: usize,
+}
+
+impl Aggregates {
+    /// Nodes of each aggregate, ascending; those without one follow in a list more.
+    pub(super) fn members(&self) -> Lists {
+        let key = |&at: &u32| at.min(self.count as u32);
+        Lists::group(self.of_node.iter().map(key), self.count + 1)
+    }
 }
 
 /// Square of the Frobenius norm of a block.

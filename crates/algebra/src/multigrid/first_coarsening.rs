@@ -191,7 +191,7 @@ impl FirstCoarsening {
         communicator: &Communicator,
     ) -> Result<LowerLevels, MultigridFailure> {
         let parts = own.gathered(communicator);
-        LowerLevels::of(parts, &self.fixed.basis.modes)
+        LowerLevels::of(parts, self.fixed.basis.nodes())
     }
 
     /// `A_CC^-1 = L^-T L^-1`.

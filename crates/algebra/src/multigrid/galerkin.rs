@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::continuity::Continuity;
 use super::sparse::{Sparse, Transpose, rows_per_task};
 use super::triple_product::{Block6, PartialProduct};
 use crate::small::{Modes, inverse_factor, narrow, product, transpose, widen};
@@ -14,18 +15,27 @@ const COSTS_NOTHING: f64 = 1e-6;
 pub(super) struct Coarse {
     pub(super) matrix: Sparse<6, 6>,
     pub(super) modes: Vec<Modes<6>>,
+    pub(super) continuity: Continuity,
 }
 
-/// The next level of `P^T A P`, whose nodes have these modes; scales the columns of `P` to its
+/// What is known of the nodes of the next level.
+#[derive(Clone, Copy)]
+pub(super) struct CoarseNodes<'a> {
+    /// Modes in unknowns that are not scaled.
+    pub(super) modes: &'a [Modes<6>],
+    pub(super) continuity: &'a Continuity,
+}
+
+/// The next level of `P^T A P`, whose nodes are these; scales the columns of `P` to its
 /// unknowns.
 pub(super) fn coarse<const N: usize>(
     whole: &PartialProduct,
     prolongator: &mut Sparse<N, 6>,
-    modes: &[Modes<6>],
+    nodes: CoarseNodes<'_>,
 ) -> Coarse {
     let factors = factors(whole);
     scale_prolongator(prolongator, &factors);
-    scaled(whole, &factors, modes)
+    scaled(whole, &factors, nodes)
 }
 
 /// `L^-1` of the diagonal blocks.
@@ -37,13 +47,14 @@ pub(super) fn factors(whole: &PartialProduct) -> Vec<Block6> {
 }
 
 /// The next level in unknowns that scale its diagonal, whose factors are given.
-pub(super) fn scaled(whole: &PartialProduct, factors: &[Block6], modes: &[Modes<6>]) -> Coarse {
+pub(super) fn scaled(whole: &PartialProduct, factors: &[Block6], nodes: CoarseNodes<'_>) -> Coarse {
     // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
-    let scaled = factors.par_iter().zip(&whole.diagonal).zip(modes);
+    let scaled = factors.par_iter().zip(&whole.diagonal).zip(nodes.modes);
     let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
     Coarse {
         modes: modes.collect(),
         matrix: scaled_matrix(&whole.upper, factors),
+        continuity: nodes.continuity.clone(),
     }
 }
 

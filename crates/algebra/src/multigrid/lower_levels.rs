@@ -3,11 +3,11 @@
 
 use super::block_list::BlockList;
 use super::cycle::{Below, Level};
-use super::galerkin;
+use super::galerkin::{self, CoarseNodes};
 use super::setup;
 use super::triple_product::{Block6, PartialProduct};
 use crate::failure::MultigridFailure;
-use crate::small::{Modes, transpose, widen};
+use crate::small::{transpose, widen};
 
 /// All levels but the finest, the largest of them first; never none.
 #[derive(Debug, Clone)]
@@ -27,19 +27,19 @@ pub enum CoarsestSolve {
 
 impl LowerLevels {
     /// From parts of the matrix of the first of them, which are summed in their order; and the
-    /// modes of its nodes.
+    /// nodes.
     pub(super) fn of(
         parts: Vec<PartialProduct>,
-        modes: &[Modes<6>],
+        nodes: CoarseNodes<'_>,
     ) -> Result<Self, MultigridFailure> {
-        let whole = PartialProduct::sum(modes.len(), &parts);
+        let whole = PartialProduct::sum(nodes.modes.len(), &parts);
         drop(parts);
         let factors = galerkin::factors(&whole);
-        let mut next = Some(galerkin::scaled(&whole, &factors, modes));
+        let mut next = Some(galerkin::scaled(&whole, &factors, nodes));
         drop(whole);
         let mut levels = Vec::new();
-        while let Some(galerkin::Coarse { matrix, modes }) = next {
-            let (level, below) = setup::level(matrix, &modes)?;
+        while let Some(coarse) = next {
+            let (level, below) = setup::level(coarse)?;
             levels.push(level);
             next = below;
         }

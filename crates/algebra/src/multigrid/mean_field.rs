@@ -4,6 +4,8 @@ use glam::DVec3;
 
 use super::block_jacobi::{self, Factors};
 use super::clusters::Clusters;
+use super::continuity::Continuity;
+use super::galerkin::CoarseNodes;
 use super::prolongation::Unsmoothed;
 use super::sparse::{Sparse, Transpose, rows_per_task};
 use super::sum_rows::SumRows;
@@ -103,6 +105,7 @@ impl MeanField {
         CoarseBasis {
             prolongator: self.prolongator,
             modes: self.modes,
+            continuity: Continuity::default(),
         }
     }
 }
@@ -114,6 +117,8 @@ pub struct CoarseBasis {
     pub(super) prolongator: Sparse<3, 6>,
     /// Modes of the next level's nodes.
     pub(super) modes: Vec<Modes<6>>,
+    /// Which of them continuous material joins.
+    continuity: Continuity,
 }
 
 impl CoarseBasis {
@@ -135,7 +140,24 @@ impl CoarseBasis {
                 }
             },
         );
-        Self { prolongator, modes }
+        Self {
+            prolongator,
+            modes,
+            continuity: Continuity::default(),
+        }
+    }
+
+    /// The same where an interface divides the material between nodes of the next level.
+    pub fn divided(self, continuity: Continuity) -> Self {
+        Self { continuity, ..self }
+    }
+
+    /// The nodes of the next level.
+    pub(super) fn nodes(&self) -> CoarseNodes<'_> {
+        CoarseNodes {
+            modes: &self.modes,
+            continuity: &self.continuity,
+        }
     }
 
     /// Nodes of the next level that move an unknown, and how: blocks as rows.
@@ -150,6 +172,6 @@ impl CoarseBasis {
 
     /// Bytes of storage.
     pub(super) fn bytes(&self) -> usize {
-        self.prolongator.bytes() + size_of_val(&self.modes[..])
+        self.prolongator.bytes() + size_of_val(&self.modes[..]) + self.continuity.bytes()
     }
 }

@@ -13,11 +13,13 @@ mod block_jacobi;
 mod block_list;
 mod clusters;
 mod coarsest;
+mod continuity;
 mod cycle;
 mod first_coarsening;
 mod galerkin;
 mod lower_levels;
 mod mean_field;
+mod parts;
 mod places;
 mod prolongation;
 mod setup;
@@ -45,6 +47,7 @@ use crate::interface::InterfaceBlocks;
 
 pub use crate::failure::MultigridFailure;
 pub use block_list::BlockList;
+pub use continuity::Continuity;
 pub use first_coarsening::{FirstCoarsening, LevelPart, NextPart, OwnRows};
 pub use lower_levels::{CoarsestSolve, LowerLevels};
 pub use mean_field::{CoarseBasis, MeanField};
@@ -167,8 +170,8 @@ impl Multigrid {
     ) -> Result<(), MultigridFailure> {
         let (factors, finest, mut next) = self.fixed.finest(rows, buffers)?;
         let mut coarser = Vec::new();
-        while let Some(galerkin::Coarse { matrix, modes }) = next {
-            let (level, below) = setup::level(matrix, &modes)?;
+        while let Some(coarse) = next {
+            let (level, below) = setup::level(coarse)?;
             coarser.push(level);
             next = below;
         }

@@ -7,18 +7,17 @@ use super::block_jacobi::{self, Factors, InverseFactors};
 use super::clusters::Clusters;
 use super::coarsest::Dense;
 use super::cycle::{Below, Level, Transfer};
-use super::galerkin::{self, Coarse};
+use super::galerkin::{self, Coarse, CoarseNodes};
 use super::mean_field::{CoarseBasis, MeanField};
 use super::prolongation::Unsmoothed;
 use super::smoother::Smoother;
 use super::sparse::{Sparse, Transpose};
 use super::sum_rows::{RowSubset, SumRows};
 use super::triple_product::PartialProduct;
-use super::{aggregation, spectrum, tentative};
+use super::{aggregation, parts, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
 use crate::division::Division;
 use crate::failure::MultigridFailure;
-use crate::small::Modes;
 
 /// A level with at most this many scalar unknowns is inverted.
 const LARGEST_INVERSE: usize = 400;
@@ -149,27 +148,22 @@ impl FixedHierarchy {
             return Err(MultigridFailure::NotFinite);
         }
         let (below, next) = if self.has_next(matrix.rows()) {
-            let CoarseBasis {
-                prolongator: basis,
-                modes,
-            } = &self.basis;
-            let columns = modes.len();
+            let columns = self.basis.modes.len();
             block_jacobi::smooth_by_blocks(
                 &mut prolongator,
-                basis,
+                &self.basis.prolongator,
                 columns,
                 &self.clusters,
                 &factors,
             );
             let transpose = Transpose::of(&prolongator, columns);
             let product = self.product(rows, &matrix, &prolongator, &transpose, |_| true);
-            let (transfer, next) = descend(
-                product,
+            let way = Way {
                 prolongator,
-                &transpose,
+                transpose: &transpose,
                 restrictor,
-                &self.basis.modes,
-            );
+            };
+            let (transfer, next) = way.down_to(product, self.basis.nodes());
             (Below::Level(transfer), Some(next))
         } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
             (Below::Nothing, None)
@@ -234,34 +228,35 @@ impl FixedHierarchy {
 }
 
 /// A level, and the next one if it is worth having.
-pub(super) fn level(
-    matrix: Sparse<6, 6>,
-    modes: &[Modes<6>],
-) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
-    let bound = spectrum::largest_eigenvalue(&matrix);
+pub(super) fn level(level: Coarse) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
+    let bound = spectrum::largest_eigenvalue(&level.matrix);
     if !bound.is_finite() {
         return Err(MultigridFailure::NotFinite);
     }
-    let (below, next) = below(&matrix, modes, bound)?;
-    let smoother = Smoother::new(bound);
+    let (below, next) = below(&level, bound)?;
     let level = Level {
-        matrix,
-        smoother,
+        matrix: level.matrix,
+        smoother: Smoother::new(bound),
         below,
     };
     Ok((level, next))
 }
 
 fn below(
-    matrix: &Sparse<6, 6>,
-    modes: &[Modes<6>],
+    level: &Coarse,
     largest_eigenvalue: f64,
 ) -> Result<(Below<6>, Option<Coarse>), MultigridFailure> {
+    let Coarse {
+        matrix,
+        modes,
+        continuity,
+    } = level;
     if 6 * matrix.rows() <= LARGEST_INVERSE {
         let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
         return Ok((Below::Inverse(dense), None));
     }
-    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(matrix, modes));
+    let whole = aggregation::aggregate(&aggregation::strong_neighbours(matrix, modes));
+    let aggregates = parts::parts(&whole, level);
     if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
         return Ok((Below::Nothing, None));
     }
@@ -274,26 +269,37 @@ fn below(
     let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue, |_| true);
     let transpose = Transpose::of(&prolongator, aggregates.count);
     let product = PartialProduct::whole(matrix, &prolongator, &transpose);
-    let storage = Sparse::default();
-    let (transfer, coarse) = descend(product, prolongator, &transpose, storage, &tentative.modes);
+    let way = Way {
+        prolongator,
+        transpose: &transpose,
+        restrictor: Sparse::default(),
+    };
+    let nodes = CoarseNodes {
+        modes: &tentative.modes,
+        continuity: &continuity.of_aggregates(&aggregates, matrix),
+    };
+    let (transfer, coarse) = way.down_to(product, nodes);
     Ok((Below::Level(transfer), Some(coarse)))
 }
 
-/// The way to the level of `P^T A P`, whose nodes have these modes, and that level. `restrictor` is
-/// storage.
-fn descend<const N: usize>(
-    product: PartialProduct,
-    mut prolongator: Sparse<N, 6>,
-    transpose: &Transpose,
-    mut restrictor: Sparse<N, 6>,
-    modes: &[Modes<6>],
-) -> (Transfer<N>, Coarse) {
-    let coarse = galerkin::coarse(&product, &mut prolongator, modes);
-    drop(product);
-    transpose.arrange(&prolongator, &mut restrictor);
-    let transfer = Transfer {
-        prolongator,
-        restrictor,
-    };
-    (transfer, coarse)
+/// A prolongator and storage for its transpose.
+struct Way<'a, const N: usize> {
+    prolongator: Sparse<N, 6>,
+    transpose: &'a Transpose,
+    restrictor: Sparse<N, 6>,
+}
+
+impl<const N: usize> Way<'_, N> {
+    /// The way to the level of `P^T A P`, whose nodes are these, and that level.
+    fn down_to(mut self, product: PartialProduct, nodes: CoarseNodes<'_>) -> (Transfer<N>, Coarse) {
+        let coarse = galerkin::coarse(&product, &mut self.prolongator, nodes);
+        drop(product);
+        self.transpose
+            .arrange(&self.prolongator, &mut self.restrictor);
+        let transfer = Transfer {
+            prolongator: self.prolongator,
+            restrictor: self.restrictor,
+        };
+        (transfer, coarse)
+    }
 }

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::aggregation::{ALONE, Aggregates};
-use crate::lists::Lists;
 use crate::small::Modes;
 
 /// A mode of an aggregate that depends on the ones before it but for this share is left out.
@@ -31,9 +30,7 @@ pub(super) fn tentative<const N: usize>(
     aggregates: &Aggregates,
     modes: &[Modes<N>],
 ) -> Tentative<N> {
-    // Nodes without aggregate go to one list more.
-    let key = |&at: &u32| at.min(aggregates.count as u32);
-    let members = Lists::group(aggregates.of_node.iter().map(key), aggregates.count + 1);
+    let members = aggregates.members();
     let triangles: Vec<Modes<6>> = (0..aggregates.count)
         .into_par_iter()
         .with_min_len(PER_TASK)

@@ -136,6 +136,27 @@ fn iterations_along(system: &System<'_>, stiffness: impl Fn(usize) -> DVec3) -> 
     solution.iterations
 }
 
+/// Walls that press on each other and slide have motions of their own on every level.
+#[test]
+fn walls_that_slide_cost_hardly_more_iterations_than_glued_ones() {
+    let problem = problem(|z| z);
+    let system = system(&problem);
+    let beside = YOUNG * CUBES as f64;
+    for across in [1.0, 1e2, 1e6] {
+        for along in [1e-1, 1e-2, 1e-3, 1e-4] {
+            let [one, both] = [1.0, along].map(|other| {
+                let stiffness = beside * DVec3::new(along, other, across);
+                iterations_along(&system, |_| stiffness)
+            });
+            println!("K_n h/E = {across:e}, K_s h/E = {along:e}: {one}, in all directions {both}");
+            assert!(
+                one <= 16 && both <= 18,
+                "{across:e}, {along:e}: {one}, {both}"
+            );
+        }
+    }
+}
+
 /// What a solution leaves of the forces, as a share of them, with this stiffness of the fractures.
 pub(crate) fn remaining(
     system: &System<'_>,
@@ -169,7 +190,7 @@ fn iterations_hardly_depend_on_the_stiffness_of_fractures() {
         let [glued, sliding] = [DVec3::splat(stiff), DVec3::new(1e-3, 1e-3, stiff)]
             .map(|along| iterations_along(&system, |_| along));
         println!("K h/E = 1e{decade}: glued {glued}, sliding {sliding}");
-        assert!(glued <= 20 && sliding <= 40);
+        assert!(glued <= 20 && sliding <= 20);
     }
     // Neighbours of any stiffness.
     let count = iterations(&system, |point| {

@@ -10,7 +10,7 @@
 //! exactly on the next one. What stiff walls make of these motions is left to the multigrid, see
 //! [`kluft_algebra::multigrid`].
 
-use kluft_algebra::multigrid::{CoarseBasis, MeanField};
+use kluft_algebra::multigrid::{CoarseBasis, Continuity, MeanField};
 use kluft_algebra::small::{Modes, add, product, rows_of, widen};
 use rayon::prelude::*;
 
@@ -158,9 +158,40 @@ impl<'a> SplitAggregates<'a> {
     /// `is_wanted` have none.
     pub(super) fn basis(&self, is_wanted: impl Fn(usize) -> bool + Sync + Send) -> CoarseBasis {
         let rows = self.space.points.len();
-        CoarseBasis::new(rows, self.modes(), |unknown| match is_wanted(unknown) {
+        let basis = CoarseBasis::new(rows, self.modes(), |unknown| match is_wanted(unknown) {
             true => self.motion(unknown),
             false => Vec::new(),
+        });
+        basis.divided(self.continuity())
+    }
+
+    /// The parts that continuous rock joins: those that move a point in common.
+    fn continuity(&self) -> Continuity {
+        let aggregates = 0..self.parts.len();
+        let joined = aggregates.into_par_iter().with_min_len(PER_TASK);
+        let joined = joined.flat_map_iter(|aggregate| {
+            let own = self.offset[aggregate]..self.offset[aggregate + 1];
+            let mut joined = vec![Vec::new(); own.len()];
+            for &(point, part) in &self.parts[aggregate] {
+                if part != FOLLOWS {
+                    joined[part as usize].extend(self.movers(point as usize));
+                }
+            }
+            for joined in &mut joined {
+                joined.sort_unstable();
+                joined.dedup();
+            }
+            joined
+        });
+        Continuity::new(&joined.collect::<Vec<_>>())
+    }
+
+    /// The parts that move a point.
+    fn movers(&self, point: usize) -> impl Iterator<Item = u32> {
+        let aggregates = self.entries(point).map(|(aggregate, _)| aggregate);
+        aggregates.filter_map(move |aggregate| {
+            let own = self.at(aggregate, point);
+            own.or_else(|| self.at(self.host(point)?, point))
         })
     }
 
