@@ -1,7 +1,9 @@
 //! How accurate a run says it is.
 
 use glam::DVec3;
-use kluft_solver::{Estimator, MeanError, Newton, Solution, StressError, System};
+use kluft_solver::{
+    Estimator, FacetResult, MeanError, Newton, Solution, StressError, System, dual_solution,
+};
 
 use crate::summary::FractureSummary;
 
@@ -41,20 +43,49 @@ const ITERATION: f64 = 1e-9;
 /// Slip, as a share of the largest jump, from which on it has an error of its own.
 const SLIPS: f64 = 1e-3;
 
-/// Estimates the errors of a step; those of the jumps too if asked.
+/// Displacements under unit tractions on the walls, by which errors of stresses become errors of
+/// jumps.
+pub struct Duals {
+    /// Under tractions along the normals.
+    opening: Vec<DVec3>,
+    /// Under tractions along the slip, if any slips.
+    slip: Option<Vec<DVec3>>,
+}
+
+/// What errors of jumps are estimated by; none without fractures, or if a linear solve fails.
+pub fn duals(system: &System<'_>, newton: &mut Newton, solution: &Solution) -> Option<Duals> {
+    let points = system.discretisation().interface().points();
+    let results = &solution.facet_points;
+    if results.is_empty() {
+        return None;
+    }
+    let mut dual = |directions: &[DVec3]| dual_solution(system, newton, directions).ok();
+    let normals: Vec<DVec3> = points.iter().map(|point| point.normal).collect();
+    let opening = dual(&normals)?;
+    let slips = largest(results, |result| result.slip) > SLIPS * largest(results, |r| r.jump);
+    let along: Vec<DVec3> = results.iter().map(|r| r.slip.normalize_or_zero()).collect();
+    let slip = if slips { Some(dual(&along)?) } else { None };
+    Some(Duals { opening, slip })
+}
+
+/// Largest length of a vector of the results.
+fn largest(results: &[FacetResult], of: impl Fn(&FacetResult) -> DVec3) -> f64 {
+    let lengths = results.iter().map(|result| of(result).length());
+    lengths.fold(0.0, f64::max)
+}
+
+/// Estimates the errors of a step; those of the jumps if there is something to estimate them by.
 pub fn of(
     system: &System<'_>,
-    newton: &mut Newton,
     estimator: &Estimator,
     solution: &Solution,
-    of_jumps: bool,
+    duals: Option<&Duals>,
 ) -> Accuracy {
     let error = estimator.stress_error(system, &solution.displacements);
     let stress_errors = (0..error.of_cell.len()).map(|cell| {
         let modulus = system.problem().rock(cell).young_modulus;
         (modulus * error.of_cell[cell] / error.volumes[cell]).sqrt()
     });
-    let has_jumps = !solution.facet_points.is_empty();
     Accuracy {
         relative: error.relative(),
         energy: 0.5 * error.energy,
@@ -64,23 +95,19 @@ pub fn of(
             .iter()
             .map(|part| part / error.energy)
             .collect(),
-        jumps: (of_jumps && has_jumps)
-            .then(|| of_all_jumps(estimator, system, newton, solution, &error))
-            .flatten(),
+        jumps: duals.map(|duals| of_all_jumps(estimator, system, duals, solution, &error)),
     }
 }
 
 fn of_all_jumps(
     estimator: &Estimator,
     system: &System<'_>,
-    newton: &mut Newton,
+    duals: &Duals,
     solution: &Solution,
     stress: &StressError,
-) -> Option<JumpAccuracy> {
+) -> JumpAccuracy {
     let points = system.discretisation().interface().points();
     let results = &solution.facet_points;
-    let largest =
-        |of: fn(&kluft_solver::FacetResult) -> f64| results.iter().map(of).fold(0.0, f64::max);
     let mesh = &system.problem().mesh;
     let has_plain_fronts = !mesh.has_quarter_points && mesh.front_nodes().contains(&true);
     let safety = if has_plain_fronts {
@@ -88,22 +115,10 @@ fn of_all_jumps(
     } else {
         SAFETY
     };
-    let largest_jump = largest(|result| result.jump.length());
-    let floor = ITERATION * largest_jump;
-    let mut mean_error = |directions: &[DVec3]| {
-        estimator
-            .mean_error(system, newton, directions, stress)
-            .ok()
-    };
-    let normals: Vec<DVec3> = points.iter().map(|point| point.normal).collect();
-    let opening = mean_error(&normals)?;
-    let slips = largest(|result| result.slip.length()) > SLIPS * largest_jump;
-    let along: Vec<DVec3> = results.iter().map(|r| r.slip.normalize_or_zero()).collect();
-    let slip = if slips {
-        Some(mean_error(&along)?)
-    } else {
-        None
-    };
+    let floor = ITERATION * largest(results, |result| result.jump);
+    let mean_error = |dual: &Vec<DVec3>| estimator.mean_error(system, dual, stress);
+    let opening = mean_error(&duals.opening);
+    let slip = duals.slip.as_ref().map(mean_error);
     let mut mean_jump = vec![(0.0, 0.0); system.problem().fractures.len()];
     for (point, result) in points.iter().zip(results) {
         let (sum, area) = &mut mean_jump[point.fracture as usize];
@@ -122,12 +137,12 @@ fn of_all_jumps(
         let errors = error.of_fracture.iter();
         errors.map(|error| safety * error + floor).collect()
     };
-    Some(JumpAccuracy {
+    JumpAccuracy {
         of_cell: of_cell.collect(),
         nearest_fracture: estimator.nearest_fracture.clone(),
         aperture: uncertainty(&opening),
         slip: slip.as_ref().map(uncertainty),
-    })
+    }
 }
 
 impl Accuracy {

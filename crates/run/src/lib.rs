@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `run` | the story: former run, mesh, problem, load steps, summary |
 //! | `stages`, `steps` | what is computed once, and what at each load step |
+//! | `step_results` | what is taken of a load step that was solved |
 //! | `strength`, `strength_motion`, `strength_summary` | the factor of safety, by strength reduction |
 //! | `sequence` | one body after the other, where phases remove and add volumes |
 //! | `advance`, `cases` | load steps on prepared rock, as a caller asks for them |
@@ -85,6 +86,7 @@ mod sequence;
 mod set_up;
 mod spread;
 mod stages;
+mod step_results;
 mod steps;
 mod strength;
 mod strength_motion;

@@ -16,10 +16,17 @@ impl Workload {
         } else {
             0
         };
+        let estimate = estimate_bytes(mesh);
+        // One load step is estimated when there is no solver any more.
+        let (always, after) = match self.steps {
+            1 => (0, estimate),
+            _ => (estimate, 0),
+        };
         Self {
             extra: ExtraMemory {
-                always: estimate_bytes(mesh),
+                always,
                 iterative,
+                after,
             },
             ..self
         }

@@ -185,27 +185,17 @@ impl Estimator {
         error
     }
 
-    /// Estimates the error of the mean over each fracture of the jump along `directions`, one for
-    /// each facet point: with normals of the mean opening, with those of slip of the mean slip. It
-    /// costs one rough linear solve with the tangent that `newton` used last.
-    ///
-    /// # Errors
-    /// If that solve fails.
+    /// Estimates the error of the mean over each fracture of the jump along some directions, given
+    /// the [`dual_solution`] along these.
     pub fn mean_error(
         &self,
         system: &System<'_>,
-        newton: &mut Newton,
-        directions: &[DVec3],
+        dual: &[DVec3],
         stress: &StressError,
-    ) -> Result<MeanError, LinearFailure> {
-        let interface = &system.discretisation.interface;
-        let mut forces = vec![DVec3::ZERO; system.discretisation.points.len()];
-        interface.add_forces(directions, 1.0, &mut forces);
-        let pressed = newton.respond(system, &forces, ROUGH)?;
-        let pressed = system.displacements(&pressed, &Load::NONE);
-        let dual = self.error_beside(system, &pressed, &StrainOffsets::default());
+    ) -> MeanError {
+        let dual = self.error_beside(system, dual, &StrainOffsets::default());
         let mut areas = vec![0.0; system.problem.fractures.len()];
-        for point in &interface.points {
+        for point in &system.discretisation.interface.points {
             areas[point.fracture as usize] += point.area;
         }
         let mut of_fracture = vec![0.0; areas.len()];
@@ -220,11 +210,30 @@ impl Estimator {
                 of_fracture[fracture as usize] += part;
                 part
             });
-        Ok(MeanError {
+        MeanError {
             of_cell: of_cell.collect(),
             of_fracture,
-        })
+        }
     }
+}
+
+/// Displacements `z` (m), one a point, under a unit traction on the walls along `directions`, one
+/// for each facet point: with normals they tell of the mean opening, with the directions of slip of
+/// the mean slip, see [`Estimator::mean_error`]. It costs one rough linear solve with the tangent
+/// that `newton` used last.
+///
+/// # Errors
+/// If that solve fails.
+pub fn dual_solution(
+    system: &System<'_>,
+    newton: &mut Newton,
+    directions: &[DVec3],
+) -> Result<Vec<DVec3>, LinearFailure> {
+    let mut forces = vec![DVec3::ZERO; system.discretisation.points.len()];
+    let interface = &system.discretisation.interface;
+    interface.add_forces(directions, 1.0, &mut forces);
+    let pressed = newton.respond(system, &forces, ROUGH)?;
+    Ok(system.displacements(&pressed, &Load::NONE))
 }
 
 #[cfg(test)]

@@ -97,6 +97,15 @@ pub struct ExtraMemory {
     pub always: usize,
     /// Beside one that iterates (bytes).
     pub iterative: usize,
+    /// After the last solve, when there is no solver any more (bytes).
+    pub after: usize,
+}
+
+impl ExtraMemory {
+    /// With what a solver takes (bytes).
+    pub fn with(self, solver: usize) -> usize {
+        (solver + self.always).max(self.after)
+    }
 }
 
 /// What will be asked of the solver.
@@ -324,10 +333,9 @@ pub(super) fn predict(
     Prediction {
         method,
         seconds: seconds + ANALYSIS * 3.0 * unknowns.points.len() as f64,
-        memory_bytes: analysis.memory_bytes()
-            + extra as usize
-            + workload.flow_bytes(unknowns)
-            + workload.extra.always,
+        memory_bytes: workload
+            .extra
+            .with(analysis.memory_bytes() + extra as usize + workload.flow_bytes(unknowns)),
         factor_entries: analysis.factor_entries(),
         operations: analysis.factor_operations(),
     }
@@ -355,10 +363,11 @@ pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Predictio
         method: LinearMethod::Iterative,
         seconds: blocks * (SETUP_BYTES + workload.difficulty * iterations * ITERATION_BYTES)
             / BYTES,
-        memory_bytes: (blocks * MEMORY_BYTES) as usize
-            + workload.flow_bytes(unknowns)
-            + workload.extra.iterative
-            + workload.extra.always,
+        memory_bytes: workload.extra.with(
+            (blocks * MEMORY_BYTES) as usize
+                + workload.flow_bytes(unknowns)
+                + workload.extra.iterative,
+        ),
         factor_entries: 0,
         operations: 0.0,
     }
