@@ -142,6 +142,46 @@ fn a_block_that_falls_onto_friction_is_said_to_rest_anywhere() {
     }
 }
 
+/// A block that is moved over an open gap while it closes, at three tenths of the way, and sticks
+/// from then on: its slip is three tenths of 0.3 mm, also where one increment and its halves both
+/// take the walls to have met at once. It is right to the path accuracy of the largest jump (0.31
+/// mm), or to the smallest substep, and then the run says so.
+#[test]
+fn walls_that_meet_on_the_way_stick_where_they_meet() {
+    let steps = [
+        "",
+        "[load]\nsteps = [0.7, 1.0]\n",
+        "[load]\nsteps = [0.2, 1.0]\n",
+    ];
+    for steps in steps {
+        let end = "[boundary.bottom]";
+        let edits = [(end, &*format!("{steps}{end}"))];
+        for said in solved_by(&SOLVERS[..1], "closing_gap.toml", &edits) {
+            let slip = said["fractures"]["f"]["slip_max"].as_f64().expect("a slip");
+            let says_so = said["steps"]
+                .to_string()
+                .contains("however short it is divided");
+            let allowed = if says_so { 1.0 / 64.0 } else { 1e-3 };
+            assert!(
+                (slip - 9e-5).abs() < allowed * 3.13e-4,
+                "{steps}: {slip:e} m"
+            );
+        }
+    }
+}
+
+/// Walls of a contact without elastic slip, at the limit of friction, whose tractions must turn
+/// before they slide: Newton's method stands still there without being at the end. It sees that,
+/// and does not spend all its iterations first.
+#[test]
+fn tractions_that_turn_at_the_limit_of_friction_cost_few_iterations() {
+    let said = solved_by(&SOLVERS[..1], "turning_tractions.toml", &[]);
+    let steps = said[0]["steps"].as_array().expect("steps");
+    let substeps = steps[1]["substeps"].as_array().expect("substeps");
+    let long = substeps.iter().filter(|count| count.as_u64() > Some(30));
+    assert!(long.count() * 10 < substeps.len(), "{substeps:?}");
+}
+
 /// A core in a contact without friction: pressed from above, free to the sides.
 #[test]
 fn apertures_beside_rock_that_floats_are_no_results() {

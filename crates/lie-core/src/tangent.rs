@@ -34,7 +34,7 @@ impl FractureLaw {
             rigid,
         };
         match &self.friction {
-            Some(friction) if state.sliding => point.slip(friction),
+            Some(friction) if state.sliding || point.is_apart(friction) => point.slip(friction),
             _ => point.stick(),
         }
     }
@@ -50,6 +50,13 @@ struct TangentPoint<'a> {
 }
 
 impl TangentPoint<'_> {
+    /// Whether the walls are apart and carry no shear, although they never moved.
+    fn is_apart(&self, friction: &Friction) -> bool {
+        let separation = self.law.undilated(self.state, self.history);
+        let limit = self.law.limit(friction, self.state, self.history);
+        limit == 0.0 && self.law.closure.gap(separation) > 0.0
+    }
+
     fn stick(&self) -> Tangent {
         let (law, normal, slip) = (self.law, self.normal, self.state.slip);
         let across = self.slope();
@@ -180,5 +187,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Walls that never touched slide from the start; walls that touch do not before they have to.
+    #[test]
+    fn walls_that_are_apart_resist_nothing() {
+        let closure = Closure::new(1e-4, f64::INFINITY, ClosureKind::Contact);
+        let law = FractureLaw {
+            friction: Some(Friction {
+                coefficient: 0.6,
+                cohesion: 0.0,
+                dilation: 0.0,
+            }),
+            ..FractureLaw::elastic(closure, f64::INFINITY)
+        };
+        let resistance = |aperture: f64| {
+            let state = JointState {
+                separation: law.closure.opened(aperture - 1e-4),
+                ..JointState::default()
+            };
+            let tangent = law.tangent(&state, &JointHistory::default(), DVec3::Z, 1e15);
+            tangent.exact.x_axis.x
+        };
+        assert_eq!([resistance(1e-4), resistance(0.0)], [0.0, 1e15]);
     }
 }

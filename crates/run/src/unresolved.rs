@@ -13,8 +13,8 @@ pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
     let place = place.map(|point| facet_place(system.problem(), system, point));
     let what = match path.cause {
         UnresolvedCause::Differs(difference) => format!(
-            "however short it is divided, one increment and two lead to jumps that differ by {:.1} % \
-             of the largest",
+            "however short it is divided, its increments leave jumps uncertain by {:.1} % of the \
+             largest",
             100.0 * difference
         ),
         UnresolvedCause::HalvesDoNotEnd => {

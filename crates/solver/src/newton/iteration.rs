@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use glam::DVec3;
 use kluft_algebra::{LinearFailure, norm};
 use rayon::prelude::*;
 
@@ -25,6 +26,12 @@ const OVERSHOOT: f64 = 100.0;
 const NEARLY_CONVERGED: f64 = 1e-6;
 /// Iterations beyond the most ones that one may take that is about to end.
 const LAST_ITERATIONS: usize = 5;
+/// Change of an iteration, against the largest displacement, below which nothing moves any more.
+const STILL: f64 = 1e-9;
+/// Share of the errors before that an iteration keeps which leads nowhere.
+const KEPT: f64 = 0.9;
+/// Iterations in a row that lead nowhere and move nothing, after which none will.
+const MOST_STILL: usize = 2;
 
 impl Iterate {
     /// Adds a correction to the unknowns, lets the facet points follow, and measures the errors.
@@ -76,6 +83,27 @@ impl Iterate {
     }
 }
 
+/// The test whether an iteration goes nowhere because nothing moves any more: rigid walls at the
+/// limit of friction hardly turn their tractions while they stick.
+#[derive(Default)]
+struct Stall {
+    /// Errors after the last iteration.
+    merit: f64,
+    /// Iterations in a row that led nowhere.
+    count: usize,
+}
+
+impl Stall {
+    /// Whether the iterations up to this one have gone nowhere.
+    fn has_come_with(&mut self, iteration: &Iteration) -> bool {
+        let merit = line_search::merit(iteration);
+        let goes_nowhere = iteration.increment < STILL && merit > KEPT * self.merit;
+        self.count = if goes_nowhere { self.count + 1 } else { 0 };
+        self.merit = merit;
+        self.count == MOST_STILL
+    }
+}
+
 impl Newton {
     /// Iterates until the tests hold.
     ///
@@ -96,6 +124,10 @@ impl Newton {
         match (failed, start) {
             (Ok(()), _) => Ok(()),
             (Err(outcome), Some(start)) if outcome != StepOutcome::Stopped => {
+                let is_near = iterate.merit.is_some_and(|merit| merit < NEARLY_CONVERGED);
+                if is_near && self.loosen(step, iterate)? {
+                    return Ok(());
+                }
                 *iterate = start;
                 self.iterate_by_splitting(step, iterate, outcome)
             }
@@ -115,6 +147,7 @@ impl Newton {
         iterate: &mut Iterate,
     ) -> Result<(), StepOutcome> {
         let mut rigid_body_motion = RigidBodyMotion::default();
+        let mut stall = Stall::default();
         let mut is_near = false;
         for count in 1..=most + LAST_ITERATIONS {
             if count > most && !is_near {
@@ -130,6 +163,9 @@ impl Newton {
             // Springs hold every block.
             if iterate.linearisation == Linearisation::Tangents {
                 rigid_body_motion.test(step, iterate, &iteration, count)?;
+                if stall.has_come_with(&iteration) && !step.system.is_smooth() {
+                    break;
+                }
             }
         }
         Err(StepOutcome::OutOfIterations)
@@ -159,6 +195,7 @@ impl Newton {
             match damping::stronger(start.damping) {
                 Some(damping) if overshoots => *iterate = Iterate { damping, ..start },
                 _ => {
+                    step.predicts = false;
                     iterate.damping = damping::weaker(iterate.damping);
                     return Ok(iteration);
                 }
@@ -185,6 +222,9 @@ impl Newton {
             LinearFailure::NotFinite => StepOutcome::NotFinite(None),
             failure => StepOutcome::Linear(failure),
         })?;
+        if step.predicts {
+            step.predicted = predicted(system, iterate, &correction);
+        }
         let update = Update {
             correction: &correction,
             planes: &planes,
@@ -269,5 +309,60 @@ impl Newton {
         let correction = Correction::of(system, solution.unknowns, false);
         let correction = correction.with_potentials(solution.potentials);
         Ok((correction, solution.iterations))
+    }
+}
+
+/// How far the first linear solve of an increment moves walls (m).
+fn predicted(system: &System<'_>, start: &Iterate, correction: &Correction) -> Vec<DVec3> {
+    let mut moved = interface(system).jumps(&correction.unknowns, &Load::NONE);
+    for (moved, state) in moved.iter_mut().zip(&start.state.facet_points) {
+        *moved += state.jump_residual;
+    }
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn iteration(increment: f64, error: f64) -> Iteration {
+        Iteration {
+            force_residual: error,
+            increment,
+            closure_error: 0.0,
+            pressure_increment: 0.0,
+            mass_error: 0.0,
+            smallest_aperture: 0.0,
+            linear_iterations: 0,
+            share: 1.0,
+        }
+    }
+
+    /// Neither small corrections that make errors smaller nor large ones that do not are a stall.
+    #[test]
+    fn iterations_stall_where_nothing_moves_and_errors_stay() {
+        let stalls = |iterations: &[[f64; 2]]| {
+            let mut stall = Stall::default();
+            let mut found = iterations.iter();
+            found.any(|&[increment, error]| stall.has_come_with(&iteration(increment, error)))
+        };
+        assert!(stalls(&[
+            [1e-2, 1e-3],
+            [1e-11, 1e-8],
+            [1e-12, 1e-8],
+            [1e-12, 1e-8]
+        ]));
+        assert!(!stalls(&[
+            [1e-10, 1e-6],
+            [1e-11, 1e-7],
+            [1e-12, 1e-8],
+            [1e-13, 1e-9]
+        ]));
+        assert!(!stalls(&[
+            [1e-3, 1e-3],
+            [1e-3, 1e-3],
+            [1e-3, 1e-3],
+            [1e-3, 1e-3]
+        ]));
     }
 }

@@ -84,6 +84,8 @@ impl Newton {
     ) -> Result<State, StepOutcome> {
         step.go_on()?;
         step.record.rigid_motions.clear();
+        step.predicted.clear();
+        step.predicts = step.system.is_path_dependent();
         let mut iterate = self.predict(step.system, from, load);
         let converged = self.iterate_to_convergence(step, &mut iterate);
         if let Err(outcome) = converged {

@@ -33,6 +33,7 @@ mod iterate;
 mod iteration;
 mod line_search;
 mod load_step;
+mod path_error;
 mod predictor;
 mod record;
 mod recycling;

@@ -75,7 +75,8 @@ pub struct UnresolvedPath {
 /// Why a path is not resolved, the worst last.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub enum UnresolvedCause {
-    /// One increment and two, however short, differ by so much in their jumps, against the largest.
+    /// One increment and two, however short, differ by so much in their jumps, against the largest,
+    /// or walls slip by so much in one until they meet.
     Differs(f64),
     /// One increment leads to an equilibrium, and two shorter ones to none.
     HalvesDoNotEnd,
@@ -100,8 +101,8 @@ pub struct StepRecord {
     /// The part of it, if any, whose path is least resolved.
     pub unresolved: Option<UnresolvedPath>,
     /// Estimate of how far its increments lead the jumps off the path of the loads (m): the sum
-    /// over its substeps of the largest difference of a jump in one increment and in two. 0 where
-    /// the path does not matter.
+    /// over its substeps of the largest difference of a jump in one increment and in two, or slip
+    /// of walls until they meet in one. 0 where the path does not matter.
     pub path_error: f64,
     /// Largest difference of a time step of its flow in one increment and in two that exceeds what
     /// is allowed, however short the step was divided; see

@@ -19,6 +19,8 @@ use super::{Newton, Step, StepOutcome};
 
 /// Iterations before Newton's method is tried the first time; each time after twice as many.
 const FIRST_ITERATIONS: usize = 20;
+/// Iterations before it is tried where it nearly converged but does not move any more.
+const LOOSENING_ITERATIONS: usize = 5;
 /// How often it is tried.
 const TRIALS: u32 = 3;
 /// How often where shorter increments are to be tried.
@@ -27,6 +29,30 @@ const BRIEF_TRIALS: u32 = 1;
 const NEWTON_ITERATIONS: usize = 10;
 
 impl Newton {
+    /// Iterates a little by the splitting and then by Newton's method from an iterate that nearly
+    /// converged but does not move any more; whether the tests hold then.
+    ///
+    /// # Errors
+    /// If the observer stops the step.
+    pub(super) fn loosen(
+        &mut self,
+        step: &mut Step<'_>,
+        iterate: &mut Iterate,
+    ) -> Result<bool, StepOutcome> {
+        iterate.linearisation = Linearisation::Springs;
+        match self.iterate_at_most(LOOSENING_ITERATIONS, step, iterate) {
+            Err(StepOutcome::OutOfIterations) => {}
+            Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
+            ended => return Ok(ended.is_ok()),
+        }
+        iterate.linearisation = Linearisation::Tangents;
+        iterate.last_trials = vec![LastTrial::default(); iterate.last_trials.len()];
+        match self.iterate_at_most(NEWTON_ITERATIONS, step, iterate) {
+            Err(StepOutcome::Stopped) => Err(StepOutcome::Stopped),
+            ended => Ok(ended.is_ok()),
+        }
+    }
+
     /// Iterates by the splitting and by Newton's method in turn until the tests hold.
     ///
     /// # Errors

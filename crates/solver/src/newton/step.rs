@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use glam::DVec3;
+
 use crate::space::rigid_modes::FreeBody;
 
 use super::free_blocks;
@@ -21,6 +23,8 @@ pub(super) struct Step<'a> {
     pub(super) share: f64,
     /// Whether the increment at hand is given up soon, because shorter ones are to be tried.
     pub(super) is_tried_briefly: bool,
+    /// The largest jump (m) at the end of the load step as one increment has it, if it does.
+    pub(super) end_size: Option<f64>,
     /// How far jumps, against the largest, are off the path because no division resolved it: the
     /// sum over its substeps.
     pub(super) lost: f64,
@@ -28,6 +32,10 @@ pub(super) struct Step<'a> {
     pub(super) is_torn: bool,
     /// Blocks that an increment from the same state as that at hand pushed.
     pub(super) pushed: Vec<FreeBody>,
+    /// Whether the linear solve at hand is the first of its increment.
+    pub(super) predicts: bool,
+    /// How far the first linear solve of the last increment moves walls (m).
+    pub(super) predicted: Vec<DVec3>,
     /// Whether the state is kept in which an increment failed.
     pub(super) keeps_end: bool,
     /// The state in which the last increment failed, if it is kept.
@@ -43,14 +51,24 @@ impl<'a> Step<'a> {
             record: StepRecord::new(load.clone()),
             share: 1.0,
             is_tried_briefly: false,
+            end_size: None,
             lost: 0.0,
             is_torn: false,
             pushed: Vec::new(),
+            predicts: false,
+            predicted: Vec::new(),
             keeps_end: false,
             end: None,
             observe,
             is_stopped: false,
         }
+    }
+
+    /// What jumps are compared with in a state on the way whose largest jump is `size` (m): the
+    /// largest that the load step leads to, if they grow no faster than the load.
+    pub(super) fn size_at(&self, size: f64) -> f64 {
+        let at_end = self.end_size.unwrap_or(size);
+        size.max(at_end.min(size / self.share))
     }
 
     /// Records an iteration and tells the observer.

@@ -9,14 +9,10 @@
 //! in an instant, is let be and recorded.
 
 use glam::DVec3;
-use kluft_algebra::largest;
 
-use super::convergence::ratio;
-use super::determinacy::{self, Determinacy};
-use super::facet_points::interface;
 use super::free_blocks;
+use super::path_error::{self, Apart, Increment};
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
-use crate::FacetPointState;
 use crate::flow::Coupling;
 use crate::problem::Load;
 use crate::system::{State, System};
@@ -34,7 +30,7 @@ struct Substep {
     middle: End,
     end: End,
     /// Its end in one increment, if a longer substep has found it.
-    whole: Option<State>,
+    whole: Option<Ended>,
     /// Whether it is not divided any more.
     is_smallest: bool,
 }
@@ -48,12 +44,23 @@ struct End {
 
 /// The end of a substep in one increment and in two.
 struct Both<'a> {
+    from: &'a State,
     whole: &'a State,
-    halves: State,
+    half: &'a Ended,
+    end: Ended,
     /// Whether anything slid or broke on the way.
     slides: bool,
     /// Whether the substep is not divided any more.
     is_smallest: bool,
+}
+
+/// Where an increment has led.
+struct Ended {
+    state: State,
+    /// The share of the load step up to it.
+    share: f64,
+    /// How far its first linear solve moved walls (m).
+    predicted: Vec<DVec3>,
 }
 
 /// What a substep came to.
@@ -71,7 +78,7 @@ struct TooLong {
     why: Option<StepOutcome>,
     /// Its end and its middle in one increment each, if they were found.
     whole: Option<Box<State>>,
-    half: Option<Box<State>>,
+    half: Option<Box<Ended>>,
 }
 
 /// A state on the way, and the share of the step that leads to it.
@@ -88,7 +95,7 @@ struct Way {
     /// The end of the shortest substep from here that converged in one increment.
     coarse: Option<Reached>,
     /// The middle of the last substep, in one increment, if that was too long.
-    half: Option<Reached>,
+    half: Option<Box<Ended>>,
 }
 
 impl Newton {
@@ -124,7 +131,7 @@ impl Newton {
             let substep = Substep {
                 middle: End::between(&start, load, middle),
                 end: End::between(&start, load, end),
-                whole: known.map(|half| half.state),
+                whole: known.map(|half| *half),
                 is_smallest: way.increment <= SMALLEST_SUBSTEP,
             };
             // Whole steps are tried in earnest before they are divided.
@@ -141,7 +148,7 @@ impl Newton {
                         share: end,
                     })
                 }
-                Solved::TooLong(found) => self.divide(step, &mut way, found, [middle, end])?,
+                Solved::TooLong(found) => self.divide(step, &mut way, found, end)?,
             };
             if let Some(next) = next {
                 self.path.remember(step.system, &way.here.state);
@@ -163,7 +170,7 @@ impl Newton {
         step: &mut Step<'_>,
         way: &mut Way,
         found: TooLong,
-        [middle, end]: [f64; 2],
+        end: f64,
     ) -> Result<Option<Reached>, StepOutcome> {
         let is_torn = step.is_torn && found.whole.is_some();
         let reached = |share: f64| {
@@ -177,7 +184,7 @@ impl Newton {
         match found.why.filter(is_final) {
             None => {
                 way.increment *= 0.5;
-                way.half = found.half.map(reached(middle));
+                way.half = found.half;
                 Ok(None)
             }
             Some(outcome) if self.may_fall_back(step, &outcome) => Ok(None),
@@ -209,31 +216,36 @@ impl Newton {
                 return Solved::TooLong(found);
             }
         };
-        let slides = step.system.is_path_dependent() && !is_elastic(from, &whole);
+        if step.system.is_path_dependent() && substep.end.share == 1.0 {
+            let size = path_error::largest_jump(step.system, &whole.state);
+            step.end_size.get_or_insert(size);
+        }
+        let slides = step.system.is_path_dependent() && self.slides(step, from, &whole);
         let flows = step.system.coupling().is_some_and(Coupling::is_transient);
         if !slides && (!flows || self.settings.time >= 1.0) {
             return Solved::Accepted {
-                end: Box::new(whole),
+                end: Box::new(whole.state),
                 may_grow: true,
             };
         }
         if step.system.is_smooth() {
-            self.path.lead_to(step.system, &whole);
+            self.path.lead_to(step.system, &whole.state);
         }
         let half = self.solve_counted(step, from, &substep.middle);
-        let halves = match &half {
-            Ok(half) => self.solve_counted(step, half, &substep.end),
-            Err(outcome) => Err(outcome.clone()),
-        };
+        let halves = half.as_ref().map_err(Clone::clone).and_then(|half| {
+            let end = self.solve_counted(step, &half.state, &substep.end)?;
+            Ok((half, end))
+        });
         if step.system.is_smooth() {
             self.path.lead_on();
         }
-        found.half = half.ok().map(Box::new);
         let accepted = match halves {
-            Ok(halves) => {
+            Ok((half, end)) => {
                 let both = Both {
-                    whole: &whole,
-                    halves,
+                    from,
+                    whole: &whole.state,
+                    half,
+                    end,
                     slides,
                     is_smallest: substep.is_smallest,
                 };
@@ -245,23 +257,40 @@ impl Newton {
             }
         };
         accepted.unwrap_or_else(|| {
-            found.whole = Some(Box::new(whole));
+            found.half = half.ok().map(Box::new);
+            found.whole = Some(Box::new(whole.state));
             Solved::TooLong(found)
         })
+    }
+
+    /// Whether anything slides, breaks or meets on the way of an increment.
+    fn slides(&self, step: &Step<'_>, from: &State, whole: &Ended) -> bool {
+        if !path_error::is_elastic(from, &whole.state) {
+            return true;
+        }
+        if step.lost > 0.0 {
+            return false;
+        }
+        let rests = path_error::unfinished(step.system, &whole.since(from));
+        let slip = rests.into_iter().fold(0.0, f64::max);
+        let size = step.size_at(path_error::largest_jump(step.system, &whole.state));
+        slip > GROWTH_SHARE * self.path_tolerance(step) * size
     }
 
     /// Takes for the end of a substep that in two increments, and records how far that in one is
     /// from it; none if that is too far for a substep that may be divided.
     fn accept(&self, step: &mut Step<'_>, both: Both<'_>) -> Option<Solved> {
-        let (whole, halves) = (both.whole, both.halves);
+        let (whole, halves) = (both.whole, &both.end.state);
         let flows = step.system.coupling().is_some_and(Coupling::is_transient);
-        let slid = both.slides.then_some(self.settings.path);
-        let apart = slid.map(|tolerance| difference(step.system, whole, &halves, tolerance));
-        let in_time = flows.then(|| flows_apart(step.system, whole, &halves));
+        let size = step.size_at(path_error::largest_jump(step.system, halves));
+        let allowed = self.path_tolerance(step);
+        let apart = both.slides.then(|| {
+            let [first, second] = both.increments();
+            Apart::of(step, whole, [&first, &second], [size, allowed])
+        });
+        let in_time = flows.then(|| flows_apart(step.system, whole, halves));
         let flow = in_time.map(|apart| apart / self.settings.time);
-        let path = apart
-            .as_ref()
-            .map(|apart| apart.share() / self.path_tolerance(step));
+        let path = apart.as_ref().map(|apart| apart.share() / allowed);
         let error = path.into_iter().chain(flow).fold(0.0, f64::max);
         if error > 1.0 && !both.is_smallest {
             return None;
@@ -273,27 +302,28 @@ impl Newton {
             self.leave_apart(step, &apart, both.is_smallest);
         }
         Some(Solved::Accepted {
-            end: Box::new(halves),
+            end: Box::new(both.end.state),
             may_grow: error <= GROWTH_SHARE || (step.lost > 0.0 && error <= 1.0),
         })
     }
 
     /// Records how far the jumps of one increment and of two are apart in a substep that stands.
     fn leave_apart(&self, step: &mut Step<'_>, apart: &Apart, is_smallest: bool) {
-        step.record.path_error += apart.length;
-        if apart.share() <= self.settings.path {
+        step.record.path_error += apart.length();
+        let (share, accuracy) = (apart.share(), self.settings.path);
+        if share <= accuracy {
             return;
         }
-        step.lost += apart.share();
+        step.lost += share;
         if is_smallest {
             step.leave_unresolved(UnresolvedPath {
-                cause: UnresolvedCause::Differs(apart.share()),
-                facet_point: apart.facet_point,
+                cause: UnresolvedCause::Differs(share),
+                facet_point: apart.facet_point(),
             });
         }
     }
 
-    /// How far the jumps of one increment and of two may be apart: what is left of a path that is
+    /// How far jumps may be off in a substep, against the largest: what is left of a path that is
     /// lost is not followed more closely than it has been.
     fn path_tolerance(&self, step: &Step<'_>) -> f64 {
         let accuracy = self.settings.path;
@@ -306,13 +336,34 @@ impl Newton {
         step: &mut Step<'_>,
         from: &State,
         to: &End,
-    ) -> Result<State, StepOutcome> {
+    ) -> Result<Ended, StepOutcome> {
         let before = step.record.iterations.len();
         step.share = to.share;
-        let end = self.solve_increment(step, from, &to.load)?;
+        let state = self.solve_increment(step, from, &to.load)?;
+        let predicted = std::mem::take(&mut step.predicted);
         let iterations = step.record.iterations.len() - before;
         step.record.substeps.push(iterations);
-        Ok(end)
+        Ok(Ended {
+            state,
+            share: to.share,
+            predicted,
+        })
+    }
+}
+
+impl Ended {
+    fn since<'a>(&'a self, from: &'a State) -> Increment<'a> {
+        Increment {
+            from,
+            to: &self.state,
+            predicted: &self.predicted,
+        }
+    }
+}
+
+impl Both<'_> {
+    fn increments(&self) -> [Increment<'_>; 2] {
+        [self.half.since(self.from), self.end.since(&self.half.state)]
     }
 }
 
@@ -342,64 +393,6 @@ impl End {
             false => Load::between(start, end, share),
         };
         Self { load, share }
-    }
-}
-
-/// Whether nothing slid or broke on the way.
-fn is_elastic(from: &State, to: &State) -> bool {
-    let pairs = from.facet_points.iter().zip(&to.facet_points);
-    let unbroken = |(from, to): (&FacetPointState, &FacetPointState)| {
-        !to.joint.sliding && from.history.largest_opening == to.history.largest_opening
-    };
-    pairs.into_iter().all(unbroken)
-}
-
-/// How far the jumps of two states are apart.
-struct Apart {
-    /// Largest difference of a jump (m).
-    length: f64,
-    /// Largest jump in the second (m).
-    size: f64,
-    /// Where the difference is.
-    facet_point: Option<usize>,
-}
-
-impl Apart {
-    /// The largest difference against the largest jump.
-    fn share(&self) -> f64 {
-        ratio(self.length, self.size)
-    }
-}
-
-/// The largest difference of the jumps of two states; beyond a tolerance, as a share of the largest
-/// jump, of what the loads determine of them in the second.
-fn difference(system: &System<'_>, a: &State, b: &State, tolerance: f64) -> Apart {
-    let pairs = a.unknowns.iter().zip(&b.unknowns);
-    let between: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
-    let mut apart = interface(system).jumps(&between, &Load::NONE);
-    let size = largest(&interface(system).jumps(&b.unknowns, &b.load));
-    if largest(&apart) > tolerance * size {
-        leave_undetermined(system, b, &mut apart);
-    }
-    let length = |point: usize| apart[point].length();
-    Apart {
-        length: largest(&apart),
-        size,
-        facet_point: (0..apart.len()).max_by(|&a, &b| length(a).total_cmp(&length(b))),
-    }
-}
-
-/// Takes from jumps what the loads do not determine in a state: no shorter step would.
-fn leave_undetermined(system: &System<'_>, state: &State, jumps: &mut [DVec3]) {
-    let Some(facets) = determinacy::floating(system, state) else {
-        return;
-    };
-    for (jump, point) in jumps.iter_mut().zip(&interface(system).points) {
-        match facets[point.facet as usize] {
-            Determinacy::Aperture => *jump = DVec3::ZERO,
-            Determinacy::Slip => *jump = jump.dot(point.normal) * point.normal,
-            Determinacy::Determined | Determinacy::Metastable => {}
-        }
     }
 }
 

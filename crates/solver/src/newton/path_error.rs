@@ -1,0 +1,199 @@
+//! How far an increment may lead the jumps off the path of the loads.
+//!
+//! Two estimates, of which the larger counts. An increment is solved in one and in two, and their
+//! jumps are compared. That tells nothing of walls that meet in the first half: the laws take walls
+//! that stick at the end of an increment to have stuck all along, so both leave them where they
+//! were before it, although they have slipped until they met. By how much, the first linear solve
+//! tells, which does not know yet that they will. Once the path is lost, that does not matter any
+//! more.
+
+use glam::DVec3;
+use kluft_algebra::largest;
+use lie_core::FractureLaw;
+
+use super::Step;
+use super::convergence::ratio;
+use super::determinacy::{self, Determinacy};
+use super::facet_points::interface;
+use crate::FacetPointState;
+use crate::assembly::facet_point::FacetPoint;
+use crate::problem::Load;
+use crate::system::{State, System};
+
+/// An increment from one state to another.
+pub(super) struct Increment<'a> {
+    pub(super) from: &'a State,
+    pub(super) to: &'a State,
+    /// How far its first linear solve moves walls (m); empty if there was none.
+    pub(super) predicted: &'a [DVec3],
+}
+
+/// How far jumps may be off the path.
+pub(super) struct Apart {
+    /// At each facet point (m).
+    pub(super) lengths: Vec<f64>,
+    /// Largest jump (m).
+    pub(super) size: f64,
+}
+
+impl Apart {
+    /// Of the end of a substep in one increment, against that in two. What is beyond a `tolerance`
+    /// of `size` (m) is that of what the loads determine.
+    pub(super) fn of(
+        step: &Step<'_>,
+        whole: &State,
+        halves: [&Increment<'_>; 2],
+        [size, tolerance]: [f64; 2],
+    ) -> Self {
+        let (system, end) = (step.system, halves[1].to);
+        let differences = differences(system, whole, end);
+        let [first, second] = halves.map(|half| match step.lost > 0.0 {
+            true => vec![0.0; differences.len()],
+            false => unfinished(system, half),
+        });
+        let stays = |i: usize| !end.facet_points[i].joint.sliding;
+        let lengths = (0..differences.len()).map(|i| {
+            let before = if stays(i) { first[i] } else { 0.0 };
+            differences[i].length().max(before.max(second[i]))
+        });
+        let mut apart = Self {
+            lengths: lengths.collect(),
+            size,
+        };
+        if apart.length() > tolerance * size {
+            apart.leave_undetermined(system, end, &differences);
+        }
+        apart
+    }
+
+    /// The largest (m).
+    pub(super) fn length(&self) -> f64 {
+        self.lengths.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The largest against the largest jump.
+    pub(super) fn share(&self) -> f64 {
+        ratio(self.length(), self.size)
+    }
+
+    /// Where it is largest.
+    pub(super) fn facet_point(&self) -> Option<usize> {
+        let points = 0..self.lengths.len();
+        points.max_by(|&a, &b| self.lengths[a].total_cmp(&self.lengths[b]))
+    }
+
+    /// Takes away what the loads do not determine in a state: no shorter step would.
+    fn leave_undetermined(&mut self, system: &System<'_>, state: &State, jumps: &[DVec3]) {
+        let Some(facets) = determinacy::floating(system, state) else {
+            return;
+        };
+        for (i, point) in interface(system).points.iter().enumerate() {
+            match facets[point.facet as usize] {
+                Determinacy::Aperture => self.lengths[i] = 0.0,
+                Determinacy::Slip => self.lengths[i] = jumps[i].dot(point.normal).abs(),
+                Determinacy::Determined | Determinacy::Metastable => {}
+            }
+        }
+    }
+}
+
+fn differences(system: &System<'_>, a: &State, b: &State) -> Vec<DVec3> {
+    let pairs = a.unknowns.iter().zip(&b.unknowns);
+    let between: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
+    interface(system).jumps(&between, &Load::NONE)
+}
+
+/// The largest jump of a state (m).
+pub(super) fn largest_jump(system: &System<'_>, state: &State) -> f64 {
+    largest(&interface(system).jumps(&state.unknowns, &state.load))
+}
+
+/// Whether nothing slid or broke on the way.
+pub(super) fn is_elastic(from: &State, to: &State) -> bool {
+    let pairs = from.facet_points.iter().zip(&to.facet_points);
+    let unbroken = |(from, to): (&FacetPointState, &FacetPointState)| {
+        !to.joint.sliding && from.history.largest_opening == to.history.largest_opening
+    };
+    pairs.into_iter().all(unbroken)
+}
+
+/// How far walls that stick at the end of an increment have slipped in it until they met, at each
+/// facet point (m).
+pub(super) fn unfinished(system: &System<'_>, increment: &Increment<'_>) -> Vec<f64> {
+    let points = &interface(system).points;
+    let mut slips = vec![0.0; points.len()];
+    for (i, moved) in increment.predicted.iter().enumerate() {
+        let [from, to] = [increment.from, increment.to].map(|state| &state.facet_points[i]);
+        let (law, normal) = (system.law(&points[i]), points[i].normal);
+        if law.friction.is_some() && !to.joint.sliding {
+            slips[i] = slip_before_rest(law, from, *moved, normal) * held(law, &points[i]);
+        }
+    }
+    slips
+}
+
+/// How far walls slip that a linear solve has `moved` (m), until they meet and stick.
+fn slip_before_rest(law: &FractureLaw, from: &FacetPointState, moved: DVec3, normal: DVec3) -> f64 {
+    let across = moved.dot(normal);
+    let along = moved - across * normal;
+    let gap = open_by(law, from);
+    match gap > 0.0 && across < 0.0 {
+        true => (gap / -across).min(1.0) * along.length(),
+        false => 0.0,
+    }
+}
+
+/// What of the slip at which they stick walls hold against the rock: all, if they have no elastic
+/// slip.
+fn held(law: &FractureLaw, point: &FacetPoint) -> f64 {
+    1.0 / (1.0 + point.rock_stiffness().shear / law.shear_stiffness)
+}
+
+/// By how much walls are apart that carry nothing (m), else 0.
+fn open_by(law: &FractureLaw, state: &FacetPointState) -> f64 {
+    let undilated = state.joint.separation.moved(-state.history.dilation);
+    match state.joint.normal_traction >= 0.0 {
+        true => law.closure.gap(undilated).max(0.0),
+        false => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lie_core::{Closure, ClosureKind, Friction, JointState};
+
+    use super::*;
+
+    fn rough(aperture: f64) -> FractureLaw {
+        let closure = Closure::new(aperture, f64::INFINITY, ClosureKind::Contact);
+        FractureLaw {
+            friction: Some(Friction {
+                coefficient: 0.6,
+                cohesion: 0.0,
+                dilation: 0.0,
+            }),
+            ..FractureLaw::elastic(closure, f64::INFINITY)
+        }
+    }
+
+    fn at(law: &FractureLaw, joint: JointState) -> FacetPointState {
+        FacetPointState {
+            joint: JointState {
+                separation: law.closure.opened(0.0),
+                ..joint
+            },
+            jump_residual: DVec3::ZERO,
+            history: Default::default(),
+        }
+    }
+
+    /// Walls 0.3 mm apart that approach by 1 mm meet after three tenths of the way.
+    #[test]
+    fn walls_slip_until_their_gap_is_closed() {
+        let law = rough(3e-4);
+        let open = at(&law, JointState::default());
+        let slip = |moved| slip_before_rest(&law, &open, moved, DVec3::Z);
+        assert!((slip(DVec3::new(3e-4, 4e-4, -1e-3)) - 1.5e-4).abs() < 1e-18);
+        assert_eq!(slip(DVec3::new(3e-4, 0.0, 1e-3)), 0.0);
+    }
+}
