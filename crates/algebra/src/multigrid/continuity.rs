@@ -31,6 +31,12 @@ impl Continuity {
         }
     }
 
+    /// Whether one of some nodes is beside the interface.
+    pub(super) fn divides_any_of(&self, nodes: &[u32]) -> bool {
+        let mut nodes = nodes.iter();
+        nodes.any(|&node| !self.joined(node as usize).is_empty())
+    }
+
     /// Whether walls of the interface lie between two nodes.
     pub(super) fn is_broken(&self, a: usize, b: usize) -> bool {
         let [of_a, of_b] = [a, b].map(|node| self.joined(node));
@@ -46,11 +52,12 @@ impl Continuity {
         }
         let members = aggregates.members();
         let joined = (0..aggregates.count).into_par_iter().map(|aggregate| {
-            let nodes = || members.of(aggregate).iter().map(|&node| node as usize);
-            if nodes().all(|node| self.joined(node).is_empty()) {
+            let nodes = members.of(aggregate);
+            if !self.divides_any_of(nodes) {
                 return Vec::new();
             }
-            let beside = nodes().flat_map(|node| {
+            let nodes = nodes.iter().map(|&node| node as usize);
+            let beside = nodes.flat_map(|node| {
                 let neighbours = matrix.row(node).map(|(at, _)| at);
                 neighbours.filter(move |&at| !self.is_broken(node, at))
             });

@@ -26,8 +26,8 @@ pub enum CoarsestSolve {
 }
 
 impl LowerLevels {
-    /// From parts of the matrix of the first of them, which are summed in their order; and the
-    /// nodes.
+    /// From parts of the matrix of the first of them, which are summed in their order; and
+    /// its nodes.
     pub(super) fn of(
         parts: Vec<PartialProduct>,
         nodes: CoarseNodes<'_>,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::aggregation::{ALONE, Aggregates};
 use super::galerkin::Coarse;
-use crate::small::{Modes, inverse_factor, product, transpose, widen};
+use crate::small::{Modes, add, inverse_factor, product, transpose, widen};
 
 /// Smallest resistance of walls, in every direction, against all that resists the motion of nodes
 /// there, beyond which they need no motion against each other.
@@ -42,6 +42,9 @@ impl Coarse {
     /// Number of the component of each of some nodes, ascending, components in the order of their
     /// first nodes.
     fn components(&self, nodes: &[u32]) -> Vec<u32> {
+        if !self.continuity.divides_any_of(nodes) {
+            return vec![0; nodes.len()];
+        }
         let mut components = vec![ALONE; nodes.len()];
         let mut count = 0;
         for first in 0..nodes.len() {
@@ -81,11 +84,10 @@ impl Coarse {
         let [own, its] = [&self.modes[node], &self.modes[other]].map(translations);
         let resisted = product(&transpose(&own), &product(&transpose(&widen(block)), &its));
         let sizes = [&own, &its].map(|t| product(&transpose(t), t));
-        let half = |of: &dyn Fn(usize, usize) -> f64| -> [[f64; 3]; 3] {
-            std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * of(i, j)))
-        };
-        let size = half(&|i, j| sizes[0][i][j] + sizes[1][i][j]);
-        let tie = half(&|i, j| -resisted[i][j] - resisted[j][i]);
+        let (mut size, mut tie) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        sizes.iter().for_each(|one| add(&mut size, 0.5, one));
+        add(&mut tie, -0.5, &resisted);
+        add(&mut tie, -0.5, &transpose(&resisted));
         let (factor, is_free) = inverse_factor(&size, HELD);
         let mut share = product(&product(&factor, &tie), &transpose(&factor));
         for (axis, is_free) in is_free.into_iter().enumerate() {

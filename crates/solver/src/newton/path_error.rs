@@ -49,7 +49,7 @@ impl Apart {
         let differences = differences(system, whole, end);
         let [first, second] = halves.map(|half| match step.lost > 0.0 {
             true => vec![0.0; differences.len()],
-            false => unfinished(system, half),
+            false => slips_until_met(system, half),
         });
         let stays = |i: usize| !end.facet_points[i].joint.sliding;
         let lengths = (0..differences.len()).map(|i| {
@@ -119,21 +119,21 @@ pub(super) fn is_elastic(from: &State, to: &State) -> bool {
 
 /// How far walls that stick at the end of an increment have slipped in it until they met, at each
 /// facet point (m).
-pub(super) fn unfinished(system: &System<'_>, increment: &Increment<'_>) -> Vec<f64> {
+pub(super) fn slips_until_met(system: &System<'_>, increment: &Increment<'_>) -> Vec<f64> {
     let points = &interface(system).points;
     let mut slips = vec![0.0; points.len()];
     for (i, moved) in increment.predicted.iter().enumerate() {
         let [from, to] = [increment.from, increment.to].map(|state| &state.facet_points[i]);
         let (law, normal) = (system.law(&points[i]), points[i].normal);
         if law.friction.is_some() && !to.joint.sliding {
-            slips[i] = slip_before_rest(law, from, *moved, normal) * held(law, &points[i]);
+            slips[i] = slip_until_met(law, from, *moved, normal) * held(law, &points[i]);
         }
     }
     slips
 }
 
 /// How far walls slip that a linear solve has `moved` (m), until they meet and stick.
-fn slip_before_rest(law: &FractureLaw, from: &FacetPointState, moved: DVec3, normal: DVec3) -> f64 {
+fn slip_until_met(law: &FractureLaw, from: &FacetPointState, moved: DVec3, normal: DVec3) -> f64 {
     let across = moved.dot(normal);
     let along = moved - across * normal;
     let gap = open_by(law, from);
@@ -192,7 +192,7 @@ mod tests {
     fn walls_slip_until_their_gap_is_closed() {
         let law = rough(3e-4);
         let open = at(&law, JointState::default());
-        let slip = |moved| slip_before_rest(&law, &open, moved, DVec3::Z);
+        let slip = |moved| slip_until_met(&law, &open, moved, DVec3::Z);
         assert!((slip(DVec3::new(3e-4, 4e-4, -1e-3)) - 1.5e-4).abs() < 1e-18);
         assert_eq!(slip(DVec3::new(3e-4, 0.0, 1e-3)), 0.0);
     }

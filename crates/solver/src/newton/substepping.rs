@@ -271,8 +271,8 @@ impl Newton {
         if step.lost > 0.0 {
             return false;
         }
-        let rests = path_error::unfinished(step.system, &whole.since(from));
-        let slip = rests.into_iter().fold(0.0, f64::max);
+        let slips = path_error::slips_until_met(step.system, &whole.since(from));
+        let slip = slips.into_iter().fold(0.0, f64::max);
         let size = step.size_at(path_error::largest_jump(step.system, &whole.state));
         slip > GROWTH_SHARE * self.path_tolerance(step) * size
     }
