@@ -96,6 +96,12 @@ impl Communicator {
         }
     }
 
+    /// Gives each rank about as many of some rows.
+    pub fn divide_evenly(&self, rows: usize) -> Division {
+        let starts = (0..=self.size).map(|rank| rank * rows / self.size);
+        self.divide(RowOwnership::of_starts(starts.collect()))
+    }
+
     /// Gives each rank its part of some rows.
     ///
     /// # Panics

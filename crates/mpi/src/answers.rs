@@ -44,13 +44,18 @@ pub struct Traffic {
     pub levels: f64,
 }
 
-/// The preconditioner, or a part of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Preconditioner {
-    /// A cycle through all levels.
-    Cycle,
-    /// The inverses of the diagonal blocks of clusters alone.
-    Clusters,
+impl From<[f64; 6]> for Traffic {
+    /// In this order.
+    fn from([iterations, exchanges, messages, bytes, reductions, levels]: [f64; 6]) -> Self {
+        Self {
+            iterations,
+            exchanges,
+            messages,
+            bytes,
+            reductions,
+            levels,
+        }
+    }
 }
 
 /// What became of a solve.
@@ -64,4 +69,16 @@ pub struct Solved {
     pub broke: bool,
     /// Norm of the residual as a share of that of the right-hand side.
     pub residual: f64,
+}
+
+impl From<[f64; 4]> for Solved {
+    /// In this order, what is true being 1.
+    fn from([iterations, converged, broke, residual]: [f64; 4]) -> Self {
+        Self {
+            iterations: iterations as usize,
+            converged: converged != 0.0,
+            broke: broke != 0.0,
+            residual,
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kluft_solver::Communicator;
 
 use crate::answers::machine;
-use crate::petsc::World;
+use crate::petsc::{PetscFailure, World};
 
 /// This rank among all. One that cannot be asked any more ends the run.
 pub fn communicator(world: &Arc<World>) -> Communicator {
@@ -17,4 +17,21 @@ pub fn communicator(world: &Arc<World>) -> Communicator {
         }
     };
     Communicator::new(world.rank(), world.ranks(), Arc::new(all_gather))
+}
+
+impl World {
+    /// The numbers of all ranks, rank by rank; each gives as many.
+    ///
+    /// # Errors
+    /// Those of MPI.
+    pub fn gather(&self, own: &[u64]) -> Result<Vec<u64>, PetscFailure> {
+        let counts = vec![own.len(); self.ranks()];
+        let mut all = vec![0; own.len() * self.ranks()];
+        let (from, to) = (
+            bytemuck::cast_slice(own),
+            bytemuck::cast_slice_mut(&mut all),
+        );
+        self.gather_records(size_of::<u64>(), from, &counts, to)?;
+        Ok(all)
+    }
 }

@@ -1,20 +1,21 @@
 //! The linear solver whose rows are divided among ranks: PETSc's conjugate gradients and V-cycle on
-//! Kluft's levels.
+//! Kluft's levels and products.
 
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use kluft_solver::multigrid::{BlockList, FirstCoarsening, LevelPart, NextPart};
+use kluft_solver::multigrid::{
+    FirstCoarsening, FirstProlongator, LevelPart, LevelRows, NextPart, OwnClusters,
+};
 use kluft_solver::{
     Communicator, FixedPart, InterfaceBlocks, LinearFailure, LinearSolution, SolverHistory, System,
     TangentSolver, first_coarsening, first_guess, norm, serves,
 };
 
-use crate::levels::Levels;
-use crate::lines::EntryShape;
+use crate::levels::{Levels, products};
 use crate::partition::Partition;
-use crate::parts::SolverParts;
-use crate::petsc::{Matrix, PetscFailure, Preconditioner, Solver, World};
+use crate::parts::{LocalMap, MappedMatrix, SolverParts};
+use crate::petsc::{Matrix, PetscFailure, Solver, World};
 
 /// Iterations after which a linear solve has failed.
 const MAX_ITERATIONS: usize = 2000;
@@ -33,9 +34,9 @@ pub struct Distributed {
     communicator: Communicator,
     partition: Arc<Partition>,
     coarsening: FirstCoarsening,
-    /// The stiffness of the rock, the rows of this rank.
-    rock: Arc<Matrix>,
     solver: Option<Solver>,
+    /// Clusters of this rank in the matrix that the levels were made of.
+    clusters: Option<Arc<OwnClusters>>,
     /// Stiffness of the fractures, one block for each of the interface's columns.
     stiffness: Option<Vec<DMat3>>,
     /// The one that the levels were made with.
@@ -53,17 +54,13 @@ impl Distributed {
         let (coarsening, owner) = first_coarsening(system)?;
         let communicator = system.division().communicator().clone();
         let partition = Partition::of(owner, &communicator);
-        let rock = system.rock_rows();
-        let rock = matrix(world, &partition, |row, blocks| {
-            blocks.extend(partition.numbered(rock.row(row as usize)));
-        })?;
         Ok(Self {
             world: Arc::clone(world),
             communicator,
             partition: Arc::new(partition),
             coarsening,
-            rock: Arc::new(rock),
             solver: None,
+            clusters: None,
             stiffness: None,
             built_for: None,
             margin: 1.0,
@@ -87,8 +84,7 @@ impl Distributed {
             blocks: &stiffness,
         };
         let parts = self.parts(fixed, blocks)?;
-        let own = self.partition.own.len();
-        self.solver = Some(Solver::new(&self.world, own, parts)?);
+        self.solver = Some(Solver::new(&self.world, parts)?);
         self.built_for = Some(stiffness);
         Ok(())
     }
@@ -100,26 +96,71 @@ impl Distributed {
     ) -> Result<SolverParts<Matrix>, LinearFailure> {
         let rows = fixed.matrix.rows();
         let LevelPart {
+            clusters,
+            matrix,
             largest_eigenvalue,
-            inverse,
             prolongator,
             next,
         } = self.part(fixed, blocks)?;
-        let inverse = self.inverse(inverse)?;
-        let levels = match self.coarsening.has_next(rows) {
-            true => self.levels(prolongator, next)?,
-            false => Levels::none(),
+        let is_small = 3 * rows <= LARGEST_FACTOR;
+        let (levels, whole) = match self.coarsening.has_next(rows) {
+            true => (self.levels(prolongator, next)?, None),
+            false if is_small => (Levels::none(), Some(self.whole(&matrix)?)),
+            false => (Levels::none(), None),
         };
+        let number = |row: u32| self.partition.number[row as usize];
+        let finest = products(matrix, number);
         let bounds = std::iter::once(largest_eigenvalue).chain(levels.largest_eigenvalues);
+        let clusters = Arc::new(clusters);
+        self.clusters = Some(Arc::clone(&clusters));
         Ok(SolverParts {
-            rock: Arc::clone(&self.rock),
-            fractures: self.fractures(blocks)?,
-            inverse,
+            system: self.system(fixed),
+            scaling: scaling(clusters, self.partition.own.len()),
+            matrices: std::iter::once(finest).chain(levels.matrices).collect(),
             prolongators: levels.prolongators,
-            matrices: levels.matrices,
             coarsest: levels.coarsest,
+            whole,
             largest_eigenvalues: bounds.map(|bound| self.margin * bound).collect(),
-            is_small: 3 * rows <= LARGEST_FACTOR,
+        })
+    }
+
+    /// The tangent, whose products each solve makes.
+    fn system(&self, fixed: FixedPart<'_>) -> MappedMatrix {
+        let partition = &self.partition;
+        let ghosts = self.ghosts(fixed).into_iter();
+        let rows = 3 * partition.own.len();
+        MappedMatrix {
+            rows,
+            columns: rows,
+            block: 3,
+            ghosts: ghosts.map(|row| partition.number[row as usize]).collect(),
+            product: None,
+            transposed: None,
+        }
+    }
+
+    /// The rows of other ranks that those of this one couple to, ascending.
+    fn ghosts(&self, fixed: FixedPart<'_>) -> Vec<u32> {
+        let rank = self.world.rank() as u32;
+        let mut is_ghost = vec![false; self.partition.owner.len()];
+        for &row in &self.partition.own {
+            for (column, _) in fixed.matrix.row(row as usize) {
+                is_ghost[column as usize] = self.partition.owner[column as usize] != rank;
+            }
+        }
+        let rows = 0..is_ghost.len() as u32;
+        rows.filter(|&row| is_ghost[row as usize]).collect()
+    }
+
+    /// A small scaled matrix, entry by entry.
+    fn whole(&self, matrix: &LevelRows<3>) -> Result<Matrix, PetscFailure> {
+        let own = &self.partition.own;
+        let number = |place: usize| {
+            let ghost = || matrix.ghosts()[place - own.len()];
+            self.partition.number[own.get(place).copied().unwrap_or_else(ghost) as usize]
+        };
+        Matrix::by_rows(&self.world, own.len(), |row, blocks| {
+            blocks.extend(matrix.row(row).map(|(place, block)| (number(place), block)));
         })
     }
 
@@ -144,7 +185,7 @@ impl Distributed {
 
     fn levels(
         &self,
-        prolongator: BlockList<3, 6>,
+        prolongator: FirstProlongator,
         next: NextPart,
     ) -> Result<Levels, LinearFailure> {
         let lower = self.coarsening.levels_below(next, &self.communicator)?;
@@ -156,7 +197,7 @@ impl Distributed {
             }
         }
         let owners = self.owners(&movers);
-        Ok(Levels::of(&self.world, owners, prolongator, &lower)?)
+        Ok(Levels::of(&self.world, owners, prolongator, lower)?)
     }
 
     /// Rank of the first row that each node of the next level moves, from the first ones of this
@@ -170,42 +211,6 @@ impl Distributed {
         }
         let owner = |row: &u32| self.partition.owner.get(*row as usize).copied();
         lowest.iter().map(|row| owner(row).unwrap_or(0)).collect()
-    }
-
-    fn inverse(&self, rows: BlockList<3, 3>) -> Result<Matrix, PetscFailure> {
-        let number = |row: u32| self.partition.number[row as usize];
-        Matrix::square(&self.world, &rows, number)
-    }
-
-    /// The rows of this rank of what the fractures have in the tangent.
-    fn fractures(&self, added: InterfaceBlocks<'_>) -> Result<Matrix, PetscFailure> {
-        matrix(&self.world, &self.partition, |row, blocks| {
-            if let Ok(index) = added.pattern.rows.binary_search(&row) {
-                blocks.extend(self.partition.numbered(added.row(index)));
-            }
-        })
-    }
-
-    /// Takes a new stiffness of the fractures into the tangent: the rows of this rank that have
-    /// some of it.
-    fn update_fractures(
-        &mut self,
-        fixed: FixedPart<'_>,
-        stiffness: &[DMat3],
-    ) -> Result<(), LinearFailure> {
-        let blocks = InterfaceBlocks {
-            pattern: fixed.interface,
-            blocks: stiffness,
-        };
-        let partition = Arc::clone(&self.partition);
-        let rank = self.world.rank() as u32;
-        let rows = blocks.pattern.rows.iter().enumerate();
-        let own = rows.filter(|(_, row)| partition.owner[**row as usize] == rank);
-        let rows = own.map(|(index, &row)| {
-            let entries = partition.numbered(blocks.row(index)).collect();
-            (partition.number[row as usize], entries)
-        });
-        Ok(self.solver()?.update(rows)?)
     }
 
     fn solver(&mut self) -> Result<&mut Solver, LinearFailure> {
@@ -227,10 +232,12 @@ impl Distributed {
         vector
     }
 
-    fn clusters_alone(&mut self, rest: &[DVec3]) -> Result<Vec<DVec3>, LinearFailure> {
-        let own = self.own(rest);
-        let alone = self.solver()?.apply(Preconditioner::Clusters, &own)?;
-        Ok(self.all(&alone))
+    /// What the clusters alone, each by itself, do about forces.
+    fn clusters_alone(&self, rest: &[DVec3]) -> Vec<DVec3> {
+        let own: Vec<DVec3> = bytemuck::cast_vec(self.own(rest));
+        let clusters = self.clusters.as_ref();
+        let alone = clusters.map_or_else(Vec::new, |clusters| clusters.alone(&own));
+        self.all(bytemuck::cast_slice(&alone))
     }
 
     /// The correction for a residual, and its iterations.
@@ -241,9 +248,15 @@ impl Distributed {
         wanted: f64,
     ) -> Result<(Vec<DVec3>, usize), LinearFailure> {
         let own = self.own(residual);
+        let stiffness = self.stiffness.clone().unwrap_or_default();
+        let ghosts = self.ghosts(fixed);
+        let partition = Arc::clone(&self.partition);
         let mut iterations = 0;
         for attempt in 0..=MOST_WIDENINGS {
-            let (solution, solved) = self.solver()?.solve(&own, wanted, MAX_ITERATIONS)?;
+            let product = Box::new(product(fixed, &stiffness, [&partition.own, &ghosts]));
+            let (solution, solved) = self
+                .solver()?
+                .solve(product, &own, wanted, MAX_ITERATIONS)?;
             iterations += solved.iterations;
             if !solved.residual.is_finite() {
                 return Err(LinearFailure::NotFinite);
@@ -266,16 +279,44 @@ impl Distributed {
     }
 }
 
-/// The matrix of unknowns of which `row` adds the blocks of one to a list, by the global numbers of
-/// their columns.
-fn matrix(
-    world: &Arc<World>,
-    partition: &Partition,
-    row: impl Fn(u32, &mut Vec<(i64, [[f64; 3]; 3])>),
-) -> Result<Matrix, PetscFailure> {
-    let own = &partition.own;
-    let sizes = (EntryShape::square(3), [own.len(); 2]);
-    Matrix::by_rows(world, sizes, |at, blocks| row(own[at], blocks))
+/// Products with the tangent, from the entries in the rows `own` and `ghosts`.
+fn product<'a>(
+    fixed: FixedPart<'a>,
+    stiffness: &'a [DMat3],
+    [own, ghosts]: [&'a [u32]; 2],
+) -> impl FnMut(&[f64], &[f64], &mut [f64]) + Send + 'a {
+    let mut vector = vec![DVec3::ZERO; fixed.matrix.rows()];
+    move |own_entries, ghost_entries, product| {
+        for (rows, entries) in [(own, own_entries), (ghosts, ghost_entries)] {
+            let entries: &[DVec3] = bytemuck::cast_slice(entries);
+            for (&row, entry) in rows.iter().zip(entries) {
+                vector[row as usize] = *entry;
+            }
+        }
+        let products = fixed.products(stiffness, own, &vector);
+        product.copy_from_slice(bytemuck::cast_slice(&products));
+    }
+}
+
+/// The way of so many rows to scaled unknowns, and back.
+fn scaling(clusters: Arc<OwnClusters>, rows: usize) -> [LocalMap<'static>; 2] {
+    let back = Arc::clone(&clusters);
+    let map = |function| LocalMap {
+        own: 3 * rows,
+        ghosts: 0,
+        image: 3 * rows,
+        function,
+    };
+    [
+        map(Box::new(move |residual, _, scaled| {
+            let scaled = bytemuck::cast_slice_mut(scaled);
+            clusters.to_scaled(bytemuck::cast_slice(residual), scaled);
+        })),
+        map(Box::new(move |scaled, _, correction| {
+            let correction = bytemuck::cast_slice_mut(correction);
+            back.unscaled(bytemuck::cast_slice(scaled), correction);
+        })),
+    ]
 }
 
 impl TangentSolver for Distributed {
@@ -283,8 +324,6 @@ impl TangentSolver for Distributed {
         let built_for = self.built_for.as_deref();
         if !built_for.is_some_and(|built_for| serves(fixed, built_for, &stiffness)) {
             self.rebuild_for(fixed, stiffness.clone())?;
-        } else if self.stiffness.as_ref() != Some(&stiffness) {
-            self.update_fractures(fixed, &stiffness)?;
         }
         self.stiffness = Some(stiffness);
         Ok(())
@@ -301,18 +340,8 @@ impl TangentSolver for Distributed {
         let multiply = |vector: &[DVec3], product: &mut [DVec3]| {
             partition.multiply(fixed, &stiffness, (vector, product));
         };
-        let mut failure = None;
-        let alone = |rest: &[DVec3]| {
-            let alone = self.clusters_alone(rest);
-            alone.unwrap_or_else(|error| {
-                failure = Some(error);
-                vec![DVec3::ZERO; rest.len()]
-            })
-        };
+        let alone = |rest: &[DVec3]| self.clusters_alone(rest);
         let (mut unknowns, residual) = first_guess(alone, fixed.interface.rows, multiply, rhs);
-        if let Some(failure) = failure {
-            return Err(failure);
-        }
         let size = norm(&residual);
         if size == 0.0 {
             return Ok(LinearSolution {
@@ -381,7 +410,7 @@ impl TangentSolver for Distributed {
         rhs: &[DVec3],
     ) -> Result<Vec<DVec3>, LinearFailure> {
         let own = self.own(rhs);
-        let cycled = self.solver()?.apply(Preconditioner::Cycle, &own)?;
+        let cycled = self.solver()?.precondition(&own)?;
         Ok(self.all(&cycled))
     }
 }

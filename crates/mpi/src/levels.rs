@@ -1,12 +1,14 @@
-//! The levels below the finest one as matrices of PETSc. Each rank makes all of them, see
-//! [`LowerLevels`], and gives PETSc the rows that it owns.
+//! The levels as PETSc takes them. Each rank makes all below the finest one, see [`LowerLevels`],
+//! and keeps the rows that it owns: of matrices and prolongators in single precision, by functions
+//! for their products, of the inverse of the last matrix in a matrix of PETSc.
 
 use std::sync::Arc;
 
-use kluft_solver::multigrid::{BlockList, CoarsestSolve, LowerLevels};
-use kluft_solver::small::{product, transpose};
+use kluft_solver::multigrid::{
+    CoarsestSolve, FirstProlongator, LevelRows, LowerLevels, ProlongatorRows,
+};
 
-use crate::lines::EntryShape;
+use crate::parts::{LocalMap, MappedMatrix};
 use crate::petsc::{Matrix, PetscFailure, World};
 
 /// Nodes that a rank should have of a level; ranks next to each other give theirs to one of them
@@ -55,50 +57,17 @@ impl LevelNodes {
         }
     }
 
-    /// The matrix of a level, whose nodes these are.
-    fn matrix(
-        &self,
-        world: &Arc<World>,
-        lower: &LowerLevels,
-        level: usize,
-    ) -> Result<Matrix, PetscFailure> {
-        let sizes = (EntryShape::square(6), [self.own.len(); 2]);
-        Matrix::by_rows(world, sizes, |row, blocks| {
-            let entries = lower.matrix_row(level, self.own[row]);
-            blocks.extend(self.numbered(entries));
-        })
-    }
-
-    /// The prolongator to a level, whose nodes these are, from those `above`.
-    fn prolongator(
-        &self,
-        world: &Arc<World>,
-        lower: &LowerLevels,
-        (level, above): (usize, &Self),
-    ) -> Result<Matrix, PetscFailure> {
-        let sizes = [above.own.len(), self.own.len()];
-        let sizes = (EntryShape::of_prolongator(6), sizes);
-        Matrix::by_rows(world, sizes, |row, blocks| {
-            let entries = lower.prolongator_row(level - 1, above.own[row]);
-            blocks.extend(self.numbered(entries));
-        })
-    }
-
-    /// Blocks by the global numbers of their columns.
-    fn numbered<B>(
-        &self,
-        blocks: impl Iterator<Item = (u32, B)>,
-    ) -> impl Iterator<Item = (i64, B)> {
-        blocks.map(|(node, block)| (self.number[node as usize], block))
+    fn number(&self) -> impl Fn(u32) -> i64 {
+        |node| self.number[node as usize]
     }
 }
 
 /// All levels below the finest one.
 pub struct Levels {
     /// Prolongators from them, the largest level first.
-    pub prolongators: Vec<Matrix>,
+    pub prolongators: Vec<MappedMatrix>,
     /// Their matrices.
-    pub matrices: Vec<Matrix>,
+    pub matrices: Vec<MappedMatrix>,
     /// The inverse of the matrix of the last one, if it is solved by that.
     pub coarsest: Option<Matrix>,
     /// Upper bounds of the spectra of their matrices.
@@ -116,40 +85,36 @@ impl Levels {
         }
     }
 
-    /// From the rows of this rank of the prolongator to the first of the levels that all ranks have
-    /// made; `owners` are the ranks of the nodes of that one.
+    /// With the prolongator from the first of the levels that all ranks have made; `owners` are the
+    /// ranks of the nodes of that one.
     ///
     /// # Errors
     /// Those of PETSc.
     pub fn of(
         world: &Arc<World>,
         owners: Vec<u32>,
-        rows: BlockList<3, 6>,
-        lower: &LowerLevels,
+        to_finest: FirstProlongator,
+        mut lower: LowerLevels,
     ) -> Result<Self, PetscFailure> {
         let mut nodes = LevelNodes::of(world, owners);
-        let sizes = [rows.rows(), nodes.own.len()];
-        let sizes = (EntryShape::of_prolongator(3), sizes);
-        let to_first = Matrix::by_rows(world, sizes, |row, blocks| {
-            let scaled = rows.row(row).map(|(column, block)| {
-                let factor = &lower.factors()[column as usize];
-                (column, product(block, &transpose(factor)))
-            });
-            blocks.extend(nodes.numbered(scaled));
-        })?;
-        drop(rows);
-        let mut prolongators = vec![to_first];
-        let mut matrices = vec![nodes.matrix(world, lower, 0)?];
+        let rows = to_finest.from(&lower, &nodes.own);
+        let mut prolongators = vec![transfers(rows, nodes.number())];
+        let mut matrices = vec![products(lower.take_rows(0, &nodes.own), nodes.number())];
         for level in 1..lower.count() {
             let above = nodes;
-            nodes = LevelNodes::of(world, owners_below(&above.owner, lower, level));
-            prolongators.push(nodes.prolongator(world, lower, (level, &above))?);
-            matrices.push(nodes.matrix(world, lower, level)?);
+            nodes = LevelNodes::of(world, owners_below(&above.owner, &lower, level));
+            let rows = lower.take_prolongator(level - 1, &above.own, &nodes.own);
+            prolongators.push(transfers(rows, nodes.number()));
+            matrices.push(products(lower.take_rows(level, &nodes.own), nodes.number()));
         }
         let coarsest = match lower.coarsest_solve() {
             CoarsestSolve::Inverse => {
-                let number = |node: u32| nodes.number[node as usize];
-                Some(Matrix::square(world, &lower.inverse(&nodes.own), number)?)
+                let (rows, number) = (lower.inverse(&nodes.own), nodes.number());
+                let inverse = Matrix::by_rows(world, rows.rows(), |row, blocks| {
+                    let entries = rows.row(row);
+                    blocks.extend(entries.map(|(column, block)| (number(column), *block)));
+                });
+                Some(inverse?)
             }
             CoarsestSolve::Smoothing => None,
         };
@@ -173,4 +138,66 @@ fn owners_below(above: &[u32], lower: &LowerLevels, level: usize) -> Vec<u32> {
         }
     }
     owners
+}
+
+/// Products with rows of a level's matrix; `number` gives a node its global number.
+pub fn products<const N: usize>(rows: LevelRows<N>, number: impl Fn(u32) -> i64) -> MappedMatrix {
+    let ghosts = rows.ghosts().iter().map(|&node| number(node)).collect();
+    let (own, others) = (N * rows.rows(), N * rows.ghosts().len());
+    let mut room = Vec::new();
+    let product = LocalMap {
+        own,
+        ghosts: others,
+        image: own,
+        function: Box::new(move |own, ghosts, product| {
+            let vectors = [own, ghosts].map(bytemuck::cast_slice);
+            rows.multiply(vectors, bytemuck::cast_slice_mut(product), &mut room);
+        }),
+    };
+    MappedMatrix {
+        rows: own,
+        columns: own,
+        block: N,
+        ghosts,
+        product: Some(product),
+        transposed: None,
+    }
+}
+
+/// The way from the next level, and down to it; `number` gives a node of that its global number.
+fn transfers<const N: usize>(
+    rows: ProlongatorRows<N>,
+    number: impl Fn(u32) -> i64,
+) -> MappedMatrix {
+    let ghosts: Vec<i64> = rows.ghosts().iter().map(|&node| number(node)).collect();
+    let [fine, coarse] = rows.size();
+    let (fine, coarse, others) = (N * fine, 6 * coarse, 6 * ghosts.len());
+    let rows = Arc::new(rows);
+    let down = Arc::clone(&rows);
+    let product = LocalMap {
+        own: coarse,
+        ghosts: others,
+        image: fine,
+        function: Box::new(move |own, ghosts, fine| {
+            let vectors = [own, ghosts].map(bytemuck::cast_slice);
+            rows.prolong(vectors, bytemuck::cast_slice_mut(fine));
+        }),
+    };
+    let transposed = LocalMap {
+        own: fine,
+        ghosts: 0,
+        image: coarse + others,
+        function: Box::new(move |fine, _, coarse| {
+            let fine = bytemuck::cast_slice(fine);
+            down.restrict(fine, bytemuck::cast_slice_mut(coarse));
+        }),
+    };
+    MappedMatrix {
+        rows: fine,
+        columns: coarse,
+        block: 6,
+        ghosts,
+        product: Some(product),
+        transposed: Some(transposed),
+    }
 }

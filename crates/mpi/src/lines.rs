@@ -2,49 +2,20 @@
 
 use crate::answers::PetscFailure;
 
-/// Lines and numbers of an entry of a matrix, and the size of the square blocks that keep it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct EntryShape {
-    pub(crate) lines: usize,
-    pub(crate) numbers: usize,
-    pub(crate) block: usize,
-}
-
-impl EntryShape {
-    /// One square block.
-    pub(crate) fn square(size: usize) -> Self {
-        Self {
-            lines: size,
-            numbers: size,
-            block: size,
-        }
-    }
-
-    /// What moves `lines` unknowns of a node by the six of one below. PETSc unrolls the products of
-    /// transposed blocks of three, not those of six.
-    pub(crate) fn of_prolongator(lines: usize) -> Self {
-        Self {
-            lines,
-            numbers: 6,
-            block: 3,
-        }
-    }
-}
-
 /// Most blocks of a row that the shim takes at once.
 const MOST_AT_ONCE: usize = 256;
 
 /// Hands over blocks of a row in the order of their columns, all numbers line by line, no more at
 /// once than the shim takes.
-pub(crate) fn in_lines<const M: usize, const L: usize>(
-    blocks: &mut [(i64, [[f64; L]; M])],
+pub(crate) fn in_lines<const N: usize>(
+    blocks: &mut [(i64, [[f64; N]; N])],
     mut hand_over: impl FnMut(&[i64], &[f64]) -> Result<(), PetscFailure>,
 ) -> Result<(), PetscFailure> {
     blocks.sort_unstable_by_key(|(column, _)| *column);
     blocks.chunks(MOST_AT_ONCE).try_for_each(|some| {
         let columns: Vec<i64> = some.iter().map(|(column, _)| *column).collect();
         let line = |line: usize| some.iter().flat_map(move |(_, block)| block[line]);
-        let lines: Vec<f64> = (0..M).flat_map(line).collect();
+        let lines: Vec<f64> = (0..N).flat_map(line).collect();
         hand_over(&columns, &lines)
     })
 }

@@ -2,7 +2,6 @@
 
 use bytemuck::Pod;
 use glam::{DMat3, DVec3};
-use kluft_solver::small::rows_of;
 use kluft_solver::{Communicator, FixedPart, Lists};
 
 /// Rows and their owners. The rows of a rank have consecutive global numbers, rank by rank, in the
@@ -39,14 +38,6 @@ impl Partition {
             number,
             communicator: communicator.clone(),
         }
-    }
-
-    /// Blocks by the global numbers of their columns.
-    pub fn numbered<'a>(
-        &self,
-        blocks: impl Iterator<Item = (u32, &'a DMat3)>,
-    ) -> impl Iterator<Item = (i64, [[f64; 3]; 3])> {
-        blocks.map(|(column, block)| (self.number[column as usize], rows_of(block)))
     }
 
     /// Replaces the entries of a vector by those of all ranks, each in its place; `own` are those

@@ -8,29 +8,31 @@
 #![allow(unsafe_code)]
 
 use std::ffi::{c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ThreadId;
 use std::time::Duration;
 
-use crate::lines::{EntryShape, checked, in_lines};
-use crate::parts::SolverParts;
+use crate::lines::checked;
+use crate::parts::{LocalFunction, LocalMap, MappedMatrix, SolverParts};
 
-pub use crate::answers::{PetscFailure, Preconditioner, Solved, Traffic};
+pub use crate::answers::{PetscFailure, Solved, Traffic};
 
 /// What the shim makes.
 type Handle = *mut c_void;
+/// Calls a [`LocalMap`] of the shim.
+type Callback = unsafe extern "C" fn(Handle, *const f64, *const f64, *mut f64);
 
 unsafe extern "C" {
-    fn km_start() -> c_int;
+    fn km_start(map: Callback) -> c_int;
     fn km_end() -> c_int;
     fn km_abort(code: c_int);
     fn km_rank() -> c_int;
     fn km_ranks() -> c_int;
     fn km_on_machine(count: *mut c_int) -> c_int;
     fn km_all_arrive(seconds: f64, arrived: *mut c_int) -> c_int;
-    fn km_gather(own: *const u64, count: c_int, all: *mut u64) -> c_int;
     fn km_gather_records(
         size: c_int,
         own: *const c_void,
@@ -39,9 +41,6 @@ unsafe extern "C" {
     ) -> c_int;
     fn km_matrix(
         rows: i64,
-        columns: i64,
-        m: c_int,
-        l: c_int,
         block: c_int,
         own: *const c_int,
         others: *const c_int,
@@ -50,42 +49,75 @@ unsafe extern "C" {
     fn km_matrix_row(
         matrix: Handle,
         row: i64,
-        down: c_int,
-        across: c_int,
         count: c_int,
         columns: *const i64,
         lines: *const f64,
     ) -> c_int;
     fn km_matrix_end(matrix: Handle) -> c_int;
     fn km_free_matrix(matrix: Handle) -> c_int;
+    fn km_product(
+        rows: i64,
+        columns: i64,
+        block: c_int,
+        count: c_int,
+        ghosts: *const i64,
+        map: Handle,
+        transposed: Handle,
+        out: *mut Handle,
+    ) -> c_int;
     fn km_solver(
-        rock: Handle,
-        fractures: Handle,
-        inverse: Handle,
+        singles: *const Handle,
         count: c_int,
         prolongators: *const Handle,
         matrices: *const Handle,
-        coarsest: Handle,
         largest: *const f64,
-        is_small: c_int,
         out: *mut Handle,
     ) -> c_int;
-    fn km_current_fractures(solver: Handle, out: *mut Handle) -> c_int;
     fn km_solve(
         solver: Handle,
+        map: Handle,
         right: *const f64,
         solution: *mut f64,
         tolerance: f64,
         most: c_int,
-        iterations: *mut c_int,
-        reason: *mut c_int,
-        broke: *mut c_int,
-        residual: *mut f64,
+        report: *mut f64,
     ) -> c_int;
     fn km_precondition(solver: Handle, right: *const f64, out: *mut f64) -> c_int;
-    fn km_smooth(solver: Handle, right: *const f64, out: *mut f64) -> c_int;
     fn km_free(solver: Handle) -> c_int;
     fn km_counts(counts: *mut f64) -> c_int;
+}
+
+/// An array of the shim, which may be nowhere if it is empty.
+///
+/// # Safety
+/// As [`std::slice::from_raw_parts`] unless it is empty.
+unsafe fn array<'a>(start: *const f64, length: usize) -> &'a [f64] {
+    match length {
+        0 => &[],
+        // SAFETY: what the caller says.
+        length => unsafe { std::slice::from_raw_parts(start, length) },
+    }
+}
+
+/// Calls a map; one that panics gives no numbers, and whoever iterates with them ends.
+///
+/// # Safety
+/// `map` points to a [`LocalMap`] that nobody else uses meanwhile, the others to arrays of its
+/// lengths, `out` to one that nothing else shares.
+unsafe extern "C" fn call_map(map: Handle, own: *const f64, ghosts: *const f64, out: *mut f64) {
+    // SAFETY: what the caller says.
+    let map = unsafe { &mut *map.cast::<LocalMap<'_>>() };
+    if map.image == 0 {
+        return;
+    }
+    // SAFETY: as above.
+    let (own, ghosts) = unsafe { (array(own, map.own), array(ghosts, map.ghosts)) };
+    // SAFETY: as above; it is not empty.
+    let out = unsafe { std::slice::from_raw_parts_mut(out, map.image) };
+    let called = catch_unwind(AssertUnwindSafe(|| (map.function)(own, ghosts, out)));
+    if called.is_err() {
+        out.fill(f64::NAN);
+    }
 }
 
 fn done(code: c_int) -> Result<(), PetscFailure> {
@@ -115,7 +147,7 @@ impl World {
         static STARTED: AtomicBool = AtomicBool::new(false);
         assert!(!STARTED.swap(true, Ordering::SeqCst), "started once");
         // SAFETY: nothing of PETSc was called before, and this is passed once a process.
-        done(unsafe { km_start() })?;
+        done(unsafe { km_start(call_map) })?;
         // SAFETY: PETSc runs, see above.
         let (rank, ranks) = unsafe { (km_rank(), km_ranks()) };
         Ok(Arc::new(Self {
@@ -176,18 +208,6 @@ impl World {
         Ok(arrived != 0)
     }
 
-    /// The numbers of all ranks, rank by rank; each gives as many.
-    ///
-    /// # Errors
-    /// Those of MPI.
-    pub fn gather(&self, own: &[u64]) -> Result<Vec<u64>, PetscFailure> {
-        self.here();
-        let mut all = vec![0; own.len() * self.ranks];
-        // SAFETY: PETSc runs on this thread; `all` has room for the numbers of all ranks.
-        done(unsafe { km_gather(own.as_ptr(), own.len() as c_int, all.as_mut_ptr()) })?;
-        Ok(all)
-    }
-
     /// Writes the records of `size` bytes of all ranks one behind the other, rank `r` giving
     /// `counts[r]`.
     ///
@@ -223,15 +243,7 @@ impl World {
         let mut counts = [0.0; 6];
         // SAFETY: PETSc runs on this thread; the shim writes six numbers.
         done(unsafe { km_counts(counts.as_mut_ptr()) })?;
-        let [iterations, exchanges, messages, bytes, reductions, levels] = counts;
-        Ok(Traffic {
-            iterations,
-            exchanges,
-            messages,
-            bytes,
-            reductions,
-            levels,
-        })
+        Ok(Traffic::from(counts))
     }
 }
 
@@ -244,80 +256,78 @@ impl Drop for World {
     }
 }
 
-/// A distributed matrix.
+/// A distributed square matrix.
 #[derive(Debug)]
 pub struct Matrix {
     pointer: Handle,
-    shape: EntryShape,
     world: Arc<World>,
 }
 
-// SAFETY: the pointer is used on the thread of its world only, which every use checks.
-unsafe impl Send for Matrix {}
-// SAFETY: as above.
-unsafe impl Sync for Matrix {}
-
 impl Matrix {
-    /// A matrix of entries of this shape, yet without them, with the numbers of entries in each row
-    /// of this rank: in its own `columns`, and in those of others.
-    ///
-    /// # Errors
-    /// Those of PETSc.
+    fn nowhere(world: &Arc<World>) -> Self {
+        world.here();
+        Self {
+            pointer: null_mut(),
+            world: Arc::clone(world),
+        }
+    }
+
+    /// A matrix of blocks of this size, yet without them, with the numbers of blocks in each row of
+    /// this rank: in its own columns, and in those of others.
     ///
     /// # Panics
     /// If there are not both numbers of each row.
     pub(crate) fn allocated(
         world: &Arc<World>,
-        shape: EntryShape,
-        columns: usize,
+        block: usize,
         [own, others]: [&[i32]; 2],
     ) -> Result<Self, PetscFailure> {
-        world.here();
         assert_eq!(own.len(), others.len(), "both numbers of each row");
-        let mut matrix = Self {
-            pointer: null_mut(),
-            shape,
-            world: Arc::clone(world),
-        };
-        let (rows, columns) = (own.len() as i64, columns as i64);
-        let [m, l, block] = [shape.lines, shape.numbers, shape.block].map(|size| size as c_int);
-        let (own, others) = (own.as_ptr(), others.as_ptr());
-        let out = &mut matrix.pointer;
+        let mut matrix = Self::nowhere(world);
+        let (rows, block) = (own.len() as i64, block as c_int);
+        let (own, others, out) = (own.as_ptr(), others.as_ptr(), &mut matrix.pointer);
         // SAFETY: PETSc runs on this thread; both arrays have one number a row.
-        done(unsafe { km_matrix(rows, columns, m, l, block, own, others, out) })?;
+        done(unsafe { km_matrix(rows, block, own, others, out) })?;
         Ok(matrix)
     }
 
-    /// Sets entries of a row: columns, ascending, and all numbers line by line.
-    ///
-    /// # Errors
-    /// Those of PETSc.
+    /// Sets blocks of a row: columns, ascending, and all numbers line by line.
     ///
     /// # Panics
     /// If there are more than there is room for, or not as many numbers.
-    pub(crate) fn set_row(
+    pub(crate) fn set_row<const N: usize>(
         &self,
         row: i64,
         columns: &[i64],
         lines: &[f64],
     ) -> Result<(), PetscFailure> {
         self.world.here();
-        let [m, l, block] = [self.shape.lines, self.shape.numbers, self.shape.block];
-        let count = checked(columns, lines, m * l);
-        let (down, across) = ((m / block) as c_int, (l / block) as c_int);
+        let count = checked(columns, lines, N * N);
         let (columns, lines) = (columns.as_ptr(), lines.as_ptr());
         // SAFETY: PETSc runs on this thread, the matrix lives, and both arrays were checked.
-        done(unsafe { km_matrix_row(self.pointer, row, down, across, count, columns, lines) })
+        done(unsafe { km_matrix_row(self.pointer, row, count, columns, lines) })
     }
 
     /// Ends the setting of rows on all ranks.
-    ///
-    /// # Errors
-    /// Those of PETSc.
     pub(crate) fn end(&self) -> Result<(), PetscFailure> {
         self.world.here();
         // SAFETY: PETSc runs on this thread, and the matrix lives.
         done(unsafe { km_matrix_end(self.pointer) })
+    }
+
+    /// A matrix whose products these maps make.
+    fn of_products(
+        world: &Arc<World>,
+        mapped: &MappedMatrix,
+        [map, transposed]: [Handle; 2],
+    ) -> Result<Self, PetscFailure> {
+        let mut matrix = Self::nowhere(world);
+        let (rows, columns) = (mapped.rows as i64, mapped.columns as i64);
+        let (block, count) = (mapped.block as c_int, mapped.ghosts.len() as c_int);
+        let (ghosts, out) = (mapped.ghosts.as_ptr(), &mut matrix.pointer);
+        // SAFETY: PETSc runs on this thread, and the array has as many numbers.
+        done(unsafe { km_product(rows, columns, block, count, ghosts, map, transposed, out) })?;
+        Ok(matrix)
     }
 
     /// Hands it over.
@@ -339,91 +349,87 @@ impl Drop for Matrix {
 #[derive(Debug)]
 pub struct Solver {
     pointer: Handle,
-    rows: usize,
+    /// The maps that the shim calls; made of boxes.
+    maps: Vec<*mut LocalMap<'static>>,
+    /// Numbers of this rank, and of its ghosts.
+    sizes: [usize; 2],
     world: Arc<World>,
 }
 
-// SAFETY: the pointer is used on the thread of its world only, which every use checks.
+// SAFETY: the pointers are used on the thread of its world only, which every use checks.
 unsafe impl Send for Solver {}
 // SAFETY: as above.
 unsafe impl Sync for Solver {}
 
 impl Solver {
-    /// Sets up a solver with `rows` block rows on this rank.
+    /// Sets up a solver.
     ///
     /// # Errors
     /// Those of PETSc.
-    pub fn new(
-        world: &Arc<World>,
-        rows: usize,
-        parts: SolverParts<Matrix>,
-    ) -> Result<Self, PetscFailure> {
+    ///
+    /// # Panics
+    /// If there are not as many parts as levels ask for.
+    pub fn new(world: &Arc<World>, parts: SolverParts<Matrix>) -> Result<Self, PetscFailure> {
         world.here();
-        let (levels, bounds) = (parts.matrices.len(), &parts.largest_eigenvalues);
-        assert_eq!(parts.prolongators.len(), levels, "a prolongator a level");
-        assert!(bounds.len() > levels, "one bound a level");
-        let pointers = |list: Vec<Matrix>| list.into_iter().map(Matrix::into_pointer).collect();
-        let prolongators: Vec<Handle> = pointers(parts.prolongators);
-        let matrices: Vec<Handle> = pointers(parts.matrices);
-        let coarsest = parts.coarsest.map_or(null_mut(), Matrix::into_pointer);
+        let (levels, bounds) = (parts.prolongators.len(), &parts.largest_eigenvalues);
+        assert_eq!(parts.matrices.len(), levels + 1, "a prolongator a level");
+        assert_eq!(bounds.len(), levels + 1, "one bound a level");
         let mut solver = Self {
             pointer: null_mut(),
-            rows,
+            maps: Vec::new(),
+            sizes: [parts.system.rows, parts.system.ghost_numbers()],
             world: Arc::clone(world),
         };
-        // SAFETY: PETSc runs on this thread; the shim counts itself among the holders of the rock,
-        // and takes the others over, whose pointers nobody else has. It reads as many of them as
-        // there are levels, and a bound more.
+        let [scale, unscale] = parts.scaling.map(|map| solver.keep(Some(map)));
+        let system = solver.mapped(parts.system)?;
+        let mut all = |list: Vec<MappedMatrix>| {
+            let list = list.into_iter().map(|matrix| solver.mapped(matrix));
+            list.collect::<Result<Vec<Matrix>, PetscFailure>>()
+        };
+        let (matrices, prolongators) = (all(parts.matrices)?, all(parts.prolongators)?);
+        let pointers = |list: Vec<Matrix>| list.into_iter().map(Matrix::into_pointer).collect();
+        let (matrices, prolongators): (Vec<Handle>, Vec<Handle>) =
+            (pointers(matrices), pointers(prolongators));
+        let last = [parts.coarsest, parts.whole];
+        let [coarsest, whole] = last.map(|last| last.map_or(null_mut(), Matrix::into_pointer));
+        let singles = [system.into_pointer(), scale, unscale, coarsest, whole];
+        // SAFETY: PETSc runs on this thread; the shim takes over matrices whose pointers nobody
+        // else has, and reads as many of them as there are levels. The maps live until it is freed.
         done(unsafe {
             km_solver(
-                parts.rock.pointer,
-                parts.fractures.into_pointer(),
-                parts.inverse.into_pointer(),
+                singles.as_ptr(),
                 levels as c_int,
                 prolongators.as_ptr(),
                 matrices.as_ptr(),
-                coarsest,
                 bounds.as_ptr(),
-                c_int::from(parts.is_small),
                 &mut solver.pointer,
             )
         })?;
         Ok(solver)
     }
 
-    /// Changes rows of what the fractures have in the tangent, given by their global numbers and
-    /// all their blocks, and lets the levels be as they are. All ranks must call it.
-    ///
-    /// # Errors
-    /// Those of PETSc.
-    pub fn update(
-        &mut self,
-        mut rows: impl Iterator<Item = (i64, Vec<(i64, [[f64; 3]; 3])>)>,
-    ) -> Result<(), PetscFailure> {
-        self.world.here();
-        let mut pointer = null_mut();
-        // SAFETY: PETSc runs on this thread, and the solver lives.
-        done(unsafe { km_current_fractures(self.pointer, &mut pointer) })?;
-        let current = Matrix {
-            pointer,
-            shape: EntryShape::square(3),
-            world: Arc::clone(&self.world),
+    fn mapped(&mut self, mut mapped: MappedMatrix) -> Result<Matrix, PetscFailure> {
+        let maps = [mapped.product.take(), mapped.transposed.take()];
+        let maps = maps.map(|map| self.keep(map));
+        Matrix::of_products(&self.world, &mapped, maps)
+    }
+
+    /// Keeps a map where it is for as long as this solver lives.
+    fn keep(&mut self, map: Option<LocalMap<'static>>) -> Handle {
+        let Some(map) = map else {
+            return null_mut();
         };
-        let done = rows.try_for_each(|(row, mut blocks)| {
-            in_lines(&mut blocks, |at, lines| current.set_row(row, at, lines))
-        });
-        let done = done.and_then(|()| current.end());
-        // The solver keeps it.
-        current.into_pointer();
-        done
+        let map = Box::into_raw(Box::new(map));
+        self.maps.push(map);
+        map.cast()
     }
 
     fn check(&self, right: &[[f64; 3]]) {
         self.world.here();
-        assert_eq!(right.len(), self.rows, "one entry a row");
+        assert_eq!(3 * right.len(), self.sizes[0], "one entry a row");
     }
 
-    /// Solves for the rows of this rank.
+    /// Solves for the rows of this rank, with the matrix whose products `product` makes.
     ///
     /// # Errors
     /// Those of PETSc.
@@ -432,66 +438,58 @@ impl Solver {
     /// If `right` has not one entry a row of this rank.
     pub fn solve(
         &mut self,
+        product: Box<LocalFunction<'_>>,
         right: &[[f64; 3]],
         tolerance: f64,
         most: usize,
     ) -> Result<(Vec<[f64; 3]>, Solved), PetscFailure> {
         self.check(right);
-        let mut solution = vec![[0.0; 3]; self.rows];
-        let (mut iterations, mut reason, mut broke, mut residual) = (0, 0, 0, 0.0);
-        // SAFETY: PETSc runs on this thread, the solver lives; both vectors have its length.
-        done(unsafe {
-            km_solve(
-                self.pointer,
-                right.as_ptr().cast(),
-                solution.as_mut_ptr().cast(),
-                tolerance,
-                most as c_int,
-                &mut iterations,
-                &mut reason,
-                &mut broke,
-                &mut residual,
-            )
-        })?;
-        let solved = Solved {
-            iterations: iterations as usize,
-            converged: reason > 0,
-            broke: broke != 0,
-            residual,
+        let mut solution = vec![[0.0; 3]; right.len()];
+        let mut map = LocalMap {
+            own: self.sizes[0],
+            ghosts: self.sizes[1],
+            image: self.sizes[0],
+            function: product,
         };
-        Ok((solution, solved))
+        let (map, most) = ((&raw mut map).cast(), most as c_int);
+        let (from, to) = (right.as_ptr().cast(), solution.as_mut_ptr().cast());
+        let mut report = [0.0; 4];
+        let out = report.as_mut_ptr();
+        // SAFETY: PETSc runs on this thread, the solver lives; both vectors have its length. The
+        // shim forgets the map before it returns, and writes four numbers.
+        done(unsafe { km_solve(self.pointer, map, from, to, tolerance, most, out) })?;
+        Ok((solution, Solved::from(report)))
     }
 
-    /// What a part of the preconditioner makes of the entries of this rank.
+    /// What the preconditioner makes of the entries of this rank.
     ///
     /// # Errors
     /// Those of PETSc.
     ///
     /// # Panics
     /// If `right` has not one entry a row of this rank.
-    pub fn apply(
-        &mut self,
-        part: Preconditioner,
-        right: &[[f64; 3]],
-    ) -> Result<Vec<[f64; 3]>, PetscFailure> {
+    pub fn precondition(&mut self, right: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, PetscFailure> {
         self.check(right);
-        let mut out = vec![[0.0; 3]; self.rows];
+        let mut out = vec![[0.0; 3]; right.len()];
         let (from, to) = (right.as_ptr().cast(), out.as_mut_ptr().cast());
-        let map = match part {
-            Preconditioner::Cycle => km_precondition,
-            Preconditioner::Clusters => km_smooth,
-        };
         // SAFETY: PETSc runs on this thread, the solver lives; both vectors have its length.
-        done(unsafe { map(self.pointer, from, to) })?;
+        done(unsafe { km_precondition(self.pointer, from, to) })?;
         Ok(out)
     }
 }
 
 impl Drop for Solver {
     fn drop(&mut self) {
-        if !self.pointer.is_null() && std::thread::current().id() == self.world.thread {
+        if std::thread::current().id() != self.world.thread {
+            return;
+        }
+        if !self.pointer.is_null() {
             // SAFETY: PETSc runs, and nobody else has the pointer.
             unsafe { km_free(self.pointer) };
+        }
+        for map in self.maps.drain(..) {
+            // SAFETY: it was made of a box, and the shim that used it is gone.
+            drop(unsafe { Box::from_raw(map) });
         }
     }
 }

@@ -18,23 +18,27 @@
 
 /* Most blocks of a row that are given at once. */
 #define MOST_AT_ONCE 256
-/* Most square blocks of an entry, down or across. */
-#define MOST_BLOCKS 2
+
+/* What the caller makes of the entries of this rank and those of its ghosts. */
+typedef void (*Map)(void *map, const double *own, const double *ghosts, double *out);
+static Map apply_map;
 
 /* A group of its own for what must not meet other messages: the arrival of all ranks at the end. */
 static MPI_Comm at_the_end = MPI_COMM_NULL;
 
-int km_start(void) {
+/* `map` calls what the caller gives as maps. */
+int km_start(Map map) {
   /* No file that lies about shall change results; PETSC_OPTIONS may. */
   static char name[] = "kluft-mpi", skip[] = "-skip_petscrc";
   char *list[] = {name, skip, NULL}, **arguments = list;
   int count = 2;
+  apply_map = map;
 #ifdef __GLIBC__
   /* Arrays of levels come and go: in maps of their own they leave no holes. SuperLU_DIST, which PETSc
      may bring along, forbids such maps to the whole process, and keeps what is freed. */
   mallopt(M_MMAP_MAX, 1 << 16);
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  mallopt(M_TRIM_THRESHOLD, 1 << 20);
+  mallopt(M_MMAP_THRESHOLD, 1 << 22);
+  mallopt(M_TRIM_THRESHOLD, 1 << 26);
 #endif
   PetscCall(PetscInitialize(&count, &arguments, NULL, NULL));
   PetscCall(PetscPopSignalHandler());
@@ -70,10 +74,6 @@ int km_all_arrive(double seconds, int *arrived) {
   return 0;
 }
 
-/* `count` numbers of each rank, one rank behind the other. */
-int km_gather(const uint64_t *own, int count, uint64_t *all) {
-  return MPI_Allgather(own, count, MPI_UINT64_T, all, count, MPI_UINT64_T, PETSC_COMM_WORLD) ? PETSC_ERR_MPI : 0;
-}
 /* `counts[r]` records of `size` bytes of rank r, one rank behind the other. */
 int km_gather_records(int size, const void *own, const int *counts, void *all) {
   int rank = km_rank(), ranks = km_ranks(), *starts, failed;
@@ -89,33 +89,28 @@ int km_gather_records(int size, const void *own, const int *counts, void *all) {
   PetscCall(PetscFree(starts));
   return failed ? PETSC_ERR_MPI : 0;
 }
-/* A distributed matrix with as many rows and columns of this rank, in entries of m lines of l numbers,
-   which it keeps in square blocks; PETSc has none that are not square, and unrolls products of small
-   ones. Of each row the number of entries in columns of this rank, and in those of others. Then come
-   the rows, then the end. */
-int km_matrix(int64_t rows, int64_t columns, int m, int l, int block, const int *own, const int *others, void **out) {
+/* A distributed square matrix with as many block rows of this rank. Of each row the number of blocks
+   in columns of this rank, and in those of others. Then come the rows, then the end. */
+int km_matrix(int64_t rows, int block, const int *own, const int *others, void **out) {
   Mat a;
   PetscInt *counts[2];
-  int down = m / block, across = l / block;
   PetscCall(MatCreate(PETSC_COMM_WORLD, &a));
   *out = a;
-  PetscCall(MatSetSizes(a, m * rows, l * columns, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(a, block * rows, block * rows, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetBlockSizes(a, block, block));
-  PetscCall(PetscMalloc2(down * rows + 1, &counts[0], down * rows + 1, &counts[1]));
-  for (int64_t r = 0; r < down * rows; r++) { counts[0][r] = across * own[r / down]; counts[1][r] = across * others[r / down]; }
+  PetscCall(PetscMalloc2(rows + 1, &counts[0], rows + 1, &counts[1]));
+  for (int64_t r = 0; r < rows; r++) { counts[0][r] = own[r]; counts[1][r] = others[r]; }
   PetscCall(MatSetType(a, MATBAIJ));
   PetscCall(MatSeqBAIJSetPreallocation(a, block, 0, counts[0]));
   PetscCall(MatMPIBAIJSetPreallocation(a, block, 0, counts[0], 0, counts[1]));
   PetscCall(PetscFree2(counts[0], counts[1]));
   return MatSetOption(a, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE);
 }
-/* Entries of a row by its global number, each of so many blocks down and across: columns, and all
-   numbers line by line; called by any rank. */
-int km_matrix_row(void *matrix, int64_t row, int down, int across, int count, const int64_t *columns, const double *lines) {
-  PetscInt at[MOST_BLOCKS], where[MOST_BLOCKS * MOST_AT_ONCE];
-  for (int k = 0; k < down; k++) at[k] = (PetscInt)(down * row + k);
-  for (int k = 0; k < across * count; k++) where[k] = (PetscInt)(across * columns[k / across] + k % across);
-  return MatSetValuesBlocked(matrix, down, at, across * count, where, lines, INSERT_VALUES);
+/* Blocks of a row by its global number: columns, and all numbers line by line; called by any rank. */
+int km_matrix_row(void *matrix, int64_t row, int count, const int64_t *columns, const double *lines) {
+  PetscInt at = (PetscInt)row, where[MOST_AT_ONCE];
+  for (int k = 0; k < count; k++) where[k] = (PetscInt)columns[k];
+  return MatSetValuesBlocked(matrix, 1, &at, count, where, lines, INSERT_VALUES);
 }
 int km_matrix_end(void *matrix) {
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -161,139 +156,195 @@ static PetscErrorCode count_iteration(KSP solver, PetscInt iteration, PetscReal 
   return 0;
 }
 
-/* The tangent is the sum of the rock and of the fractures, which are few rows of it. */
-typedef struct { Mat rock, fractures, sum; } Tangent;
+/* A matrix whose products the caller makes, once its map is known; of the transposed one the caller
+   makes what the rows of this rank give to the entries of this rank, and then to the ghosts. */
+typedef struct { void *map, *transposed; VecScatter halo; Vec ghosts, both; } Product;
 
-static PetscErrorCode times(Mat sum, Vec x, Vec y) {
-  Tangent *t;
-  PetscCall(MatShellGetContext(sum, &t));
-  PetscCall(MatMult(t->rock, x, y));
-  return MatMultAdd(t->fractures, x, y, y);
+static PetscErrorCode multiply(Mat a, Vec x, Vec y) {
+  Product *p;
+  const PetscScalar *own, *ghosts;
+  PetscScalar *out;
+  PetscCall(MatShellGetContext(a, &p));
+  PetscCall(VecScatterBegin(p->halo, x, p->ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(p->halo, x, p->ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetArrayRead(x, &own));
+  PetscCall(VecGetArrayRead(p->ghosts, &ghosts));
+  PetscCall(VecGetArrayWrite(y, &out));
+  apply_map(p->map, own, ghosts, out);
+  PetscCall(VecRestoreArrayWrite(y, &out));
+  PetscCall(VecRestoreArrayRead(p->ghosts, &ghosts));
+  return VecRestoreArrayRead(x, &own);
 }
-static int set_tangent(Tangent *t, Mat rock, Mat fractures) {
-  PetscInt rows, columns;
-  t->rock = rock; t->fractures = fractures;
-  PetscCall(PetscObjectReference((PetscObject)rock));
-  PetscCall(MatGetLocalSize(rock, &rows, &columns));
-  PetscCall(MatCreateShell(PETSC_COMM_WORLD, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE, t, &t->sum));
-  return MatShellSetOperation(t->sum, MATOP_MULT, (void (*)(void))times);
+static PetscErrorCode multiply_transposed(Mat a, Vec x, Vec y) {
+  Product *p;
+  const PetscScalar *own;
+  PetscScalar *both, *out, *ghosts;
+  PetscInt rows, count;
+  PetscCall(MatShellGetContext(a, &p));
+  PetscCall(VecGetLocalSize(y, &rows));
+  PetscCall(VecGetLocalSize(p->ghosts, &count));
+  PetscCall(VecGetArrayRead(x, &own));
+  PetscCall(VecGetArrayWrite(p->both, &both));
+  apply_map(p->transposed, own, NULL, both);
+  PetscCall(VecRestoreArrayRead(x, &own));
+  PetscCall(VecGetArrayWrite(y, &out));
+  PetscCall(VecGetArrayWrite(p->ghosts, &ghosts));
+  for (PetscInt k = 0; k < rows; k++) out[k] = both[k];
+  for (PetscInt k = 0; k < count; k++) ghosts[k] = both[rows + k];
+  PetscCall(VecRestoreArrayWrite(p->ghosts, &ghosts));
+  PetscCall(VecRestoreArrayWrite(y, &out));
+  PetscCall(VecRestoreArrayWrite(p->both, &both));
+  PetscCall(VecScatterBegin(p->halo, p->ghosts, y, ADD_VALUES, SCATTER_REVERSE));
+  return VecScatterEnd(p->halo, p->ghosts, y, ADD_VALUES, SCATTER_REVERSE);
 }
-static int free_tangent(Tangent *t) {
-  PetscCall(MatDestroy(&t->sum));
-  PetscCall(MatDestroy(&t->fractures));
-  return MatDestroy(&t->rock);
+static PetscErrorCode free_product(Mat a) {
+  Product *p;
+  PetscCall(MatShellGetContext(a, &p));
+  PetscCall(VecScatterDestroy(&p->halo));
+  PetscCall(VecDestroy(&p->ghosts));
+  PetscCall(VecDestroy(&p->both));
+  free(p);
+  return 0;
+}
+/* A matrix of as many rows and columns of this rank, and the blocks of ghosts by their global
+   numbers. */
+int km_product(int64_t rows, int64_t columns, int block, int count, const int64_t *ghosts, void *map, void *transposed, void **out) {
+  Product *p = calloc(1, sizeof *p);
+  PetscInt *at;
+  Vec x;
+  IS from;
+  Mat a;
+  if (!p) return PETSC_ERR_MEM;
+  p->map = map; p->transposed = transposed;
+  PetscCall(MatCreateShell(PETSC_COMM_WORLD, (PetscInt)rows, (PetscInt)columns, PETSC_DETERMINE, PETSC_DETERMINE, p, &a));
+  *out = a;
+  PetscCall(MatShellSetOperation(a, MATOP_MULT, (void (*)(void))multiply));
+  PetscCall(MatShellSetOperation(a, MATOP_MULT_TRANSPOSE, (void (*)(void))multiply_transposed));
+  PetscCall(MatShellSetOperation(a, MATOP_DESTROY, (void (*)(void))free_product));
+  PetscCall(PetscMalloc1(count + 1, &at));
+  for (int k = 0; k < count; k++) at[k] = (PetscInt)ghosts[k];
+  PetscCall(ISCreateBlock(PETSC_COMM_SELF, block, count, at, PETSC_COPY_VALUES, &from));
+  PetscCall(PetscFree(at));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, block * count, &p->ghosts));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, transposed ? (PetscInt)columns + block * count : 0, &p->both));
+  PetscCall(MatCreateVecs(a, &x, NULL));
+  PetscCall(VecScatterCreate(x, from, p->ghosts, NULL, &p->halo));
+  PetscCall(VecDestroy(&x));
+  return ISDestroy(&from);
 }
 
-/* `built` is what the levels were made of; `current`, if there is one, what is solved with.
-   Prolongators and matrices of `count` levels below, the largest first, and the inverse of the last
-   one. */
+/* The matrix that is solved with, whose map each solve gives; the way to scaled unknowns and back,
+   and a cycle in them, if there is one: `count` prolongators, the largest first, and a matrix more,
+   or the whole in entries. */
 typedef struct {
   KSP solver;
-  Tangent built, current;
-  Mat inverse, *prolongators, *matrices, coarsest;
+  Mat system, *prolongators, *matrices, coarsest, whole;
+  PC cycle;
   int count;
-  Vec right, solution;
+  void *scale, *unscale;
+  Vec right, solution, scaled, cycled;
 } Solver;
 
-/* One solve of the whole by each rank, for what is too small to be coarsened. */
-static int set_redundant(Solver *s, PC pc) {
-  Mat whole;
-  PetscCall(MatDuplicate(s->built.rock, MAT_COPY_VALUES, &whole));
-  PetscCall(MatAXPY(whole, 1.0, s->built.fractures, SUBSET_NONZERO_PATTERN));
-  PetscCall(MatConvert(whole, MATAIJ, MAT_INPLACE_MATRIX, &whole));
-  PetscCall(KSPSetOperators(s->solver, s->built.sum, whole));
-  PetscCall(MatDestroy(&whole));
-  return PCSetType(pc, PCREDUNDANT);
+static int mapped(void *map, Vec from, Vec to) {
+  const PetscScalar *own;
+  PetscScalar *out;
+  PetscCall(VecGetArrayRead(from, &own));
+  PetscCall(VecGetArrayWrite(to, &out));
+  apply_map(map, own, NULL, out);
+  PetscCall(VecRestoreArrayWrite(to, &out));
+  return VecRestoreArrayRead(from, &own);
+}
+static PetscErrorCode precondition(PC pc, Vec x, Vec y) {
+  Solver *s;
+  PetscCall(PCShellGetContext(pc, &s));
+  PetscCall(mapped(s->scale, x, s->scaled));
+  if (!s->cycle) return mapped(s->unscale, s->scaled, y);
+  PetscCall(PCApply(s->cycle, s->scaled, s->cycled));
+  return mapped(s->unscale, s->cycled, y);
 }
 
 /* Chebyshev of degree two for a spectrum that ends at `largest`. */
-static int set_smoother(KSP smoother, PCType type, Mat matrix, Mat preconditioner, double largest) {
+static int set_smoother(KSP smoother, Mat matrix, double largest) {
   PC pc;
   PetscCall(KSPSetType(smoother, KSPCHEBYSHEV));
   PetscCall(KSPChebyshevSetEigenvalues(smoother, largest, LOWER_END * largest));
   PetscCall(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 2));
   PetscCall(KSPSetConvergenceTest(smoother, KSPConvergedSkip, NULL, NULL));
   PetscCall(KSPSetNormType(smoother, KSP_NORM_NONE));
-  PetscCall(KSPSetOperators(smoother, matrix, preconditioner));
+  PetscCall(KSPSetOperators(smoother, matrix, matrix));
   PetscCall(KSPGetPC(smoother, &pc));
-  return PCSetType(pc, type);
+  return PCSetType(pc, PCNONE);
 }
 
-static int set_levels(Solver *s, PC pc, const double *largest) {
+static int set_levels(Solver *s, const double *largest) {
   KSP smoother, coarsest;
-  PC inverse;
+  PC inverse, pc = s->cycle;
+  PetscCall(PCSetOperators(pc, s->matrices[0], s->matrices[0]));
   PetscCall(PCSetType(pc, PCMG));
   PetscCall(PCMGSetLevels(pc, s->count + 1, NULL));
   PetscCall(PCMGSetGalerkin(pc, PC_MG_GALERKIN_NONE));
   for (int below = 0; below < s->count; below++) PetscCall(PCMGSetInterpolation(pc, s->count - below, s->prolongators[below]));
-  PetscCall(PCMGGetSmoother(pc, s->count, &smoother));
-  PetscCall(set_smoother(smoother, PCMAT, s->built.sum, s->inverse, largest[0]));
-  for (int at = 1; at < s->count; at++) {
-    Mat matrix = s->matrices[at - 1];
+  for (int at = 0; at < s->count; at++) {
     PetscCall(PCMGGetSmoother(pc, s->count - at, &smoother));
-    PetscCall(set_smoother(smoother, PCNONE, matrix, matrix, largest[at]));
+    PetscCall(set_smoother(smoother, s->matrices[at], largest[at]));
   }
   PetscCall(PCMGGetCoarseSolve(pc, &coarsest));
-  if (!s->coarsest) return set_smoother(coarsest, PCNONE, s->matrices[s->count - 1], s->matrices[s->count - 1], largest[s->count]);
+  if (!s->coarsest) return set_smoother(coarsest, s->matrices[s->count], largest[s->count]);
   PetscCall(KSPSetType(coarsest, KSPPREONLY));
-  PetscCall(KSPSetOperators(coarsest, s->matrices[s->count - 1], s->coarsest));
+  PetscCall(KSPSetOperators(coarsest, s->matrices[s->count], s->coarsest));
   PetscCall(KSPGetPC(coarsest, &inverse));
   return PCSetType(inverse, PCMAT);
 }
 
-/* Conjugate gradients; on the finest level Chebyshev on the inverse diagonal blocks, on `count`
-   levels below Chebyshev on matrices whose diagonal is the identity, on the last one its inverse, if
-   there is one. `largest` bounds the spectra of all levels, the finest first. Without a level below:
-   `small` systems are solved by each rank as a whole, others smoothed only. Takes the matrices over,
-   also upon an error, but for the rock, which it shares. */
-int km_solver(void *rock, void *fractures, void *inverse, int count, void *const *prolongators, void *const *matrices, void *coarsest, const double *largest, int is_small, void **out) {
+static int set_cycle(Solver *s, const double *largest) {
+  if (!s->count && !s->whole) return 0;
+  PetscCall(PCCreate(PETSC_COMM_WORLD, &s->cycle));
+  PetscCall(PCSetOptionsPrefix(s->cycle, "kluft_cycle_"));
+  if (s->count) {
+    PetscCall(set_levels(s, largest));
+  } else {
+    PetscCall(MatConvert(s->whole, MATAIJ, MAT_INPLACE_MATRIX, &s->whole));
+    PetscCall(PCSetOperators(s->cycle, s->whole, s->whole));
+    PetscCall(PCSetType(s->cycle, PCREDUNDANT));
+  }
+  PetscCall(PCSetFromOptions(s->cycle));
+  return PCSetUp(s->cycle);
+}
+
+/* Conjugate gradients for `system`, preconditioned in scaled unknowns: by Chebyshev on `count` + 1
+   levels, whose matrices have the identity as their diagonal, the finest first, on the last one by
+   its inverse, if there is one; without prolongators by one solve of the `whole` by each rank, if it
+   is there, or by the scaling alone. `largest` bounds the spectra of all levels. Single ones are
+   `system`, the maps to scaled unknowns and back, the inverse and the whole. Takes the matrices over,
+   also upon an error. */
+int km_solver(void *const *singles, int count, void *const *prolongators, void *const *matrices, const double *largest, void **out) {
   Solver *s = calloc(1, sizeof *s);
   PC pc;
   if (!s) return PETSC_ERR_MEM;
-  s->inverse = inverse; s->coarsest = coarsest;
+  s->system = singles[0]; s->scale = singles[1]; s->unscale = singles[2]; s->coarsest = singles[3]; s->whole = singles[4];
+  s->count = count;
   *out = s;
   counted.levels = count + 1;
   PetscCall(PetscMalloc2(count + 1, &s->prolongators, count + 1, &s->matrices));
-  for (s->count = 0; s->count < count; s->count++) {
-    s->prolongators[s->count] = prolongators[s->count];
-    s->matrices[s->count] = matrices[s->count];
+  for (int at = 0; at <= count; at++) {
+    s->prolongators[at] = at < count ? prolongators[at] : NULL;
+    s->matrices[at] = matrices[at];
   }
-  PetscCall(set_tangent(&s->built, rock, fractures));
-  PetscCall(MatCreateVecs(rock, &s->solution, &s->right));
+  PetscCall(MatCreateVecs(s->system, &s->solution, &s->right));
+  PetscCall(MatCreateVecs(s->system, &s->cycled, &s->scaled));
+  PetscCall(set_cycle(s, largest));
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &s->solver));
   PetscCall(KSPSetOptionsPrefix(s->solver, "kluft_"));
   PetscCall(KSPSetType(s->solver, KSPCG));
   PetscCall(KSPSetNormType(s->solver, KSP_NORM_UNPRECONDITIONED));
-  PetscCall(KSPSetOperators(s->solver, s->built.sum, s->built.sum));
+  PetscCall(KSPSetOperators(s->solver, s->system, s->system));
   PetscCall(KSPGetPC(s->solver, &pc));
-  if (count) {
-    PetscCall(set_levels(s, pc, largest));
-  } else if (is_small) {
-    PetscCall(set_redundant(s, pc));
-  } else {
-    PetscCall(KSPSetOperators(s->solver, s->built.sum, s->inverse));
-    PetscCall(PCSetType(pc, PCMAT));
-  }
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, s));
+  PetscCall(PCShellSetApply(pc, precondition));
   PetscCall(KSPMonitorSet(s->solver, count_iteration, NULL, NULL));
   PetscCall(KSPSetFromOptions(s->solver));
-  PetscCall(KSPSetUp(s->solver));
-  return 0;
-}
-
-/* What the fractures have in the tangent, which may change then; what the levels were made of stays
-   as it is, because the finest one is smoothed with it. The solver keeps what it hands out. */
-int km_current_fractures(void *solver, void **out) {
-  Solver *s = solver;
-  Mat levels, fractures;
-  if (!s->current.sum) {
-    PetscCall(MatDuplicate(s->built.fractures, MAT_COPY_VALUES, &fractures));
-    PetscCall(set_tangent(&s->current, s->built.rock, fractures));
-    PetscCall(KSPGetOperators(s->solver, NULL, &levels));
-    PetscCall(KSPSetReusePreconditioner(s->solver, PETSC_TRUE));
-    PetscCall(KSPSetOperators(s->solver, s->current.sum, levels));
-  }
-  *out = s->current.fractures;
-  return 0;
+  return KSPSetUp(s->solver);
 }
 
 static int put(Vec to, const double *from) {
@@ -313,23 +364,31 @@ static int take(Vec from, double *to) {
   return VecRestoreArrayRead(from, &v);
 }
 
-/* `reason` is PETSc's, positive if it converged; `broke` tells that a matrix or the preconditioner
-   is not positive definite; `residual` is a share of the right-hand side. */
-int km_solve(void *solver, const double *right, double *solution, double tolerance, int most, int *iterations, int *reason, int *broke, double *residual) {
+/* `map` is that of the matrix for this solve. Reports the iterations, whether it converged, whether a
+   matrix or the preconditioner is not positive definite, and the residual as a share of the
+   right-hand side. */
+int km_solve(void *solver, void *map, const double *right, double *solution, double tolerance, int most, double *report) {
   Solver *s = solver;
+  Product *p;
   PetscInt n;
   KSPConvergedReason why;
-  PetscReal size;
+  PetscReal size, residual;
+  int failed;
   PetscCall(put(s->right, right));
   PetscCall(KSPSetTolerances(s->solver, tolerance, 0.0, PETSC_MAX_REAL, most));
-  PetscCall(KSPSolve(s->solver, s->right, s->solution));
+  PetscCall(MatShellGetContext(s->system, &p));
+  p->map = map;
+  failed = KSPSolve(s->solver, s->right, s->solution);
+  p->map = NULL;
+  if (failed) return failed;
   PetscCall(KSPGetIterationNumber(s->solver, &n));
   PetscCall(KSPGetConvergedReason(s->solver, &why));
-  PetscCall(KSPGetResidualNorm(s->solver, residual));
+  PetscCall(KSPGetResidualNorm(s->solver, &residual));
   PetscCall(VecNorm(s->right, NORM_2, &size));
-  if (size > 0) *residual /= size;
-  *iterations = (int)n; *reason = (int)why;
-  *broke = why == KSP_DIVERGED_INDEFINITE_PC || why == KSP_DIVERGED_INDEFINITE_MAT || why == KSP_DIVERGED_BREAKDOWN;
+  report[0] = (double)n;
+  report[1] = why > 0;
+  report[2] = why == KSP_DIVERGED_INDEFINITE_PC || why == KSP_DIVERGED_INDEFINITE_MAT || why == KSP_DIVERGED_BREAKDOWN;
+  report[3] = size > 0 ? residual / size : residual;
   return take(s->solution, solution);
 }
 
@@ -342,28 +401,23 @@ int km_precondition(void *solver, const double *right, double *solution) {
   PetscCall(PCApply(pc, s->right, s->solution));
   return take(s->solution, solution);
 }
-/* The inverse diagonal blocks alone. */
-int km_smooth(void *solver, const double *right, double *solution) {
-  Solver *s = solver;
-  PetscCall(put(s->right, right));
-  PetscCall(MatMult(s->inverse, s->right, s->solution));
-  return take(s->solution, solution);
-}
 
 int km_free(void *solver) {
   Solver *s = solver;
   PetscCall(KSPDestroy(&s->solver));
-  PetscCall(free_tangent(&s->built));
-  PetscCall(free_tangent(&s->current));
-  PetscCall(MatDestroy(&s->inverse));
-  for (int at = 0; at < s->count; at++) {
+  PetscCall(PCDestroy(&s->cycle));
+  for (int at = 0; at <= s->count; at++) {
     PetscCall(MatDestroy(&s->prolongators[at]));
     PetscCall(MatDestroy(&s->matrices[at]));
   }
   PetscCall(PetscFree2(s->prolongators, s->matrices));
+  PetscCall(MatDestroy(&s->system));
   PetscCall(MatDestroy(&s->coarsest));
+  PetscCall(MatDestroy(&s->whole));
   PetscCall(VecDestroy(&s->right));
   PetscCall(VecDestroy(&s->solution));
+  PetscCall(VecDestroy(&s->scaled));
+  PetscCall(VecDestroy(&s->cycled));
   free(s);
   return 0;
 }

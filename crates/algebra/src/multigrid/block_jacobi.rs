@@ -166,21 +166,23 @@ impl Factors {
         sum
     }
 
-    /// Block of `L^-T` of a cluster, as rows.
-    pub(super) fn transposed_inverse_block(
-        &self,
-        cluster: u32,
-        row: usize,
-        column: usize,
-    ) -> [[f64; 3]; 3] {
-        transpose(&block(self.inverse_of(cluster), column, row))
-    }
-
     /// The inverses as they are kept for the cycle.
     pub(super) fn compact(self) -> InverseFactors {
         InverseFactors {
             offset: self.offset,
             inverse: self.inverse.into_par_iter().map(|x| x as f32).collect(),
+        }
+    }
+
+    /// Those of some clusters as they are kept for the cycle.
+    pub(super) fn some_compact(&self, clusters: &[u32]) -> InverseFactors {
+        let lengths = clusters.iter().map(|&at| self.inverse_of(at).len());
+        let mut offset: Vec<usize> = std::iter::once(0).chain(lengths).collect();
+        sum_up(&mut offset);
+        let inverse = clusters.iter().flat_map(|&at| self.inverse_of(at));
+        InverseFactors {
+            offset,
+            inverse: inverse.map(|&x| x as f32).collect(),
         }
     }
 }

@@ -1,16 +1,17 @@
 //! The first coarsening of a matrix whose rows many processes share: what a multigrid framework
-//! needs of the rows of one of them, in unknowns that are not scaled.
+//! needs of the rows of one of them.
 //!
-//! With the clusters `C` of unknowns, `A = R + S` of a fixed matrix and an interface, and the basis
-//! `P` of the fixed one, that is the inverse `A_CC^-1` for a smoother, a bound of the spectrum of
-//! `A_CC^-1 A`, the prolongator `A_CC^-1 R_CC P`, and what the rows give to the matrix of the next
-//! level. What all of them give makes the [`LowerLevels`].
+//! With the clusters `C` of unknowns, `A = R + S` of a fixed matrix and an interface, `A_CC = L
+//! L^T`, and the basis `P` of the fixed one, that is the matrix `L^-1 A L^-T` of scaled unknowns
+//! and a bound of its spectrum, the prolongator `L^-1 R P` to these unknowns, and what the rows
+//! give to the matrix of the next level. What all of them give makes the [`LowerLevels`].
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::block_jacobi::{self, Factors};
-use super::block_list::BlockList;
+use super::galerkin;
+use super::level_rows::{LevelRows, OwnClusters, ProlongatorRows};
 use super::lower_levels::LowerLevels;
 use super::mean_field::{CoarseBasis, MeanField};
 use super::setup::{FixedHierarchy, NodeMatrix};
@@ -23,7 +24,6 @@ use crate::block_rows::BlockRows;
 use crate::division::{Communicator, Division};
 use crate::failure::MultigridFailure;
 use crate::interface::InterfaceBlocks;
-use crate::small::{add, product, transpose, widen};
 
 /// Clusters and basis, made once for a fixed matrix.
 #[derive(Debug, Clone)]
@@ -43,15 +43,21 @@ pub struct OwnRows<'a> {
 /// What some rows give to a hierarchy. The lists have one row for each of them.
 #[derive(Debug, Clone)]
 pub struct LevelPart {
-    /// Upper bound of the eigenvalues of `A_CC^-1 A`.
+    /// `L` of the clusters of these rows.
+    pub clusters: OwnClusters,
+    /// `L^-1 A L^-T`.
+    pub matrix: LevelRows<3>,
+    /// Upper bound of its eigenvalues.
     pub largest_eigenvalue: f64,
-    /// `A_CC^-1`; columns are rows of the matrix.
-    pub inverse: BlockList<3, 3>,
-    /// `A_CC^-1 R_CC P`; columns are nodes of the next level.
-    pub prolongator: BlockList<3, 6>,
+    /// `L^-1 R P`; columns are nodes of the next level.
+    pub prolongator: FirstProlongator,
     /// What they add to the matrix of the next level.
     pub next: NextPart,
 }
+
+/// Rows of the prolongator to the finest level, in unknowns of the next one that are not scaled.
+#[derive(Debug, Clone)]
+pub struct FirstProlongator(Sparse<3, 6>);
 
 /// What some rows add to the matrix of the next level.
 #[derive(Debug, Clone)]
@@ -172,11 +178,11 @@ impl FirstCoarsening {
             .product(&rows.rows, &matrix, &prolongator, &transpose, is_own);
         drop(transpose);
         let largest_eigenvalue = spectrum::largest_eigenvalue_of_rows(&matrix, complete);
-        drop(matrix);
         LevelPart {
+            clusters: OwnClusters::of(&self.fixed.clusters, &rows.factors, rows.own),
+            matrix: LevelRows::of(matrix, rows.own),
             largest_eigenvalue,
-            inverse: self.inverse(&rows.factors, rows.own),
-            prolongator: self.unscaled(&rows.factors, &prolongator, rows.own),
+            prolongator: FirstProlongator(prolongator.only(rows.own)),
             next: NextPart(next.without_empty()),
         }
     }
@@ -191,50 +197,14 @@ impl FirstCoarsening {
         communicator: &Communicator,
     ) -> Result<LowerLevels, MultigridFailure> {
         let parts = own.gathered(communicator);
-        LowerLevels::of(parts, self.fixed.basis.nodes())
+        LowerLevels::of(parts, self.fixed.basis.nodes(), communicator)
     }
+}
 
-    /// `A_CC^-1 = L^-T L^-1`.
-    fn inverse(&self, factors: &Factors, own: &[u32]) -> BlockList<3, 3> {
-        let clusters = &self.fixed.clusters;
-        let mut inverse = BlockList::new();
-        for &row in own {
-            let (cluster, at) = clusters.place[row as usize];
-            let members = clusters.members.of(cluster as usize);
-            let left = |row, column| factors.transposed_inverse_block(cluster, row, column);
-            for (place, &member) in members.iter().enumerate() {
-                let mut sum = [[0.0; 3]; 3];
-                for k in place.max(at as usize)..members.len() {
-                    let term = product(&left(at as usize, k), &transpose(&left(place, k)));
-                    add(&mut sum, 1.0, &term);
-                }
-                inverse.push(member, sum);
-            }
-            inverse.end_row();
-        }
-        inverse
-    }
-
-    /// Rows of a prolongator of scaled unknowns in those that are not, `L^-T P`.
-    fn unscaled(&self, factors: &Factors, scaled: &Sparse<3, 6>, own: &[u32]) -> BlockList<3, 6> {
-        let clusters = &self.fixed.clusters;
-        let mut prolongator = BlockList::new();
-        for &row in own {
-            let (cluster, at) = clusters.place[row as usize];
-            let members = clusters.members.of(cluster as usize);
-            let mut sums = std::collections::BTreeMap::new();
-            for (place, &member) in members.iter().enumerate().skip(at as usize) {
-                let left = factors.transposed_inverse_block(cluster, at as usize, place);
-                for (column, block) in scaled.row(member as usize) {
-                    let sum = sums.entry(column as u32).or_insert([[0.0; 6]; 3]);
-                    add(sum, 1.0, &product(&left, &widen(block)));
-                }
-            }
-            for (column, block) in sums {
-                prolongator.push(column, block);
-            }
-            prolongator.end_row();
-        }
-        prolongator
+impl FirstProlongator {
+    /// The prolongator from the levels below, of whose first one this process has the nodes `own`.
+    pub fn from(mut self, lower: &LowerLevels, own: &[u32]) -> ProlongatorRows<3> {
+        galerkin::scale_prolongator(&mut self.0, lower.factors());
+        ProlongatorRows::of(self.0, own, lower.nodes(0))
     }
 }

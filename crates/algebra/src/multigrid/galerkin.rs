@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::continuity::Continuity;
 use super::sparse::{Sparse, Transpose, rows_per_task};
 use super::triple_product::{Block6, PartialProduct};
+use crate::division::{Communicator, Division};
 use crate::small::{Modes, inverse_factor, narrow, product, transpose, widen};
 
 /// A motion of an aggregate with less than this share of the energy of its stiffest one costs
@@ -27,13 +28,13 @@ pub(super) struct CoarseNodes<'a> {
 }
 
 /// The next level of `P^T A P`, whose nodes are these; scales the columns of `P` to its
-/// unknowns.
+/// unknowns. The ranks divide the work.
 pub(super) fn coarse<const N: usize>(
-    whole: &PartialProduct,
+    whole: PartialProduct,
     prolongator: &mut Sparse<N, 6>,
-    nodes: CoarseNodes<'_>,
+    nodes: (CoarseNodes<'_>, &Communicator),
 ) -> Coarse {
-    let factors = factors(whole);
+    let factors = factors(&whole);
     scale_prolongator(prolongator, &factors);
     scaled(whole, &factors, nodes)
 }
@@ -46,20 +47,32 @@ pub(super) fn factors(whole: &PartialProduct) -> Vec<Block6> {
         .collect()
 }
 
-/// The next level in unknowns that scale its diagonal, whose factors are given.
-pub(super) fn scaled(whole: &PartialProduct, factors: &[Block6], nodes: CoarseNodes<'_>) -> Coarse {
+/// The next level in unknowns that scale its diagonal, whose factors are given. The ranks divide
+/// the work.
+pub(super) fn scaled(
+    whole: PartialProduct,
+    factors: &[Block6],
+    (nodes, ranks): (CoarseNodes<'_>, &Communicator),
+) -> Coarse {
     // Energy projection on the columns kept: `L^-1 A_ii`, which is `L^T` if none was left out.
     let scaled = factors.par_iter().zip(&whole.diagonal).zip(nodes.modes);
     let modes = scaled.map(|((factor, block), modes)| product(&product(factor, block), modes));
+    let modes = modes.collect();
+    let division = ranks.divide_evenly(factors.len());
+    let own = scaled_matrix(&whole.upper, factors, &division);
+    drop(whole);
     Coarse {
-        modes: modes.collect(),
-        matrix: scaled_matrix(&whole.upper, factors),
+        modes,
+        matrix: own.completed(&division),
         continuity: nodes.continuity.clone(),
     }
 }
 
 /// `P L^-T`.
-fn scale_prolongator<const N: usize>(prolongator: &mut Sparse<N, 6>, factors: &[Block6]) {
+pub(super) fn scale_prolongator<const N: usize>(
+    prolongator: &mut Sparse<N, 6>,
+    factors: &[Block6],
+) {
     let blocks = prolongator.blocks.par_iter_mut().zip(&prolongator.columns);
     blocks.for_each(|(block, &column)| {
         let right = transpose(&factors[column as usize]);
@@ -68,20 +81,27 @@ fn scale_prolongator<const N: usize>(prolongator: &mut Sparse<N, 6>, factors: &[
 }
 
 /// `L^-1 A L^-T` without its diagonal, blocks as columns, from the blocks of `A` right of the
-/// diagonal, blocks as rows: symmetric to the last bit.
-fn scaled_matrix(upper: &Sparse<6, 6>, factors: &[Block6]) -> Sparse<6, 6> {
+/// diagonal, blocks as rows: symmetric to the last bit. Rows of other ranks are empty.
+fn scaled_matrix(upper: &Sparse<6, 6>, factors: &[Block6], division: &Division) -> Sparse<6, 6> {
     let lower = Transpose::of(upper, upper.rows());
     let scaled = |row: usize, column: usize, block: &[[f32; 6]; 6]| {
         let right = transpose(&factors[column]);
         narrow(&product(&product(&factors[row], &widen(block)), &right))
     };
+    let own = division.own();
     Sparse::build(
         upper.rows(),
         rows_per_task::<6>(),
         || (),
-        |(), row| lower.column(row).len() + upper.range(row).len(),
+        |(), row| match own.contains(&row) {
+            true => lower.column(row).len() + upper.range(row).len(),
+            false => 0,
+        },
         #[inline(always)]
         |(), row, columns, blocks| {
+            if columns.is_empty() {
+                return;
+            }
             let mut targets = columns.iter_mut().zip(blocks);
             for (&(at, position), (column, target)) in lower.column(row).iter().zip(&mut targets) {
                 let block = &upper.blocks[position as usize];

@@ -1,18 +1,24 @@
 //! The levels below a finest one whose rows many processes share. They are much smaller than it, so
-//! every process makes all of them, alike; what it works with are the rows that it owns.
+//! every process has all of them, alike; it makes its part of their rows, and works with those that
+//! it owns.
 
 use super::block_list::BlockList;
 use super::cycle::{Below, Level};
 use super::galerkin::{self, CoarseNodes};
+use super::level_rows::{LevelRows, ProlongatorRows};
 use super::setup;
+use super::sparse::Sparse;
 use super::triple_product::{Block6, PartialProduct};
+use crate::division::Communicator;
 use crate::failure::MultigridFailure;
-use crate::small::{transpose, widen};
 
 /// All levels but the finest, the largest of them first; never none.
 #[derive(Debug, Clone)]
 pub struct LowerLevels {
     factors: Vec<Block6>,
+    /// Nodes of each level.
+    nodes: Vec<usize>,
+    /// What is left of them.
     levels: Vec<Level<6>>,
 }
 
@@ -27,23 +33,28 @@ pub enum CoarsestSolve {
 
 impl LowerLevels {
     /// From parts of the matrix of the first of them, which are summed in their order; and
-    /// its nodes.
+    /// its nodes. The ranks divide the work.
     pub(super) fn of(
         parts: Vec<PartialProduct>,
         nodes: CoarseNodes<'_>,
+        ranks: &Communicator,
     ) -> Result<Self, MultigridFailure> {
         let whole = PartialProduct::sum(nodes.modes.len(), &parts);
         drop(parts);
         let factors = galerkin::factors(&whole);
-        let mut next = Some(galerkin::scaled(&whole, &factors, nodes));
-        drop(whole);
+        let mut next = Some(galerkin::scaled(whole, &factors, (nodes, ranks)));
         let mut levels = Vec::new();
         while let Some(coarse) = next {
-            let (level, below) = setup::level(coarse)?;
+            let (level, below) = setup::level(coarse, ranks)?;
             levels.push(level);
             next = below;
         }
-        Ok(Self { factors, levels })
+        let nodes = levels.iter().map(|level| level.matrix.rows()).collect();
+        Ok(Self {
+            factors,
+            nodes,
+            levels,
+        })
     }
 
     /// Number of levels.
@@ -53,13 +64,13 @@ impl LowerLevels {
 
     /// `L^-1` of the diagonal blocks of the first level before it was scaled: the prolongator to it
     /// is `P L^-T`.
-    pub fn factors(&self) -> &[Block6] {
+    pub(super) fn factors(&self) -> &[Block6] {
         &self.factors
     }
 
     /// Number of nodes of a level.
     pub fn nodes(&self, level: usize) -> usize {
-        self.levels[level].matrix.rows()
+        self.nodes[level]
     }
 
     /// Upper bound of the eigenvalues of the matrix of a level, whose diagonal is the identity.
@@ -85,25 +96,28 @@ impl LowerLevels {
         }
     }
 
-    /// A row of the matrix of a level: columns and blocks as rows.
-    pub fn matrix_row(&self, level: usize, node: u32) -> impl Iterator<Item = (u32, Block6)> {
-        let identity =
-            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
-        let others = self.levels[level].matrix.row(node as usize);
-        let others = others.map(|(column, block)| (column as u32, transpose(&widen(block))));
-        std::iter::once((node, identity)).chain(others)
+    /// Some rows of the matrix of a level, of which none is left here.
+    pub fn take_rows(&mut self, level: usize, own: &[u32]) -> LevelRows<6> {
+        let matrix = &mut self.levels[level].matrix;
+        LevelRows::of(std::mem::replace(matrix, Sparse::empty()), own)
     }
 
-    /// A row of the prolongator from the level below, blocks as rows; an empty one on the coarsest
-    /// level.
-    pub fn prolongator_row(&self, level: usize, node: u32) -> impl Iterator<Item = (u32, Block6)> {
-        let transfer = match &self.levels[level].below {
-            Below::Level(transfer) => Some(transfer),
-            _ => None,
-        };
-        let row = transfer.map(|transfer| transfer.prolongator.row(node as usize));
-        let row = row.into_iter().flatten();
-        row.map(|(column, block)| (column as u32, widen(block)))
+    /// Rows of the prolongator to a level from the one below it, of which this process has the nodes
+    /// `below`; none on the coarsest level. None of it is left here.
+    pub fn take_prolongator(
+        &mut self,
+        level: usize,
+        own: &[u32],
+        below: &[u32],
+    ) -> ProlongatorRows<6> {
+        match &mut self.levels[level].below {
+            Below::Level(transfer) => {
+                let rows = std::mem::replace(&mut transfer.prolongator, Sparse::empty());
+                let rows = rows.only(own);
+                ProlongatorRows::of(rows, below, self.nodes[level + 1])
+            }
+            _ => ProlongatorRows::of(Sparse::empty(), below, below.len()),
+        }
     }
 
     /// Rows of the pseudo-inverse of the coarsest matrix, if it is solved by that.
@@ -112,7 +126,8 @@ impl LowerLevels {
         let Some((Below::Inverse(dense), nodes)) = self
             .levels
             .last()
-            .map(|level| (&level.below, level.matrix.rows()))
+            .map(|level| &level.below)
+            .zip(self.nodes.last().copied())
         else {
             return rows;
         };

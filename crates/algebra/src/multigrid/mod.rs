@@ -17,6 +17,7 @@ mod continuity;
 mod cycle;
 mod first_coarsening;
 mod galerkin;
+mod level_rows;
 mod lower_levels;
 mod mean_field;
 mod parts;
@@ -43,12 +44,14 @@ use sparse::Sparse;
 use sum_rows::SumRows;
 
 use crate::block_rows::BlockRows;
+use crate::division::Communicator;
 use crate::interface::InterfaceBlocks;
 
 pub use crate::failure::MultigridFailure;
 pub use block_list::BlockList;
 pub use continuity::Continuity;
-pub use first_coarsening::{FirstCoarsening, LevelPart, NextPart, OwnRows};
+pub use first_coarsening::{FirstCoarsening, FirstProlongator, LevelPart, NextPart, OwnRows};
+pub use level_rows::{LevelRows, OwnClusters, ProlongatorRows};
 pub use lower_levels::{CoarsestSolve, LowerLevels};
 pub use mean_field::{CoarseBasis, MeanField};
 
@@ -171,7 +174,7 @@ impl Multigrid {
         let (factors, finest, mut next) = self.fixed.finest(rows, buffers)?;
         let mut coarser = Vec::new();
         while let Some(coarse) = next {
-            let (level, below) = setup::level(coarse)?;
+            let (level, below) = setup::level(coarse, &Communicator::alone())?;
             coarser.push(level);
             next = below;
         }
@@ -209,7 +212,7 @@ impl Multigrid {
         assert_eq!(residual.len(), rows, "one entry a row");
         assert_eq!(correction.len(), rows, "one entry a row");
         let Workspace { finest, coarser } = workspace;
-        let unit = unit(residual);
+        let unit = unit(&[bytemuck::cast_slice(residual)]);
         let (factors, clusters) = (&self.factors, &self.fixed.clusters);
         factors.to_scaled(clusters, residual, unit, &mut finest.rhs);
         self.finest.cycle(finest, &self.coarser, coarser);
@@ -218,7 +221,7 @@ impl Multigrid {
 
     /// The block Jacobi method: what the clusters alone, each by itself, do about a residual.
     pub fn clusters_alone(&self, residual: &[DVec3]) -> Vec<DVec3> {
-        let unit = unit(residual);
+        let unit = unit(&[bytemuck::cast_slice(residual)]);
         let (factors, clusters) = (&self.factors, &self.fixed.clusters);
         let mut scaled = vec![[0.0; 3]; residual.len()];
         factors.to_scaled(clusters, residual, unit, &mut scaled);
@@ -272,14 +275,14 @@ fn size<const N: usize>(matrix: &Sparse<N, N>) -> LevelSize {
     }
 }
 
-/// Power of two near the largest component: single precision then neither overflows nor underflows,
-/// and the map stays linear to the last bit.
-fn unit(vector: &[DVec3]) -> f64 {
-    let largest = vector
-        .par_iter()
-        .with_min_len(4096)
-        .map(|v| v.abs().max_element())
-        .reduce(|| 0.0, f64::max);
+/// Power of two near the largest component of some vectors: single precision then neither overflows
+/// nor underflows, and the map stays linear to the last bit.
+fn unit(vectors: &[&[f64]]) -> f64 {
+    let largest = |vector: &&[f64]| {
+        let sizes = vector.par_iter().with_min_len(12288).map(|x| x.abs());
+        sizes.reduce(|| 0.0, f64::max)
+    };
+    let largest = vectors.iter().map(largest).fold(0.0, f64::max);
     match largest > 0.0 && largest.is_finite() {
         true => largest.log2().floor().exp2(),
         false => 1.0,

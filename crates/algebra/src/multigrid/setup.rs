@@ -16,7 +16,7 @@ use super::sum_rows::{RowSubset, SumRows};
 use super::triple_product::PartialProduct;
 use super::{aggregation, parts, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
-use crate::division::Division;
+use crate::division::{Communicator, Division};
 use crate::failure::MultigridFailure;
 
 /// A level with at most this many scalar unknowns is inverted.
@@ -163,7 +163,8 @@ impl FixedHierarchy {
                 transpose: &transpose,
                 restrictor,
             };
-            let (transfer, next) = way.down_to(product, self.basis.nodes());
+            let nodes = (self.basis.nodes(), &Communicator::alone());
+            let (transfer, next) = way.down_to(product, nodes);
             (Below::Level(transfer), Some(next))
         } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
             (Below::Nothing, None)
@@ -227,13 +228,16 @@ impl FixedHierarchy {
     }
 }
 
-/// A level, and the next one if it is worth having.
-pub(super) fn level(level: Coarse) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
+/// A level, and the next one if it is worth having. The ranks divide the work.
+pub(super) fn level(
+    level: Coarse,
+    ranks: &Communicator,
+) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
     let bound = spectrum::largest_eigenvalue(&level.matrix);
     if !bound.is_finite() {
         return Err(MultigridFailure::NotFinite);
     }
-    let (below, next) = below(&level, bound)?;
+    let (below, next) = below(&level, bound, ranks)?;
     let level = Level {
         matrix: level.matrix,
         smoother: Smoother::new(bound),
@@ -245,6 +249,7 @@ pub(super) fn level(level: Coarse) -> Result<(Level<6>, Option<Coarse>), Multigr
 fn below(
     level: &Coarse,
     largest_eigenvalue: f64,
+    ranks: &Communicator,
 ) -> Result<(Below<6>, Option<Coarse>), MultigridFailure> {
     let Coarse {
         matrix,
@@ -266,9 +271,14 @@ fn below(
         tentative: &tentative,
         modes,
     };
-    let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue, |_| true);
+    let division = ranks.divide_evenly(matrix.rows());
+    let own = division.own();
+    let is_own = |row: usize| own.contains(&row);
+    let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue, is_own);
+    let prolongator = prolongator.completed(&division);
     let transpose = Transpose::of(&prolongator, aggregates.count);
-    let product = PartialProduct::whole(matrix, &prolongator, &transpose);
+    let parts = PartialProduct::of_rows(matrix, &prolongator, &transpose, is_own);
+    let product = PartialProduct::sum(aggregates.count, &parts).completed(ranks);
     let way = Way {
         prolongator,
         transpose: &transpose,
@@ -278,7 +288,7 @@ fn below(
         modes: &tentative.modes,
         continuity: &continuity.of_aggregates(&aggregates, matrix),
     };
-    let (transfer, coarse) = way.down_to(product, nodes);
+    let (transfer, coarse) = way.down_to(product, (nodes, ranks));
     Ok((Below::Level(transfer), Some(coarse)))
 }
 
@@ -291,9 +301,12 @@ struct Way<'a, const N: usize> {
 
 impl<const N: usize> Way<'_, N> {
     /// The way to the level of `P^T A P`, whose nodes are these, and that level.
-    fn down_to(mut self, product: PartialProduct, nodes: CoarseNodes<'_>) -> (Transfer<N>, Coarse) {
-        let coarse = galerkin::coarse(&product, &mut self.prolongator, nodes);
-        drop(product);
+    fn down_to(
+        mut self,
+        product: PartialProduct,
+        nodes: (CoarseNodes<'_>, &Communicator),
+    ) -> (Transfer<N>, Coarse) {
+        let coarse = galerkin::coarse(product, &mut self.prolongator, nodes);
         self.transpose
             .arrange(&self.prolongator, &mut self.restrictor);
         let transfer = Transfer {

@@ -128,6 +128,24 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
 }
 
 impl<const M: usize, const L: usize> Sparse<M, L> {
+    /// Some rows, ascending.
+    pub(super) fn only(mut self, rows: &[u32]) -> Self {
+        let mut offset = vec![0];
+        let mut end = 0;
+        for &row in rows {
+            let range = self.range(row as usize);
+            self.columns.copy_within(range.clone(), end);
+            self.blocks.copy_within(range.clone(), end);
+            end += range.len();
+            offset.push(end);
+        }
+        self.columns.truncate(end);
+        self.blocks.truncate(end);
+        self.columns.shrink_to_fit();
+        self.blocks.shrink_to_fit();
+        Self { offset, ..self }
+    }
+
     /// The rows of all ranks, of which each one has its own; the others are empty there.
     pub(super) fn completed(mut self, division: &Division) -> Self {
         if division.is_whole() {

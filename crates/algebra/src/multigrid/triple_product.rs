@@ -29,16 +29,6 @@ pub(super) struct PartialProduct {
 }
 
 impl PartialProduct {
-    /// All of `P^T A P`, `A` having the identity as its diagonal.
-    pub(super) fn whole<const N: usize>(
-        matrix: &Sparse<N, N>,
-        prolongator: &Sparse<N, 6>,
-        transpose: &Transpose,
-    ) -> Self {
-        let parts = Self::of_rows(matrix, prolongator, transpose, |_| true);
-        Self::sum(transpose.columns(), &parts)
-    }
-
     /// What rows of `A`, which has the identity as its diagonal, give to `P^T A P`: those that
     /// `is_wanted`, in batches.
     pub(super) fn of_rows<const N: usize>(
@@ -152,6 +142,17 @@ impl PartialProduct {
             .collect();
         self.aggregates.retain(kept);
         self
+    }
+
+    /// The sum of those of all ranks, which have all aggregates.
+    pub(super) fn completed(self, ranks: &Communicator) -> Self {
+        match ranks.size() {
+            1 => self,
+            _ => {
+                let aggregates = self.diagonal.len();
+                Self::sum(aggregates, &self.without_empty().gathered(ranks))
+            }
+        }
     }
 
     /// Those of all ranks, in their order.

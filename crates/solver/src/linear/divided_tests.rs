@@ -91,11 +91,12 @@ fn ranks_make_the_second_level_of_one_rank() {
         });
         all.into_iter().next_back().expect("a rank")
     };
-    let (one, three) = (levels(1), levels(3));
+    let (mut one, mut three) = (levels(1), levels(3));
     assert_eq!(one.nodes(0), three.nodes(0));
-    for node in 0..one.nodes(0) as u32 {
-        let rows = one.matrix_row(0, node).zip(three.matrix_row(0, node));
-        for ((column, one), (at, other)) in rows {
+    let all: Vec<u32> = (0..one.nodes(0) as u32).collect();
+    let (one, three) = (one.take_rows(0, &all), three.take_rows(0, &all));
+    for node in 0..all.len() {
+        for ((column, one), (at, other)) in one.row(node).zip(three.row(node)) {
             assert_eq!(column, at);
             for (one, other) in std::iter::zip(one.as_flattened(), other.as_flattened()) {
                 // Single precision.

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::multigrid::{CoarseBasis, Multigrid, rigid_modes};
-use kluft_algebra::{norm, small};
+use kluft_algebra::{Communicator, norm, small};
 use kluft_mesh::structured::{Patch, tetrahedra};
 use kluft_mesh::{Mesh, SurfaceRole};
 use lie_core::{Closure, ClosureKind, FractureLaw, Rock};
@@ -95,7 +95,7 @@ fn prepared(system: &System<'_>) -> (Multigrid, CoarseBasis) {
         &space.points.offset,
         &modes(system.problem),
         |means| {
-            basis = SplitAggregates::of(space, means).basis(|_| true);
+            basis = SplitAggregates::of(space, means, &Communicator::alone()).basis(|_| true);
             basis.clone()
         },
     );

@@ -5,8 +5,8 @@
 use glam::{DMat3, DVec3};
 use kluft_algebra::multigrid::{FirstCoarsening, Multigrid, Workspace, rigid_modes};
 use kluft_algebra::{
-    ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks, LinearFailure,
-    conjugate_gradients, norm, trace,
+    Communicator, ConjugateGradientOutcome, ConjugateGradientSettings, FixedPart, InterfaceBlocks,
+    LinearFailure, conjugate_gradients, norm, trace,
 };
 use rayon::prelude::*;
 
@@ -58,7 +58,7 @@ impl Iterative {
             system.rock_rows(),
             &space.points.offset,
             &modes(system),
-            |means| SplitAggregates::of(space, means).basis(|_| true),
+            |means| SplitAggregates::of(space, means, &Communicator::alone()).basis(|_| true),
         )?;
         Ok(Self {
             workspace: multigrid.workspace(),
@@ -125,7 +125,8 @@ pub fn first_coarsening(
     system.add_rows(&wanted);
     let space = system.discretisation.space(system.problem);
     let is_wanted = |row: usize| wanted.binary_search(&(row as u32)).is_ok();
-    coarsening.set_basis(SplitAggregates::of(space, &means).basis(is_wanted));
+    let split = SplitAggregates::of(space, &means, division.communicator());
+    coarsening.set_basis(split.basis(is_wanted));
     Ok((coarsening, owner))
 }
 

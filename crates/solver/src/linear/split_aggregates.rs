@@ -10,6 +10,7 @@
 //! exactly on the next one. What stiff walls make of these motions is left to the multigrid, see
 //! [`kluft_algebra::multigrid`].
 
+use kluft_algebra::Communicator;
 use kluft_algebra::multigrid::{CoarseBasis, Continuity, MeanField};
 use kluft_algebra::small::{Modes, add, product, rows_of, widen};
 use rayon::prelude::*;
@@ -38,10 +39,11 @@ pub(super) struct SplitAggregates<'a> {
 }
 
 impl<'a> SplitAggregates<'a> {
-    /// Cuts the aggregates of `means`.
-    pub(super) fn of(space: Space<'a>, means: &'a MeanField) -> Self {
+    /// Cuts the aggregates of `means`. The ranks divide the work.
+    pub(super) fn of(space: Space<'a>, means: &'a MeanField, ranks: &Communicator) -> Self {
         let aggregates = means.aggregates();
-        let cuts: Vec<SplitAggregate> = (0..aggregates)
+        let own = ranks.divide_evenly(aggregates).own();
+        let cuts: Vec<SplitAggregate> = own
             .into_par_iter()
             .with_min_len(PER_TASK)
             .map_init(
@@ -52,6 +54,7 @@ impl<'a> SplitAggregates<'a> {
                 },
             )
             .collect();
+        let cuts = SplitAggregate::of_all_ranks(cuts, ranks);
         let mut split = Self {
             space,
             means,
@@ -243,6 +246,31 @@ struct SplitAggregate {
 }
 
 impl SplitAggregate {
+    /// Those of all ranks, rank by rank.
+    fn of_all_ranks(own: Vec<Self>, ranks: &Communicator) -> Vec<Self> {
+        if ranks.size() == 1 {
+            return own;
+        }
+        let lengths = own.iter();
+        let lengths = lengths.map(|cut| [cut.parts.len() as u32, cut.is_small.len() as u32]);
+        let parts = own.iter().flat_map(|cut| &cut.parts);
+        let parts: Vec<[u32; 2]> = parts.map(|&(point, part)| [point, part]).collect();
+        let is_small = own.iter().flat_map(|cut| &cut.is_small);
+        let is_small: Vec<u8> = is_small.map(|&small| u8::from(small)).collect();
+        let lengths = ranks.gathered(&lengths.collect::<Vec<_>>());
+        let mut parts = ranks.gathered(&parts).into_iter();
+        let mut is_small = ranks.gathered(&is_small).into_iter();
+        let cuts = lengths.into_iter().map(|[points, count]| {
+            let parts = parts.by_ref().take(points as usize);
+            let is_small = is_small.by_ref().take(count as usize);
+            Self {
+                parts: parts.map(|[point, part]| (point, part)).collect(),
+                is_small: is_small.map(|small| small == 1).collect(),
+            }
+        });
+        cuts.collect()
+    }
+
     /// Whether others can follow its motion of a point.
     fn is_host(&self, point: u32) -> bool {
         let found = self.parts.binary_search_by_key(&point, |(point, _)| *point);
