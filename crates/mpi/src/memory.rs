@@ -1,11 +1,14 @@
 //! Memory that the solver on ranks takes, predicted before any of it is taken.
 
-/// PETSc's stiffness of the rock: a block and its column.
-const OF_BLOCK: usize = 72 + 4;
-/// Inverses of clusters, prolongator, levels below, vectors and room to make them, for each row.
-const OF_ROW: usize = 4_000;
+/// A block of the finest level, in single precision, and its column.
+const OF_BLOCK: usize = 36 + 4;
+/// Prolongator and its basis, levels below and vectors, for each row.
+const OF_ROW: usize = 2_200;
+/// The matrix of the second level, which every rank has while levels are made, for each row.
+const OF_ROW_ON_EACH: usize = 800;
 
-/// Bytes for `rows` block rows with `blocks` blocks, on all ranks together.
-pub fn solver_bytes(rows: usize, blocks: usize) -> usize {
-    OF_BLOCK * blocks + OF_ROW * rows
+/// Bytes for `rows` block rows with `blocks` blocks on each of so many ranks.
+pub fn solver_bytes(rows: usize, blocks: usize, ranks: usize) -> usize {
+    let divided = OF_BLOCK * blocks + OF_ROW * rows;
+    OF_ROW_ON_EACH * rows + divided.div_ceil(ranks)
 }

@@ -27,7 +27,7 @@ impl Run<'_> {
         });
         let plan = solved(plan, system)?;
         let blocks = discretisation.pattern().blocks.columns.len();
-        let own = (ranks.solver_bytes)(points, blocks).div_ceil(ranks.count());
+        let own = (ranks.solver_bytes)(points, blocks, ranks.count());
         let needed = workload.extra.with(workload.extra.iterative + own);
         self.summary.predicted_memory_bytes = (memory::used_bytes() + needed) as u64;
         let fits = match needed <= limit {

@@ -22,9 +22,9 @@ pub struct Ranks<'a> {
     pub solver: MakeSolver<'a>,
     /// Rank of each point that has unknowns, once there is a solver.
     pub owner: &'a (dyn Fn() -> Vec<u32> + Sync),
-    /// Memory that the solver of so many rows, with so many blocks, takes on all ranks together
+    /// Memory that the solver of so many rows, with so many blocks, takes on each of so many ranks
     /// (bytes).
-    pub solver_bytes: &'a (dyn Fn(usize, usize) -> usize + Sync),
+    pub solver_bytes: &'a (dyn Fn(usize, usize, usize) -> usize + Sync),
 }
 
 impl fmt::Debug for Ranks<'_> {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use kluft_network::{CellSizes, Domain, Grouping, Network, Stream, read_list, write_geo};
 
-use crate::equal::{EQUAL, compared};
+use crate::equal::{is_as_equal_as_solvers, is_equal};
 use crate::harness::number;
 
 /// Discs in all directions, some of which cross, end in each other or cut off a corner.
@@ -25,6 +25,11 @@ fn list(seed: u64) -> String {
         );
     }
     text
+}
+
+/// Whether its fractures are in contact with friction.
+fn slides(seed: u64) -> bool {
+    seed % 3 == 2
 }
 
 /// Writes geometry and scene; whether the fractures are ones that can be meshed.
@@ -86,12 +91,11 @@ fn random_networks_are_equal_to_serial_runs() {
         }
         let scene = folder.path().join("scene.toml");
         let ranks = 2 + (seed % 3) as usize;
-        let difference = compared(&scene, ranks, &mut None);
-        println!("network {seed} on {ranks} ranks: {difference:.1e}");
-        assert!(
-            difference < EQUAL,
-            "network {seed} on {ranks} ranks: {difference:e}"
-        );
+        match slides(seed) {
+            true => is_as_equal_as_solvers(&scene, ranks..=ranks),
+            false => is_equal(&scene, ranks..=ranks),
+        }
+        println!("network {seed} on {ranks} ranks holds");
         compared_with += 1;
     }
     assert!(
