@@ -282,3 +282,25 @@ fn a_core_that_a_fluid_holds_is_said_to_float() {
         assert!(said["steps"][0]["unresolved"].is_null(), "{said}");
     }
 }
+
+/// A core whose walls are apart, but come close enough to bear shear by their cohesion: they slide
+/// until they do. Only that friction holds the core, so its slip is a result, and where it sticks
+/// must be followed.
+#[test]
+fn a_core_that_cohesion_holds_slides_as_far_in_one_step_as_in_ten() {
+    let end = "[boundary.bottom]";
+    let steps: Vec<String> = (1..=10)
+        .map(|step| format!("{}", f64::from(step) / 10.0))
+        .collect();
+    let ten = format!("[load]\nsteps = [{}]\n{end}", steps.join(", "));
+    let slips = [end, &ten].map(|steps| {
+        let said = &solved_by(&SOLVERS[..1], "bonded_core.toml", &[(end, steps)])[0];
+        assert!(is_unique(said), "{said}");
+        said["fractures"]["f"]["slip_max"].as_f64().expect("a slip")
+    });
+    let largest_jump = 6.53e-6;
+    assert!(
+        (slips[0] - slips[1]).abs() < 1e-3 * largest_jump,
+        "{slips:?}"
+    );
+}

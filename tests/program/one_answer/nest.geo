@@ -5,4 +5,5 @@ f() = Surface In BoundingBox{0.2-e,0.2-e,0.2-e,0.8+e,0.8+e,0.8+e}; Physical Surf
 b() = Surface In BoundingBox{-e,-e,1-e,1+e,1+e,1+e}; c() = Surface In BoundingBox{-e,-e,-e,1+e,1+e,e};
 d() = Surface In BoundingBox{-e,-e,-e,e,1+e,1+e}; o() = Surface In BoundingBox{-e,-e,-e,1+e,e,1+e};
 Physical Surface("top") = b(); Physical Surface("bottom") = c(); Physical Surface("left") = d(); Physical Surface("front") = o();
-
+r() = Surface In BoundingBox{1-e,-e,-e,1+e,1+e,1+e}; k() = Surface In BoundingBox{-e,1-e,-e,1+e,1+e,1+e};
+Physical Surface("right") = r(); Physical Surface("back") = k();

@@ -41,12 +41,7 @@ pub fn determinacy(system: &System<'_>, state: &State) -> Option<Vec<Determinacy
     if system.is_smooth() {
         return None;
     }
-    let mut free = free_motions(system, state)?;
-    if free.count() <= MOST_MOTIONS {
-        let resistance = resistance_of_sliding(system, state, &free);
-        free = free.unresisted(&resistance, HELD_BY_SLIDING)?;
-    }
-    let mut facets = of_facets(system, &free);
+    let mut facets = floating(system, state)?;
     for (point, own) in interface(system).points.iter().zip(&state.facet_points) {
         let thrust = system.law(point).largest_thrust(&own.joint);
         let matters = thrust > SMALL_THRUST * state.reached.traction;
@@ -60,7 +55,12 @@ pub fn determinacy(system: &System<'_>, state: &State) -> Option<Vec<Determinacy
 
 /// What free motions of blocks leave undetermined at each facet; nothing of too many bodies.
 pub(super) fn floating(system: &System<'_>, state: &State) -> Option<Vec<Determinacy>> {
-    Some(of_facets(system, &free_motions(system, state)?))
+    let mut free = free_motions(system, state)?;
+    if free.count() <= MOST_MOTIONS {
+        let resistance = resistance_of_sliding(system, state, &free);
+        free = free.unresisted(&resistance, HELD_BY_SLIDING)?;
+    }
+    Some(of_facets(system, &free))
 }
 
 fn free_motions(system: &System<'_>, state: &State) -> Option<FreeMotions> {
