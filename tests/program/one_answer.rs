@@ -283,18 +283,23 @@ fn a_core_that_a_fluid_holds_is_said_to_float() {
     }
 }
 
+/// `number` equal load steps, for a scene that begins its boundaries with this line.
+fn in_steps(number: u32, line: &str) -> String {
+    let shares: Vec<String> = (1..=number)
+        .map(|step| (f64::from(step) / f64::from(number)).to_string())
+        .collect();
+    format!("[load]\nsteps = [{}]\n{line}", shares.join(", "))
+}
+
 /// A core whose walls are apart, but come close enough to bear shear by their cohesion: they slide
 /// until they do. Only that friction holds the core, so its slip is a result, and where it sticks
 /// must be followed.
 #[test]
 fn a_core_that_cohesion_holds_slides_as_far_in_one_step_as_in_ten() {
     let end = "[boundary.bottom]";
-    let steps: Vec<String> = (1..=10)
-        .map(|step| format!("{}", f64::from(step) / 10.0))
-        .collect();
-    let ten = format!("[load]\nsteps = [{}]\n{end}", steps.join(", "));
-    let slips = [end, &ten].map(|steps| {
-        let said = &solved_by(&SOLVERS[..1], "bonded_core.toml", &[(end, steps)])[0];
+    let slips = [1, 10].map(|number| {
+        let edits = [(end, &*in_steps(number, end))];
+        let said = &solved_by(&SOLVERS[..1], "bonded_core.toml", &edits)[0];
         assert!(is_unique(said), "{said}");
         said["fractures"]["f"]["slip_max"].as_f64().expect("a slip")
     });
@@ -303,4 +308,25 @@ fn a_core_that_cohesion_holds_slides_as_far_in_one_step_as_in_ten() {
         (slips[0] - slips[1]).abs() < 1e-3 * largest_jump,
         "{slips:?}"
     );
+}
+
+/// A corner that slides until the joints below it meet, a thirtieth of the way: a hundredth of the
+/// load moves it by its whole slip. An increment that meets in its second half and its two halves
+/// do the same in it, so that they agree whatever happens afterwards.
+#[test]
+fn a_corner_that_others_stop_rests_in_the_same_place_or_the_run_says_so() {
+    let end = "[boundary.bottom]";
+    let answers = [1, 10].map(|number| {
+        let edits = [(end, &*in_steps(number, end))];
+        solved_by(&SOLVERS[..1], "stopped_corner.toml", &edits).remove(0)
+    });
+    let slips = [0, 1].map(|i| {
+        let slip = &answers[i]["fractures"]["f"]["slip"]["mean"];
+        slip.as_f64().expect("a slip")
+    });
+    let mut said = answers.iter().map(|said| said["steps"].to_string());
+    let says_so = said.any(|steps| steps.contains("however short it is divided"));
+    let largest_jump = 5.704e-5;
+    let differ = (slips[0] - slips[1]).abs();
+    assert!(says_so || differ < 1e-3 * largest_jump, "{slips:?}");
 }

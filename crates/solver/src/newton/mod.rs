@@ -18,6 +18,7 @@
 //! rock are solved in turn ([`splitting`]) until it finds its way.
 
 mod acceleration;
+mod comparison;
 mod conservation;
 mod convergence;
 mod damping;

@@ -6,6 +6,9 @@
 //! were before it, although they have slipped until they met. By how much, the first linear solve
 //! tells, which does not know yet that they will. Once the path is lost, that does not matter any
 //! more.
+//!
+//! It tells nothing, too, of walls that are stopped in the second half, as long as the whole
+//! increment and the second half do the same. Then the second half is compared with its own halves.
 
 use glam::DVec3;
 use kluft_algebra::largest;
@@ -19,6 +22,10 @@ use crate::FacetPointState;
 use crate::assembly::facet_point::FacetPoint;
 use crate::problem::Load;
 use crate::system::{State, System};
+
+/// Share of the largest jump by which an increment that is nearly straight moves walls at most
+/// otherwise than its first linear solve.
+const BENT: f64 = 0.1;
 
 /// An increment from one state to another.
 pub(super) struct Increment<'a> {
@@ -115,6 +122,25 @@ pub(super) fn is_elastic(from: &State, to: &State) -> bool {
         !to.joint.sliding && from.history.largest_opening == to.history.largest_opening
     };
     pairs.into_iter().all(unbroken)
+}
+
+/// Whether walls with friction move, in an increment in which they slide, otherwise than its first
+/// linear solve has them by a share of `size` (m) that tells of others that meet or part in it.
+pub(super) fn is_bent(system: &System<'_>, increment: &Increment<'_>, size: f64) -> bool {
+    let (from, to) = (increment.from, increment.to);
+    let points = interface(system).points.iter();
+    let changes = differences(system, to, from);
+    let moved = interface(system).prescribed_change(&from.load, &to.load);
+    let pairs = increment.predicted.iter().zip(changes.iter().zip(&moved));
+    points
+        .zip(pairs)
+        .enumerate()
+        .any(|(i, (point, (predicted, (change, moved))))| {
+            let slides = [from, to].map(|state| state.facet_points[i].joint.sliding);
+            let beyond = *predicted - *change - *moved;
+            let along = beyond - beyond.dot(point.normal) * point.normal;
+            slides.contains(&true) && along.length() > BENT * size
+        })
 }
 
 /// How far walls that stick at the end of an increment have slipped in it until they met, at each

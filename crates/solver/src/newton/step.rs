@@ -99,6 +99,15 @@ impl<'a> Step<'a> {
         }
     }
 
+    /// Records that one increment leads to an equilibrium and two shorter ones to none, where the
+    /// last iteration had its largest error.
+    pub(super) fn leave_torn(&mut self) {
+        self.leave_unresolved(UnresolvedPath {
+            cause: UnresolvedCause::HalvesDoNotEnd,
+            facet_point: self.record.worst_facet_point,
+        });
+    }
+
     /// Records how far the flow of a part of the step is from resolved in time, if that is the
     /// worst so far.
     pub(super) fn leave_time_error(&mut self, error: f64) {

@@ -8,10 +8,9 @@
 //! what drives the flow walk with it. What no division resolves, walls that jump to another place
 //! in an instant, is let be and recorded.
 
-use glam::DVec3;
-
+use super::comparison::{Both, Compared, Ended};
 use super::free_blocks;
-use super::path_error::{self, Apart, Increment};
+use super::path_error::{self, Apart};
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
 use crate::flow::Coupling;
 use crate::problem::Load;
@@ -33,6 +32,8 @@ struct Substep {
     whole: Option<Ended>,
     /// Whether it is not divided any more.
     is_smallest: bool,
+    /// Whether it is the second half of another, which is compared in any case.
+    is_half: bool,
 }
 
 /// Where an increment leads.
@@ -42,33 +43,28 @@ struct End {
     share: f64,
 }
 
-/// The end of a substep in one increment and in two.
-struct Both<'a> {
-    from: &'a State,
-    whole: &'a State,
-    half: &'a Ended,
-    end: Ended,
-    /// Whether anything slid or broke on the way.
-    slides: bool,
-    /// Whether the substep is not divided any more.
-    is_smallest: bool,
-}
-
-/// Where an increment has led.
-struct Ended {
-    state: State,
-    /// The share of the load step up to it.
-    share: f64,
-    /// How far its first linear solve moved walls (m).
-    predicted: Vec<DVec3>,
-}
-
 /// What a substep came to.
 enum Solved {
-    /// Its end, and whether the next may be longer.
-    Accepted { end: Box<State>, may_grow: bool },
+    /// It stands.
+    Accepted(Accepted),
     /// It is to be divided.
     TooLong(TooLong),
+}
+
+/// The end of a substep that stands.
+struct Accepted {
+    end: Box<State>,
+    /// Whether the next substep may be longer.
+    may_grow: bool,
+}
+
+impl Accepted {
+    fn at(end: State) -> Self {
+        Self {
+            end: Box::new(end),
+            may_grow: true,
+        }
+    }
 }
 
 /// What is known of a substep that is to be divided.
@@ -133,18 +129,16 @@ impl Newton {
                 end: End::between(&start, load, end),
                 whole: known.map(|half| *half),
                 is_smallest: way.increment <= SMALLEST_SUBSTEP,
+                is_half: false,
             };
             // Whole steps are tried in earnest before they are divided.
             step.is_tried_briefly =
                 step.system.is_path_dependent() && way.increment < 1.0 && !substep.is_smallest;
             let next = match self.solve_substep(step, &way.here.state, substep) {
-                Solved::Accepted {
-                    end: state,
-                    may_grow,
-                } => {
-                    way.increment *= if may_grow { 2.0 } else { 1.0 };
+                Solved::Accepted(accepted) => {
+                    way.increment *= if accepted.may_grow { 2.0 } else { 1.0 };
                     Some(Reached {
-                        state: *state,
+                        state: *accepted.end,
                         share: end,
                     })
                 }
@@ -220,13 +214,11 @@ impl Newton {
             let size = path_error::largest_jump(step.system, &whole.state);
             step.end_size.get_or_insert(size);
         }
-        let slides = step.system.is_path_dependent() && self.slides(step, from, &whole);
+        let slides =
+            step.system.is_path_dependent() && (substep.is_half || self.slides(step, from, &whole));
         let flows = step.system.coupling().is_some_and(Coupling::is_transient);
         if !slides && (!flows || self.settings.time >= 1.0) {
-            return Solved::Accepted {
-                end: Box::new(whole.state),
-                may_grow: true,
-            };
+            return Solved::Accepted(Accepted::at(whole.state));
         }
         if step.system.is_smooth() {
             self.path.lead_to(step.system, &whole.state);
@@ -248,6 +240,7 @@ impl Newton {
                     end,
                     slides,
                     is_smallest: substep.is_smallest,
+                    is_half: substep.is_half,
                 };
                 self.accept(step, both)
             }
@@ -256,7 +249,7 @@ impl Newton {
                 None
             }
         };
-        accepted.unwrap_or_else(|| {
+        accepted.map(Solved::Accepted).unwrap_or_else(|| {
             found.half = half.ok().map(Box::new);
             found.whole = Some(Box::new(whole.state));
             Solved::TooLong(found)
@@ -279,32 +272,61 @@ impl Newton {
 
     /// Takes for the end of a substep that in two increments, and records how far that in one is
     /// from it; none if that is too far for a substep that may be divided.
-    fn accept(&self, step: &mut Step<'_>, both: Both<'_>) -> Option<Solved> {
-        let (whole, halves) = (both.whole, &both.end.state);
-        let flows = step.system.coupling().is_some_and(Coupling::is_transient);
-        let size = step.size_at(path_error::largest_jump(step.system, halves));
-        let allowed = self.path_tolerance(step);
-        let apart = both.slides.then(|| {
-            let [first, second] = both.increments();
-            Apart::of(step, whole, [&first, &second], [size, allowed])
-        });
-        let in_time = flows.then(|| flows_apart(step.system, whole, halves));
-        let flow = in_time.map(|apart| apart / self.settings.time);
-        let path = apart.as_ref().map(|apart| apart.share() / allowed);
-        let error = path.into_iter().chain(flow).fold(0.0, f64::max);
-        if error > 1.0 && !both.is_smallest {
+    fn accept(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Option<Accepted> {
+        let size = step.size_at(path_error::largest_jump(step.system, &both.end.state));
+        let allowed = [self.path_tolerance(step), self.settings.time];
+        let compared = Compared::of(step, &both, size, allowed);
+        let (error, is_smallest) = (compared.error, both.is_smallest);
+        if error > 1.0 && !is_smallest {
             return None;
         }
-        if let Some(apart) = in_time.filter(|_| flow.is_some_and(|flow| flow > 1.0)) {
+        let is_small = error <= GROWTH_SHARE || (step.lost > 0.0 && error <= 1.0);
+        let [_, second] = both.increments();
+        let may_hide = both.slides && !both.is_half && error <= 1.0 && step.lost == 0.0;
+        let accepted = match may_hide && path_error::is_bent(step.system, &second, size) {
+            true => self.solve_second_half(step, both)?,
+            false => Accepted::at(both.end.state),
+        };
+        if let Some(apart) = compared.in_time.filter(|apart| *apart > self.settings.time) {
             step.leave_time_error(apart);
         }
-        if let Some(apart) = apart {
-            self.leave_apart(step, &apart, both.is_smallest);
+        if let Some(apart) = compared.apart {
+            self.leave_apart(step, &apart, is_smallest);
         }
-        Some(Solved::Accepted {
-            end: Box::new(both.end.state),
-            may_grow: error <= GROWTH_SHARE || (step.lost > 0.0 && error <= 1.0),
+        Some(Accepted {
+            may_grow: is_small && accepted.may_grow,
+            ..accepted
         })
+    }
+
+    /// Solves the second half of a substep in two increments: where walls are stopped in it, the
+    /// whole in one increment and in two differ in nothing that happens after. None if it is too
+    /// long and may be divided.
+    fn solve_second_half(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Option<Accepted> {
+        let (half, end) = (both.half, both.end);
+        let [from, to] = [&half.state.load, &end.state.load].map(Load::clone);
+        let middle = End {
+            load: Load::between(&from, &to, 0.5),
+            share: 0.5 * (half.share + end.share),
+        };
+        let substep = Substep {
+            middle,
+            end: End {
+                load: to,
+                share: end.share,
+            },
+            whole: Some(end),
+            is_smallest: both.is_smallest,
+            is_half: true,
+        };
+        match self.solve_substep(step, &half.state, substep) {
+            Solved::Accepted(accepted) => Some(accepted),
+            Solved::TooLong(found) if both.is_smallest && step.go_on().is_ok() => {
+                step.leave_torn();
+                found.whole.map(|end| Accepted::at(*end))
+            }
+            Solved::TooLong(_) => None,
+        }
     }
 
     /// Records how far the jumps of one increment and of two are apart in a substep that stands.
@@ -348,22 +370,6 @@ impl Newton {
             share: to.share,
             predicted,
         })
-    }
-}
-
-impl Ended {
-    fn since<'a>(&'a self, from: &'a State) -> Increment<'a> {
-        Increment {
-            from,
-            to: &self.state,
-            predicted: &self.predicted,
-        }
-    }
-}
-
-impl Both<'_> {
-    fn increments(&self) -> [Increment<'_>; 2] {
-        [self.half.since(self.from), self.end.since(&self.half.state)]
     }
 }
 
@@ -413,21 +419,7 @@ fn let_be(
     let Some(end) = coarse else {
         return Err(step.failed_by(outcome));
     };
-    let facet_point = step.record.worst_facet_point;
     step.record.rigid_motions.clear();
-    step.leave_unresolved(UnresolvedPath {
-        cause: UnresolvedCause::HalvesDoNotEnd,
-        facet_point,
-    });
+    step.leave_torn();
     Ok(end)
-}
-
-/// How far two states are apart in what their fluids fill and in their pressures.
-fn flows_apart(system: &System<'_>, a: &State, b: &State) -> f64 {
-    let fluids = a.fluid.as_ref().zip(b.fluid.as_ref());
-    let both = system.coupling().zip(fluids);
-    both.map_or(0.0, |(flow, (first, second))| {
-        let largest = [b.reached.displacement, b.reached.pressure];
-        flow.difference([first, second], &b.load, largest)
-    })
 }
