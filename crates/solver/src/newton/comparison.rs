@@ -17,8 +17,6 @@ pub(super) struct Both<'a> {
     pub(super) slides: bool,
     /// Whether the substep is not divided any more.
     pub(super) is_smallest: bool,
-    /// Whether it is the second half of another.
-    pub(super) is_half: bool,
 }
 
 /// How far the end of a substep in one increment is from that in two.

@@ -240,7 +240,6 @@ impl Newton {
                     end,
                     slides,
                     is_smallest: substep.is_smallest,
-                    is_half: substep.is_half,
                 };
                 self.accept(step, both)
             }
@@ -282,7 +281,8 @@ impl Newton {
         }
         let is_small = error <= GROWTH_SHARE || (step.lost > 0.0 && error <= 1.0);
         let [_, second] = both.increments();
-        let may_hide = both.slides && !both.is_half && error <= 1.0 && step.lost == 0.0;
+        let is_long = 2.0 * (both.end.share - both.half.share) >= SMALLEST_SUBSTEP;
+        let may_hide = both.slides && is_long && error <= 1.0 && step.lost == 0.0;
         let accepted = match may_hide && path_error::is_bent(step.system, &second, size) {
             true => self.solve_second_half(step, both)?,
             false => Accepted::at(both.end.state),
@@ -299,9 +299,9 @@ impl Newton {
         })
     }
 
-    /// Solves the second half of a substep in two increments: where walls are stopped in it, the
-    /// whole in one increment and in two differ in nothing that happens after. None if it is too
-    /// long and may be divided.
+    /// Solves the second half of a substep in two increments, and its second half in turn if need
+    /// be: where walls are stopped in it, the whole in one increment and in two differ in nothing
+    /// that happens after. None if it is too long and may be divided.
     fn solve_second_half(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Option<Accepted> {
         let (half, end) = (both.half, both.end);
         let [from, to] = [&half.state.load, &end.state.load].map(Load::clone);
