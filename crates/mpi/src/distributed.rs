@@ -342,14 +342,14 @@ impl TangentSolver for Distributed {
         };
         let alone = |rest: &[DVec3]| self.clusters_alone(rest);
         let (mut unknowns, residual) = first_guess(alone, fixed.interface.rows, multiply, rhs);
-        let size = norm(&residual);
-        if size == 0.0 {
+        let wanted = tolerance * norm(rhs) / norm(&residual);
+        // Nothing is left to solve; PETSc refuses such a tolerance.
+        if wanted.is_nan() || wanted >= 1.0 {
             return Ok(LinearSolution {
                 unknowns,
                 iterations: 0,
             });
         }
-        let wanted = tolerance * norm(rhs) / size;
         let (correction, iterations) = self.correction(fixed, &residual, wanted)?;
         for (unknown, change) in unknowns.iter_mut().zip(&correction) {
             *unknown += *change;
