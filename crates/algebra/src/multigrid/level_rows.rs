@@ -78,8 +78,8 @@ impl<const N: usize> LevelRows<N> {
     }
 }
 
-/// Rows of a prolongator `P` to the rows of this process, in single precision. Its columns are nodes
-/// of the next level: those of this process, then its ghosts.
+/// Rows of a prolongator `P` to the rows of this process, in single precision. Its columns are
+/// nodes of the next level: those of this process, then its ghosts.
 #[derive(Debug, Clone)]
 pub struct ProlongatorRows<const N: usize> {
     matrix: Sparse<N, 6>,

@@ -102,8 +102,8 @@ impl LowerLevels {
         LevelRows::of(std::mem::replace(matrix, Sparse::empty()), own)
     }
 
-    /// Rows of the prolongator to a level from the one below it, of which this process has the nodes
-    /// `below`; none on the coarsest level. None of it is left here.
+    /// Rows of the prolongator to a level from the one below it, of which this process has the
+    /// nodes `below`; none on the coarsest level. None of it is left here.
     pub fn take_prolongator(
         &mut self,
         level: usize,

@@ -252,7 +252,7 @@ fn parts_of_the_rows_make_the_levels_of_the_whole() {
         });
         of_ranks.into_iter().next_back().unwrap()
     };
-    let (whole, of_three) = (levels_of(&[0, rows]), levels_of(&[0, 300, 301, rows]));
+    let (mut whole, mut of_three) = (levels_of(&[0, rows]), levels_of(&[0, 300, 301, rows]));
     let multigrid = Multigrid::new(case.rows(), &case.modes).unwrap();
     let sizes: Vec<usize> = multigrid.level_sizes()[1..]
         .iter()
@@ -260,9 +260,10 @@ fn parts_of_the_rows_make_the_levels_of_the_whole() {
         .collect();
     for (level, &nodes) in sizes.iter().enumerate() {
         assert_eq!([whole.nodes(level), of_three.nodes(level)], [nodes; 2]);
-        for node in 0..nodes as u32 {
-            let [one, other] = [&whole, &of_three].map(|levels| levels.matrix_row(level, node));
-            for ((column, one), (at, other)) in one.zip(other) {
+        let all: Vec<u32> = (0..nodes as u32).collect();
+        let [one, other] = [&mut whole, &mut of_three].map(|levels| levels.take_rows(level, &all));
+        for node in 0..nodes {
+            for ((column, one), (at, other)) in one.row(node).zip(other.row(node)) {
                 assert_eq!(column, at);
                 let entries = std::iter::zip(one.as_flattened(), other.as_flattened());
                 for (one, other) in entries {
@@ -274,4 +275,65 @@ fn parts_of_the_rows_make_the_levels_of_the_whole() {
     }
     assert_eq!(whole.count(), sizes.len());
     assert_eq!(whole.coarsest_solve(), CoarsestSolve::Inverse);
+}
+
+/// Numbers without a pattern.
+fn numbers<const N: usize>(count: usize) -> Vec<[f64; N]> {
+    let number = |at: usize| ((at * at * 7919 + at * 13) % 1009) as f64 / 1009.0 - 0.5;
+    let entry = |row: usize| std::array::from_fn(|i| 1e-50 * number(N * row + i));
+    (0..count).map(entry).collect()
+}
+
+/// A matrix of four nodes and the identity, each with blocks of its own beside it.
+fn ring() -> Sparse<6, 6> {
+    Sparse::build(
+        4,
+        1,
+        || (),
+        |(), _| 2,
+        |(), row, columns, blocks| {
+            for (place, neighbour) in [(row + 1) % 4, (row + 3) % 4].into_iter().enumerate() {
+                columns[place] = neighbour as u32;
+                blocks[place] = std::array::from_fn(|i| {
+                    std::array::from_fn(|j| (1 + i + 2 * j + 3 * neighbour + 5 * row) as f32 / 64.0)
+                });
+            }
+        },
+    )
+}
+
+#[test]
+fn rows_of_a_level_need_their_own_entries_and_those_of_their_ghosts() {
+    let x = numbers::<6>(4);
+    let product = |own: &[u32]| {
+        let rows = LevelRows::of(ring(), own);
+        let [own, ghosts] = [own, rows.ghosts()].map(|nodes| {
+            let entries = nodes.iter().map(|&node| x[node as usize]);
+            entries.collect::<Vec<_>>()
+        });
+        let mut product = vec![[0.0; 6]; own.len()];
+        rows.multiply([&own, &ghosts], &mut product, &mut Vec::new());
+        (product, rows.ghosts().to_vec())
+    };
+    let (whole, none) = product(&[0, 1, 2, 3]);
+    let ((first, beside), (second, _)) = (product(&[0, 1]), product(&[2, 3]));
+    assert_eq!((none, beside), (vec![], vec![2, 3]));
+    assert_eq!([first, second].concat(), whole);
+    assert!(whole.as_flattened().iter().all(|entry| *entry != 0.0));
+}
+
+#[test]
+fn what_is_restricted_is_the_transpose_of_what_is_prolonged() {
+    let rows = ProlongatorRows::of(ring(), &[1, 3], 4);
+    assert_eq!((rows.size(), rows.ghosts()), ([4, 2], &[0_u32, 2][..]));
+    let (coarse, fine) = (numbers::<6>(4), numbers::<6>(4));
+    let (mut up, mut down) = (vec![[0.0; 6]; 4], vec![[0.0; 6]; 4]);
+    rows.prolong([&coarse[..2], &coarse[2..]], &mut up);
+    rows.restrict(&fine, &mut down);
+    let dot = |a: &[[f64; 6]], b: &[[f64; 6]]| {
+        let pairs = a.as_flattened().iter().zip(b.as_flattened());
+        pairs.map(|(a, b)| a * b).sum::<f64>()
+    };
+    let (one, other) = (dot(&up, &fine), dot(&coarse, &down));
+    assert!(one != 0.0 && (one - other).abs() < 1e-12 * one.abs());
 }
