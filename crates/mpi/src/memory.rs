@@ -2,10 +2,11 @@
 
 /// A block of the finest level, in single precision, and its column.
 const OF_BLOCK: usize = 36 + 4;
-/// Prolongator and its basis, levels below and vectors, for each row.
-const OF_ROW: usize = 2_200;
-/// The matrix of the second level, which every rank has while levels are made, for each row.
-const OF_ROW_ON_EACH: usize = 800;
+/// Prolongator, levels below and vectors, for each row.
+const OF_ROW: usize = 1_300;
+/// The second level, which every rank has while levels are made, and states of facets, for each
+/// row.
+const OF_ROW_ON_EACH: usize = 1_800;
 
 /// Bytes for `rows` block rows with `blocks` blocks on each of so many ranks.
 pub fn solver_bytes(rows: usize, blocks: usize, ranks: usize) -> usize {

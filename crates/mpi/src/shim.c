@@ -37,8 +37,8 @@ int km_start(Map map) {
   /* Arrays of levels come and go: in maps of their own they leave no holes. SuperLU_DIST, which PETSc
      may bring along, forbids such maps to the whole process, and keeps what is freed. */
   mallopt(M_MMAP_MAX, 1 << 16);
-  mallopt(M_MMAP_THRESHOLD, 1 << 22);
-  mallopt(M_TRIM_THRESHOLD, 1 << 26);
+  mallopt(M_MMAP_THRESHOLD, 1 << 21);
+  mallopt(M_TRIM_THRESHOLD, 1 << 23);
 #endif
   PetscCall(PetscInitialize(&count, &arguments, NULL, NULL));
   PetscCall(PetscPopSignalHandler());
