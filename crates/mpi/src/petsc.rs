@@ -4,7 +4,8 @@
 //! to its end; everything else holds one, so PETSc runs as long as anything calls it. Calls come
 //! from the thread that started it, which [`World::here`] checks: so the types may be sent to and
 //! shared with other threads, where they do nothing but panic. Lengths of arrays are checked before
-//! a pointer is handed over, and the shim keeps none of them.
+//! a pointer is handed over, and the shim keeps none of them; of maps it keeps those of a solver,
+//! which live as long as that.
 #![allow(unsafe_code)]
 
 use std::ffi::{c_int, c_void};
