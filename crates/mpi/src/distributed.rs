@@ -35,6 +35,8 @@ pub struct Distributed {
     partition: Arc<Partition>,
     coarsening: FirstCoarsening,
     solver: Option<Solver>,
+    /// Rows of other ranks that those of this one couple to, ascending, once there is a solver.
+    ghosts: Arc<[u32]>,
     /// Clusters of this rank in the matrix that the levels were made of.
     clusters: Option<Arc<OwnClusters>>,
     /// Stiffness of the fractures, one block for each of the interface's columns.
@@ -60,6 +62,7 @@ impl Distributed {
             partition: Arc::new(partition),
             coarsening,
             solver: None,
+            ghosts: Arc::default(),
             clusters: None,
             stiffness: None,
             built_for: None,
@@ -113,8 +116,9 @@ impl Distributed {
         let bounds = std::iter::once(largest_eigenvalue).chain(levels.largest_eigenvalues);
         let clusters = Arc::new(clusters);
         self.clusters = Some(Arc::clone(&clusters));
+        self.ghosts = self.ghosts(fixed).into();
         Ok(SolverParts {
-            system: self.system(fixed),
+            system: self.system(),
             scaling: scaling(clusters, self.partition.own.len()),
             matrices: std::iter::once(finest).chain(levels.matrices).collect(),
             prolongators: levels.prolongators,
@@ -125,15 +129,15 @@ impl Distributed {
     }
 
     /// The tangent, whose products each solve makes.
-    fn system(&self, fixed: FixedPart<'_>) -> MappedMatrix {
+    fn system(&self) -> MappedMatrix {
         let partition = &self.partition;
-        let ghosts = self.ghosts(fixed).into_iter();
+        let ghosts = self.ghosts.iter();
         let rows = 3 * partition.own.len();
         MappedMatrix {
             rows,
             columns: rows,
             block: 3,
-            ghosts: ghosts.map(|row| partition.number[row as usize]).collect(),
+            ghosts: ghosts.map(|&row| partition.number[row as usize]).collect(),
             product: None,
             transposed: None,
         }
@@ -249,7 +253,7 @@ impl Distributed {
     ) -> Result<(Vec<DVec3>, usize), LinearFailure> {
         let own = self.own(residual);
         let stiffness = self.stiffness.clone().unwrap_or_default();
-        let ghosts = self.ghosts(fixed);
+        let ghosts = Arc::clone(&self.ghosts);
         let partition = Arc::clone(&self.partition);
         let mut iterations = 0;
         for attempt in 0..=MOST_WIDENINGS {
