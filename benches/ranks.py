@@ -1,10 +1,10 @@
-"""Runs on many ranks: weak scaling by count, and two ranks beside two threads.
+"""Runs on many ranks: weak scaling by count, and two ranks, or one of two threads, beside two threads.
 
     python3 benches/ranks.py [--rounds 3] [--only weak|pair]
 
 Weak scaling counts iterations, messages and bytes on 1, 2, 4 and 8 ranks with about as many unknowns each; more ranks
-than cores are allowed, since no time is taken. Two ranks and two threads run in turn on one mesh, which wants an idle
-machine. Both write their table in docs/performance/many-machines.md.
+than cores are allowed, since no time is taken. Ranks and threads run in turn on one mesh, which wants an idle machine.
+Both write their table in docs/performance/many-machines.md.
 """
 
 import argparse
@@ -46,9 +46,9 @@ def scene_of(name, parameters, folder):
     return scene
 
 
-def on_ranks(scene, out, ranks):
-    """Seconds, summary and words of a run on ranks."""
-    command = [*LAUNCH, "-n", str(ranks), RANKS, "run", scene, "--out", out, "--no-report", "-v"]
+def on_ranks(scene, out, ranks, threads=1):
+    """Seconds, summary and words of a run on ranks of so many threads."""
+    command = [*LAUNCH, "-n", str(ranks), RANKS, "run", scene, "--out", out, "--no-report", "-v", "--threads", str(threads)]
     start = time.perf_counter()
     words = subprocess.run(command, capture_output=True, check=True, text=True).stdout
     return time.perf_counter() - start, json.loads((out / "summary.json").read_text()), " ".join(words.split())
@@ -101,16 +101,17 @@ def weak():
 
 
 def pair(rounds):
-    """The table of two ranks beside two threads."""
+    """The table of two ranks, and one of two threads, beside two threads."""
     folder = WORK / "pair"
     shutil.rmtree(folder, ignore_errors=True)
     sizes = {"h": 0.42, "h_fracture": 0.22, "h_intersection": 0.2}
     scene = scene_of("network-100", sizes, folder)
     serial(scene, folder / "first")
-    found = {"2 threads": [], "2 ranks": []}
+    found = {"2 threads": [], "2 ranks": [], "1 rank of 2 threads": []}
     for _ in range(rounds):
         found["2 threads"].append(serial(scene, folder / "serial"))
         found["2 ranks"].append(on_ranks(scene, folder / "ranks", 2)[:2])
+        found["1 rank of 2 threads"].append(on_ranks(scene, folder / "rank", 1, 2)[:2])
         print(*(f"{name} {runs[-1][0]:.1f} s" for name, runs in found.items()), flush=True)
     lines = ["| | unknowns | whole run | set-up of the solver | linear solves | iterations | memory of all |", "|---|---:|---:|---:|---:|---:|---:|"]
     medians = {}
@@ -122,8 +123,12 @@ def pair(rounds):
         medians[name] = [*seconds, memory]
         row = [name, number(last["unknowns"]["total"]), *(f"{one:.1f} s" for one in seconds), iterations(last)[1], f"{memory / 1e9:.2f} GB"]
         lines.append("| " + " | ".join(map(str, row)) + " |")
-    ratios = [ranks / threads for ranks, threads in zip(medians["2 ranks"], medians["2 threads"])]
-    lines += ["", "Ranks against threads: the whole {:.2f} times, set-up {:.2f}, solves {:.2f}, memory {:.2f}.".format(*ratios)]
+    alone = medians.pop("2 threads")
+    lines.append("")
+    for name, own in medians.items():
+        ratios = [ranks / threads for ranks, threads in zip(own, alone)]
+        told = "{}: the whole {:.2f} times that of 2 threads, set-up {:.2f}, solves {:.2f}, memory {:.2f}."
+        lines.append(told.format(name[0].upper() + name[1:], *ratios))
     return "\n".join(lines)
 
 

@@ -48,7 +48,8 @@ pub fn rank_too_large(ranks: Ranks<'_>, needed: usize, limit: usize) -> Defect {
         gigabytes(needed),
         gigabytes(limit)
     );
-    let remedy = "mesh coarser (a larger h), or spread the ranks over more machines";
+    let remedy = "mesh coarser (a larger h), start fewer ranks of more threads (--threads) on each \
+                  machine, or spread them over more machines";
     Defect::new("memory of this machine", problem, remedy)
 }
 

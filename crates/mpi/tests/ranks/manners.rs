@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use crate::harness::{changed, finished, geometry, number, started};
+use crate::harness::{changed, finished, geometry, number, solved, started};
 
 fn said(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -61,6 +61,19 @@ fn a_file_that_one_rank_cannot_write_ends_all() {
         "{:?}",
         begun.elapsed()
     );
+}
+
+#[test]
+fn threads_of_ranks_change_no_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = geometry("closing-blocks");
+    let grids = ["1", "3"].map(|threads| {
+        let out = folder.path().join(threads);
+        solved(2, &scene, &out, &["--threads", threads]);
+        let names = ["rock_0001_0000.vtu", "fractures_0001_0001.vtu"];
+        names.map(|name| fs::read(out.join(name)).expect("a piece"))
+    });
+    assert!(grids[0] == grids[1], "other bits on three threads");
 }
 
 #[test]
