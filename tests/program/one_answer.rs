@@ -1,7 +1,12 @@
 //! A scene has one answer, whatever linear solver; where it has not, the program says so.
 
+use std::collections::HashSet;
 use std::fs;
+use std::ops::ControlFlow;
 
+use kluft_run::{MeshInput, Observer, Request};
+use kluft_scene::Scene;
+use kluft_solver::Iteration;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -329,4 +334,63 @@ fn a_corner_that_others_stop_rests_in_the_same_place_or_the_run_says_so() {
     let largest_jump = 5.704e-5;
     let differ = (slips[0] - slips[1]).abs();
     assert!(says_so || differ < 1e-3 * largest_jump, "{slips:?}");
+}
+
+/// A wedge whose upper joint slides until the lower one does, within a tenth of the load, and sticks
+/// from then on. In the first hundredths of it an increment may lead nowhere; then a longer one
+/// stands, and the run says so.
+#[test]
+fn walls_that_slide_until_others_do_have_slid_in_one_step_as_in_ten_or_the_run_says_so() {
+    let end = "[boundary.bottom]";
+    let answers = [1, 2, 10].map(|number| {
+        let edits = [(end, &*in_steps(number, end))];
+        solved_by(&SOLVERS[..1], "relieved_wedge.toml", &edits).remove(0)
+    });
+    let is_resolved = |said: &&Value| !said["warnings"].to_string().contains("not resolved");
+    let slips: Vec<f64> = answers
+        .iter()
+        .filter(is_resolved)
+        .map(|said| said["fractures"]["f"]["slip_max"].as_f64().expect("a slip"))
+        .collect();
+    let largest_jump = 1.36e-3;
+    let apart = slips.iter().map(|slip| (slip - slips[0]).abs());
+    assert!(slips.len() > 1, "{slips:?}");
+    assert!(apart.fold(0.0, f64::max) < 1e-3 * largest_jump, "{slips:?}");
+}
+
+/// The iterations of a run, as they come.
+#[derive(Default)]
+struct Iterations(Vec<Iteration>);
+
+impl Observer for Iterations {
+    fn iteration(&mut self, _number: usize, iteration: &Iteration) -> ControlFlow<()> {
+        self.0.push(*iteration);
+        ControlFlow::Continue(())
+    }
+}
+
+/// Where one increment to the middle of a substep fails, the next substep is shorter than that: no
+/// increment fails in the same way twice. Only in the smallest substeps is one tried anew, in
+/// earnest.
+#[test]
+fn the_half_of_a_substep_that_failed_is_not_tried_again() {
+    const MANY: usize = 15;
+    let place = root().join("tests/program/one_answer");
+    let scene = fs::read_to_string(place.join("relieved_wedge.toml")).expect("the scene");
+    let text = format!("{scene}[solver]\nlinear = \"direct\"\n[load]\nsteps = [0.5]\n");
+    let scene = Scene::parse(&text, "scene.toml", &place).expect("a sound scene");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.expect("a thread");
+    let mut found = Iterations::default();
+    let request = Request::in_memory(&scene, MeshInput::OfScene, &pool);
+    kluft_run::run(request, &mut found).expect("no defects");
+    let is_longer = |own: &[Iteration]| own.iter().all(|own| (32.0 * own.share).fract() == 0.0);
+    let residuals = |own: &[Iteration]| -> Vec<u64> {
+        own.iter().map(|own| own.force_residual.to_bits()).collect()
+    };
+    let parts = found.0.windows(MANY).filter(|own| is_longer(own));
+    let parts: Vec<Vec<u64>> = parts.map(residuals).collect();
+    let distinct: HashSet<&Vec<u64>> = parts.iter().collect();
+    assert!(parts.len() > 200, "{}", parts.len());
+    assert_eq!(distinct.len(), parts.len());
 }

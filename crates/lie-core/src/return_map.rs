@@ -117,6 +117,14 @@ impl FractureLaw {
         (friction.cohesion * bond - friction.coefficient * state.normal_traction).max(0.0)
     }
 
+    /// Shear traction of a state beyond what friction bears (Pa), negative below; all is below
+    /// without friction.
+    pub fn overload(&self, state: &JointState, history: &JointHistory) -> f64 {
+        self.friction.map_or(f64::NEG_INFINITY, |friction| {
+            state.shear.length() - self.limit(&friction, state, history)
+        })
+    }
+
     /// Share of the cohesion that is left, and how it changes with the opening (1/m).
     pub(crate) fn bond(&self, state: &JointState, history: &JointHistory) -> (f64, f64) {
         match self.closure.tension {

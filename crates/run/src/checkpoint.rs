@@ -22,7 +22,7 @@ use crate::summary::{FractureSummary, Seconds, StepFracture, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 13\n";
+const HEAD: &[u8] = b"kluft checkpoint 14\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;

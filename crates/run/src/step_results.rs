@@ -67,7 +67,12 @@ impl Run<'_> {
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
-        let unresolved = [unresolved::warning, unresolved::warning_of_time]
+        let unresolved = [
+            unresolved::warning,
+            unresolved::warning_of_sums,
+            unresolved::warning_of_time,
+        ];
+        let unresolved = unresolved
             .into_iter()
             .filter_map(|warning| warning(scene, &self.finished));
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();

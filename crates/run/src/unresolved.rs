@@ -50,6 +50,24 @@ pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
     scene.warning(Doubt::UnresolvedPath, &text)
 }
 
+/// What the user should know of load steps whose increments each keep the accuracy asked for, but
+/// not all together: the worst, and how many there are.
+pub fn warning_of_sums(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
+    let resolved = (1..)
+        .zip(steps)
+        .filter(|(_, step)| step.unresolved.is_none());
+    let found = resolved.filter_map(|(number, step)| Some((number, step.summed_path_error?)));
+    let found: Vec<(usize, f64)> = found.collect();
+    let (number, error) = *found.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let text = format!(
+        "the errors of the increments of step {number} add up to {:.2} % of the largest jump{}: each keeps \
+         path_accuracy, their sum does not; ask for a smaller one",
+        100.0 * error,
+        others(found.len() - 1)
+    );
+    scene.warning(Doubt::UnresolvedPath, &text)
+}
+
 fn others(count: usize) -> String {
     match count {
         0 => String::new(),

@@ -4,12 +4,15 @@ use glam::DVec3;
 
 use super::Step;
 use super::path_error::{Apart, Increment};
+use super::substepping::End;
 use crate::flow::Coupling;
 use crate::system::{State, System};
 
 /// The end of a substep in one increment and in two.
 pub(super) struct Both<'a> {
     pub(super) from: &'a State,
+    /// Where on the way of the loads it starts.
+    pub(super) start: &'a End,
     pub(super) whole: &'a State,
     pub(super) half: &'a Ended,
     pub(super) end: Ended,
@@ -30,6 +33,7 @@ pub(super) struct Compared {
 }
 
 /// Where an increment has led.
+#[derive(Clone)]
 pub(super) struct Ended {
     pub(super) state: State,
     /// The share of the load step up to it.

@@ -38,6 +38,7 @@ mod path_error;
 mod predictor;
 mod record;
 mod recycling;
+mod relieved;
 mod restart;
 mod rigid_motion;
 mod settings;

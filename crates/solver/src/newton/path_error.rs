@@ -35,6 +35,16 @@ pub(super) struct Increment<'a> {
     pub(super) predicted: &'a [DVec3],
 }
 
+impl Increment<'_> {
+    /// The share of the increment after which the walls of a facet point meet as its first linear
+    /// solve moves them; none if they are not apart at its start or do not meet.
+    pub(super) fn share_until_met(&self, system: &System<'_>, i: usize) -> Option<f64> {
+        let point = &interface(system).points[i];
+        let from = &self.from.facet_points[i];
+        share_until_met(system.law(point), from, self.predicted[i].dot(point.normal))
+    }
+}
+
 /// How far jumps may be off the path.
 pub(super) struct Apart {
     /// At each facet point (m).
@@ -162,11 +172,14 @@ pub(super) fn slips_until_met(system: &System<'_>, increment: &Increment<'_>) ->
 fn slip_until_met(law: &FractureLaw, from: &FacetPointState, moved: DVec3, normal: DVec3) -> f64 {
     let across = moved.dot(normal);
     let along = moved - across * normal;
+    share_until_met(law, from, across).map_or(0.0, |share| share * along.length())
+}
+
+/// The share of their way after which walls meet that a linear solve moves `across` (m), at most 1;
+/// none if they are not apart or do not come closer.
+fn share_until_met(law: &FractureLaw, from: &FacetPointState, across: f64) -> Option<f64> {
     let gap = open_by(law, from);
-    match gap > 0.0 && across < 0.0 {
-        true => (gap / -across).min(1.0) * along.length(),
-        false => 0.0,
-    }
+    (gap > 0.0 && across < 0.0).then(|| (gap / -across).min(1.0))
 }
 
 /// What of the slip at which they stick walls hold against the rock: all, if they have no elastic

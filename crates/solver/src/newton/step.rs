@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::space::rigid_modes::FreeBody;
 
+use super::convergence::ratio;
 use super::free_blocks;
 use super::iterate::Iterate;
 use super::{Iteration, StepOutcome, StepRecord, UnresolvedCause, UnresolvedPath};
@@ -28,6 +29,9 @@ pub(super) struct Step<'a> {
     /// How far jumps, against the largest, are off the path because no division resolved it: the
     /// sum over its substeps.
     pub(super) lost: f64,
+    /// How far the substeps so far lead the jump at each facet point off the path of the loads (m),
+    /// added up; empty before the first that does.
+    pub(super) path_errors: Vec<f64>,
     /// Whether, however short it was divided, one increment ended and two shorter ones did not.
     pub(super) is_torn: bool,
     /// Blocks that an increment from the same state as that at hand pushed.
@@ -53,6 +57,7 @@ impl<'a> Step<'a> {
             is_tried_briefly: false,
             end_size: None,
             lost: 0.0,
+            path_errors: Vec::new(),
             is_torn: false,
             pushed: Vec::new(),
             predicts: false,
@@ -106,6 +111,22 @@ impl<'a> Step<'a> {
             cause: UnresolvedCause::HalvesDoNotEnd,
             facet_point: self.record.worst_facet_point,
         });
+    }
+
+    /// Adds how far a substep leads the jump at each facet point off the path of the loads (m).
+    pub(super) fn add_path_errors(&mut self, lengths: &[f64]) {
+        self.path_errors.resize(lengths.len(), 0.0);
+        for (sum, length) in self.path_errors.iter_mut().zip(lengths) {
+            *sum += length;
+        }
+    }
+
+    /// Records what the errors of the substeps add up to where they are largest, against the largest
+    /// jump (m) at the end, if that is more than an `accuracy` that each of them keeps.
+    pub(super) fn sum_path_errors(&mut self, largest_jump: f64, accuracy: f64) {
+        let worst = self.path_errors.iter().copied().fold(0.0, f64::max);
+        let sum = ratio(worst, largest_jump);
+        self.record.summed_path_error = (sum > accuracy).then_some(sum);
     }
 
     /// Records how far the flow of a part of the step is from resolved in time, if that is the

@@ -11,6 +11,7 @@
 use super::comparison::{Both, Compared, Ended};
 use super::free_blocks;
 use super::path_error::{self, Apart};
+use super::relieved;
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
 use crate::flow::Coupling;
 use crate::problem::Load;
@@ -26,21 +27,23 @@ const MOST_LOST: f64 = 100.0;
 
 /// A part of a load step.
 struct Substep {
+    start: End,
     middle: End,
     end: End,
-    /// Its end in one increment, if a longer substep has found it.
-    whole: Option<Ended>,
+    /// What one increment to its end comes to, if a longer substep has tried it.
+    whole: Option<Result<Ended, StepOutcome>>,
     /// Whether it is not divided any more.
     is_smallest: bool,
-    /// Whether it is the second half of another, which is compared in any case.
+    /// Whether it is a half of another, which is compared in any case.
     is_half: bool,
 }
 
-/// Where an increment leads.
-struct End {
-    load: Load,
+/// A place on the way of the loads.
+#[derive(Clone)]
+pub(super) struct End {
+    pub(super) load: Load,
     /// The share of the load step up to it.
-    share: f64,
+    pub(super) share: f64,
 }
 
 /// What a substep came to.
@@ -72,9 +75,18 @@ impl Accepted {
 struct TooLong {
     /// Why, if it is not for accuracy.
     why: Option<StepOutcome>,
-    /// Its end and its middle in one increment each, if they were found.
+    /// Its end in one increment, if it was found.
     whole: Option<Box<State>>,
-    half: Option<Box<Ended>>,
+    /// What one increment to its middle came to, or to a place before that if that is known to be
+    /// too far, if it was tried.
+    half: Option<Half>,
+}
+
+/// What one increment to the middle of a substep, or of its first half, came to.
+struct Half {
+    /// The share of the load step up to it.
+    share: f64,
+    end: Result<Box<Ended>, StepOutcome>,
 }
 
 /// A state on the way, and the share of the step that leads to it.
@@ -88,10 +100,10 @@ struct Way {
     here: Reached,
     /// Length of the next substep.
     increment: f64,
-    /// The end of the shortest substep from here that converged in one increment.
+    /// The end of the shortest substep beyond here that converged in one increment.
     coarse: Option<Reached>,
-    /// The middle of the last substep, in one increment, if that was too long.
-    half: Option<Box<Ended>>,
+    /// What the increment to the end of the next substep came to, if the last was too long.
+    half: Option<Half>,
 }
 
 impl Newton {
@@ -125,9 +137,10 @@ impl Newton {
             let middle = 0.5 * (way.here.share + end);
             let known = way.half.take().filter(|half| half.share == end);
             let substep = Substep {
+                start: End::between(&start, load, way.here.share),
                 middle: End::between(&start, load, middle),
                 end: End::between(&start, load, end),
-                whole: known.map(|half| *half),
+                whole: known.map(|half| half.end.map(|end| *end)),
                 is_smallest: way.increment <= SMALLEST_SUBSTEP,
                 is_half: false,
             };
@@ -146,7 +159,8 @@ impl Newton {
             };
             if let Some(next) = next {
                 self.path.remember(step.system, &way.here.state);
-                (way.here, way.coarse) = (next, None);
+                way.coarse = way.coarse.take().filter(|end| end.share > next.share);
+                way.here = next;
                 step.pushed.clear();
                 step.record.completed = way.here.share;
             }
@@ -177,8 +191,12 @@ impl Newton {
         let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way.increment);
         match found.why.filter(is_final) {
             None => {
-                way.increment *= 0.5;
-                way.half = found.half;
+                let length = f64::min(way.increment, 1.0 - way.here.share);
+                let tried = found.half.as_ref();
+                let tried = tried.map_or(length, |half| half.share - way.here.share);
+                way.increment = f64::min(0.5 * length, tried);
+                let would_differ = |half: &Half| half.end.is_err() && may_succeed(step, way);
+                way.half = found.half.filter(|half| !would_differ(half));
                 Ok(None)
             }
             Some(outcome) if self.may_fall_back(step, &outcome) => Ok(None),
@@ -199,7 +217,7 @@ impl Newton {
 
     fn solve_substep(&mut self, step: &mut Step<'_>, from: &State, substep: Substep) -> Solved {
         let solved = match substep.whole {
-            Some(known) => Ok(known),
+            Some(known) => known,
             None => self.solve_counted(step, from, &substep.end),
         };
         let mut found = TooLong::default();
@@ -235,6 +253,7 @@ impl Newton {
             Ok((half, end)) => {
                 let both = Both {
                     from,
+                    start: &substep.start,
                     whole: &whole.state,
                     half,
                     end,
@@ -245,14 +264,21 @@ impl Newton {
             }
             Err(outcome) => {
                 found.why = Some(outcome);
-                None
+                Err(None)
             }
         };
-        accepted.map(Solved::Accepted).unwrap_or_else(|| {
-            found.half = half.ok().map(Box::new);
-            found.whole = Some(Box::new(whole.state));
-            Solved::TooLong(found)
-        })
+        accepted.map_or_else(
+            |shorter| {
+                let own = || Half {
+                    share: substep.middle.share,
+                    end: half.map(Box::new),
+                };
+                found.half = Some(shorter.unwrap_or_else(own));
+                found.whole = Some(Box::new(whole.state));
+                Solved::TooLong(found)
+            },
+            Solved::Accepted,
+        )
     }
 
     /// Whether anything slides, breaks or meets on the way of an increment.
@@ -270,21 +296,38 @@ impl Newton {
     }
 
     /// Takes for the end of a substep that in two increments, and records how far that in one is
-    /// from it; none if that is too far for a substep that may be divided.
-    fn accept(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Option<Accepted> {
+    /// from it.
+    ///
+    /// # Errors
+    /// If that is too far for a substep that may be divided; with a shorter increment from its start
+    /// that was tried, if there is one beside its first half.
+    fn accept(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Result<Accepted, Option<Half>> {
         let size = step.size_at(path_error::largest_jump(step.system, &both.end.state));
-        let allowed = [self.path_tolerance(step), self.settings.time];
+        let tolerance = self.path_tolerance(step);
+        let allowed = [tolerance, self.settings.time];
         let compared = Compared::of(step, &both, size, allowed);
         let (error, is_smallest) = (compared.error, both.is_smallest);
         if error > 1.0 && !is_smallest {
-            return None;
+            return Err(None);
         }
         let is_small = error <= GROWTH_SHARE || (step.lost > 0.0 && error <= 1.0);
-        let [_, second] = both.increments();
+        let [first, second] = both.increments();
         let is_long = 2.0 * (both.end.share - both.half.share) >= SMALLEST_SUBSTEP;
         let may_hide = both.slides && is_long && error <= 1.0 && step.lost == 0.0;
+        if may_hide && relieved::any_slid(step.system, &first, tolerance * size) {
+            let start = (both.from, both.start.clone());
+            self.solve_half(step, start, both.half.clone(), is_smallest)?;
+        }
         let accepted = match may_hide && path_error::is_bent(step.system, &second, size) {
-            true => self.solve_second_half(step, both)?,
+            true => {
+                let middle = End {
+                    load: both.half.state.load.clone(),
+                    share: both.half.share,
+                };
+                let start = (&both.half.state, middle);
+                let solved = self.solve_half(step, start, both.end, is_smallest);
+                solved.map_err(|_| None)?
+            }
             false => Accepted::at(both.end.state),
         };
         if let Some(apart) = compared.in_time.filter(|apart| *apart > self.settings.time) {
@@ -293,45 +336,56 @@ impl Newton {
         if let Some(apart) = compared.apart {
             self.leave_apart(step, &apart, is_smallest);
         }
-        Some(Accepted {
+        Ok(Accepted {
             may_grow: is_small && accepted.may_grow,
             ..accepted
         })
     }
 
-    /// Solves the second half of a substep in two increments, and its second half in turn if need
-    /// be: where walls are stopped in it, the whole in one increment and in two differ in nothing
-    /// that happens after. None if it is too long and may be divided.
-    fn solve_second_half(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Option<Accepted> {
-        let (half, end) = (both.half, both.end);
-        let [from, to] = [&half.state.load, &end.state.load].map(Load::clone);
+    /// Solves a half of a substep, whose end in one increment is known, in two increments, and a
+    /// half of it in turn if need be: of what happens in it alone the whole in one increment and in
+    /// two may tell nothing.
+    ///
+    /// # Errors
+    /// If it is too long and may be divided; with what a shorter increment from its start came to.
+    fn solve_half(
+        &mut self,
+        step: &mut Step<'_>,
+        (from, start): (&State, End),
+        end: Ended,
+        is_smallest: bool,
+    ) -> Result<Accepted, Option<Half>> {
+        let to = end.state.load.clone();
         let middle = End {
-            load: Load::between(&from, &to, 0.5),
-            share: 0.5 * (half.share + end.share),
+            load: Load::between(&start.load, &to, 0.5),
+            share: 0.5 * (start.share + end.share),
         };
         let substep = Substep {
+            start,
             middle,
             end: End {
                 load: to,
                 share: end.share,
             },
-            whole: Some(end),
-            is_smallest: both.is_smallest,
+            whole: Some(Ok(end)),
+            is_smallest,
             is_half: true,
         };
-        match self.solve_substep(step, &half.state, substep) {
-            Solved::Accepted(accepted) => Some(accepted),
-            Solved::TooLong(found) if both.is_smallest && step.go_on().is_ok() => {
+        match self.solve_substep(step, from, substep) {
+            Solved::Accepted(accepted) => Ok(accepted),
+            Solved::TooLong(found) if is_smallest && step.go_on().is_ok() => {
                 step.leave_torn();
-                found.whole.map(|end| Accepted::at(*end))
+                let end = found.whole.ok_or(None)?;
+                Ok(Accepted::at(*end))
             }
-            Solved::TooLong(_) => None,
+            Solved::TooLong(found) => Err(found.half),
         }
     }
 
     /// Records how far the jumps of one increment and of two are apart in a substep that stands.
     fn leave_apart(&self, step: &mut Step<'_>, apart: &Apart, is_smallest: bool) {
         step.record.path_error += apart.length();
+        step.add_path_errors(&apart.lengths);
         let (share, accuracy) = (apart.share(), self.settings.path);
         if share <= accuracy {
             return;
@@ -389,6 +443,12 @@ fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool 
     increment <= SMALLEST_SUBSTEP
         || *outcome == StepOutcome::Stopped
         || (*outcome == StepOutcome::RigidBodyMotion && !system.is_path_dependent())
+}
+
+/// Whether the next substep, tried as a whole, may come to an end where the first half of the last,
+/// which is the same increment, has failed: because it is tried in earnest, or from another guess.
+fn may_succeed(step: &Step<'_>, way: &Way) -> bool {
+    step.system.is_smooth() || (step.is_tried_briefly && way.increment <= SMALLEST_SUBSTEP)
 }
 
 impl End {

@@ -124,6 +124,7 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
         substeps: Vec::new(),
         unresolved: None,
         path_error: 0.0,
+        summed_path_error: None,
         time_error: None,
         rigid_motions: Vec::new(),
         worst_facet_point: None,

@@ -242,9 +242,11 @@ fn listed(ends: &[(Way, End)]) -> String {
 }
 
 /// What the errors of the increments of two runs, as they estimate them, may add up to, as a share
-/// of the largest jump; 0 for runs of the same load steps, which take the same path.
+/// of the largest jump; 0 for runs of the same load steps that do not warn of it, which take the
+/// same path.
 fn estimated(a: &(&Way, &Fields), b: &(&Way, &Fields)) -> f64 {
-    if a.0.steps == b.0.steps {
+    let warns = a.1.warns_of_sums || b.1.warns_of_sums;
+    if a.0.steps == b.0.steps && !warns {
         return 0.0;
     }
     (a.1.path_error + b.1.path_error) / longest(&a.1.jumps).max(longest(&b.1.jumps))
@@ -309,6 +311,7 @@ mod tests {
             displacement: 1e-3,
             path_error: 1.5e-7,
             is_declared: false,
+            warns_of_sums: false,
         }
     }
 

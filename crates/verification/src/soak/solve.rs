@@ -40,6 +40,8 @@ pub struct Fields {
     pub path_error: f64,
     /// Whether the run says that the state is not unique.
     pub is_declared: bool,
+    /// Whether it warns of what the errors of its increments add up to.
+    pub warns_of_sums: bool,
 }
 
 /// Stops a run after so many iterations of Newton's method: the same on any machine.
@@ -94,12 +96,14 @@ fn fields(outcome: &Outcome) -> Fields {
     let displacements = values(|step| &step.rock, "displacement");
     let measures = outcome.summary.steps.iter();
     let measures = measures.filter_map(|step| step.measures.as_ref());
-    let mut warnings = outcome.summary.warnings.iter();
+    let warnings = &outcome.summary.warnings;
+    let warns_of_sums = |warning: &String| warning.contains("errors of the increments");
     Fields {
         jumps: values(|step| &step.fracture_grid, "jump"),
         displacement: longest(&displacements),
         path_error: measures.map(|measures| measures.path_error).sum(),
-        is_declared: warnings.any(|warning| is_declaration(warning)),
+        is_declared: warnings.iter().any(|warning| is_declaration(warning)),
+        warns_of_sums: warnings.iter().any(warns_of_sums),
     }
 }
 
