@@ -67,16 +67,17 @@ impl Run<'_> {
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
         let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
+        let jumps = nodes.iter().map(|node| node.jump.length());
+        let largest = jumps.fold(0.0, f64::max);
         let unresolved = [
-            unresolved::warning,
-            unresolved::warning_of_sums,
-            unresolved::warning_of_time,
+            unresolved::warning(scene, &self.finished),
+            unresolved::warning_of_sums(scene, &self.finished, largest),
+            unresolved::warning_of_time(scene, &self.finished),
         ];
-        let unresolved = unresolved
-            .into_iter()
-            .filter_map(|warning| warning(scene, &self.finished));
         self.summary.warnings = [self.doubts.clone(), of_result, unclear].concat();
-        self.summary.warnings.extend(unresolved);
+        self.summary
+            .warnings
+            .extend(unresolved.into_iter().flatten());
         let written = Written {
             solution: &solution,
             nodes: &nodes,

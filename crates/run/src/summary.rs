@@ -176,9 +176,8 @@ pub struct StepMeasures {
     /// Estimate of how far its increments lead the jumps off the path of the loads (m); 0 where the
     /// path does not matter.
     pub path_error: f64,
-    /// What its errors add up to at one place, against the largest jump at its end, where it exceeds
-    /// `path_accuracy`.
-    pub summed_path_error: Option<f64>,
+    /// What these errors add up to at the place where they do most (m).
+    pub path_error_at_one_place: f64,
     /// Largest difference of a time step of the flow in one increment and in two, where no division
     /// of the step brings it to what is allowed.
     pub time_error: Option<f64>,
@@ -227,7 +226,7 @@ impl StepMeasures {
             converged: record.converged(),
             unresolved,
             path_error: record.path_error,
-            summed_path_error: record.summed_path_error,
+            path_error_at_one_place: record.path_error_at_one_place,
             time_error: record.time_error,
         }
     }

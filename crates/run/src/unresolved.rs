@@ -1,7 +1,7 @@
 //! Parts of a load path, and of a flow in time, that no division resolves, in words.
 
 use kluft_scene::{Doubt, Scene};
-use kluft_solver::{StepRecord, System, UnresolvedCause};
+use kluft_solver::{NewtonSettings, StepRecord, System, UnresolvedCause};
 
 use crate::failures::facet_place;
 use crate::summary::StepMeasures;
@@ -51,18 +51,25 @@ pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
 }
 
 /// What the user should know of load steps whose increments each keep the accuracy asked for, but
-/// not all together: the worst, and how many there are.
-pub fn warning_of_sums(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
+/// not all together, against the `largest` jump (m) that they have led to: the worst, and how many
+/// there are.
+pub fn warning_of_sums(scene: &Scene, steps: &[StepMeasures], largest: f64) -> Option<String> {
+    let accuracy = scene
+        .solver
+        .path_accuracy
+        .unwrap_or(NewtonSettings::default().path);
     let resolved = (1..)
         .zip(steps)
         .filter(|(_, step)| step.unresolved.is_none());
-    let found = resolved.filter_map(|(number, step)| Some((number, step.summed_path_error?)));
-    let found: Vec<(usize, f64)> = found.collect();
+    let errors = resolved.map(|(number, step)| (number, step.path_error_at_one_place));
+    let found: Vec<(usize, f64)> = errors
+        .filter(|(_, error)| *error > accuracy * largest)
+        .collect();
     let (number, error) = *found.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let text = format!(
-        "the errors of the increments of step {number} add up to {:.2} % of the largest jump{}: each keeps \
-         path_accuracy, their sum does not; ask for a smaller one",
-        100.0 * error,
+        "the errors of the increments of step {number} add up to {:.2} % of the largest jump{}: \
+         each keeps path_accuracy, their sum does not; ask for a smaller one",
+        100.0 * error / largest,
         others(found.len() - 1)
     );
     scene.warning(Doubt::UnresolvedPath, &text)
@@ -99,4 +106,47 @@ pub fn long_time_step(
         others(count)
     );
     scene.warning(Doubt::LongTimeSteps, &text)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    const SCENE: &str = "[mesh]\nfile = \"m.msh\"\n[rock.default]\nyoung_modulus = \
+                         1e10\npoisson_ratio = 0.2\n[boundary.bottom]\ndisplacement = { x = 0.0, y \
+                         = 0.0, z = 0.0 }\n";
+
+    fn step(path_error_at_one_place: f64, unresolved: Option<&str>) -> StepMeasures {
+        StepMeasures {
+            newton_iterations: 1,
+            substeps: vec![1],
+            linear_iterations: 0,
+            force_residual: 0.0,
+            increment: 0.0,
+            closure_error: 0.0,
+            converged: true,
+            unresolved: unresolved.map(str::to_owned),
+            path_error: path_error_at_one_place,
+            path_error_at_one_place,
+            time_error: None,
+        }
+    }
+
+    /// Errors of 1 and 3 um beside a jump of 1 mm: the usual accuracy is 1 um. A step that is told of
+    /// anyway is not told of twice.
+    #[test]
+    fn errors_that_add_up_to_more_than_the_accuracy_are_told() {
+        let scene = Scene::parse(SCENE, "s", Path::new(".")).expect("a scene");
+        let warning = |steps: &[StepMeasures]| warning_of_sums(&scene, steps, 1e-3);
+        let [small, large] = [0.9e-6, 3e-6].map(|error| step(error, None));
+        assert_eq!(warning(&[small.clone(), step(3e-6, Some("torn"))]), None);
+        let told = warning(&[small, large.clone(), large]).expect("a warning");
+        assert!(
+            told.contains("of step 3 add up to 0.30 % of the largest"),
+            "{told}"
+        );
+        assert!(told.contains("so in one step more") && told.contains("unresolved_path"));
+    }
 }

@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use super::facet_points;
 use super::iterate::Iterate;
-use super::path_error;
 use super::{Iteration, Newton, Step, StepOutcome, StepRecord};
 use crate::problem::Load;
 use crate::system::{State, System};
@@ -32,7 +31,6 @@ impl Newton {
         let had_fallen_back = self.linear.has_fallen_back();
         let outcome = match self.solve_in_substeps(&mut step, state, load) {
             Ok(end) => {
-                step.sum_path_errors(path_error::largest_jump(system, &end), self.settings.path);
                 *state = end;
                 StepOutcome::Converged
             }

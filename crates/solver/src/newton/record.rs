@@ -104,10 +104,8 @@ pub struct StepRecord {
     /// over its substeps of the largest difference of a jump in one increment and in two, or slip
     /// of walls until they meet in one. 0 where the path does not matter.
     pub path_error: f64,
-    /// What these add up to at the facet point where they do most, against the largest jump at its
-    /// end, where it exceeds what each of its substeps is allowed; see
-    /// [`NewtonSettings::path`](super::NewtonSettings::path).
-    pub summed_path_error: Option<f64>,
+    /// What the differences of its substeps add up to at the facet point where they do most (m).
+    pub path_error_at_one_place: f64,
     /// Largest difference of a time step of its flow in one increment and in two that exceeds what
     /// is allowed, however short the step was divided; see
     /// [`NewtonSettings::time`](super::NewtonSettings::time).
@@ -133,7 +131,7 @@ impl StepRecord {
             completed: 0.0,
             unresolved: None,
             path_error: 0.0,
-            summed_path_error: None,
+            path_error_at_one_place: 0.0,
             time_error: None,
             fell_back: false,
             rigid_motions: Vec::new(),

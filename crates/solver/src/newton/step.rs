@@ -6,7 +6,6 @@ use glam::DVec3;
 
 use crate::space::rigid_modes::FreeBody;
 
-use super::convergence::ratio;
 use super::free_blocks;
 use super::iterate::Iterate;
 use super::{Iteration, StepOutcome, StepRecord, UnresolvedCause, UnresolvedPath};
@@ -119,14 +118,8 @@ impl<'a> Step<'a> {
         for (sum, length) in self.path_errors.iter_mut().zip(lengths) {
             *sum += length;
         }
-    }
-
-    /// Records what the errors of the substeps add up to where they are largest, against the largest
-    /// jump (m) at the end, if that is more than an `accuracy` that each of them keeps.
-    pub(super) fn sum_path_errors(&mut self, largest_jump: f64, accuracy: f64) {
         let worst = self.path_errors.iter().copied().fold(0.0, f64::max);
-        let sum = ratio(worst, largest_jump);
-        self.record.summed_path_error = (sum > accuracy).then_some(sum);
+        self.record.path_error_at_one_place = worst;
     }
 
     /// Records how far the flow of a part of the step is from resolved in time, if that is the

@@ -124,7 +124,7 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
         substeps: Vec::new(),
         unresolved: None,
         path_error: 0.0,
-        summed_path_error: None,
+        path_error_at_one_place: 0.0,
         time_error: None,
         rigid_motions: Vec::new(),
         worst_facet_point: None,
