@@ -336,9 +336,9 @@ fn a_corner_that_others_stop_rests_in_the_same_place_or_the_run_says_so() {
     assert!(says_so || differ < 1e-3 * largest_jump, "{slips:?}");
 }
 
-/// A wedge whose upper joint slides until the lower one does, within a tenth of the load, and sticks
-/// from then on. In the first hundredths of it an increment may lead nowhere; then a longer one
-/// stands, and the run says so.
+/// A wedge whose upper joint slides until the lower one does, within a tenth of the load, and
+/// sticks from then on. In the first hundredths of it an increment may lead nowhere; then a longer
+/// one stands, and the run says so.
 #[test]
 fn walls_that_slide_until_others_do_have_slid_in_one_step_as_in_ten_or_the_run_says_so() {
     let end = "[boundary.bottom]";

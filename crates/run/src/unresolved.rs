@@ -134,8 +134,8 @@ mod tests {
         }
     }
 
-    /// Errors of 1 and 3 um beside a jump of 1 mm: the usual accuracy is 1 um. A step that is told of
-    /// anyway is not told of twice.
+    /// Errors of 1 and 3 um beside a jump of 1 mm: the usual accuracy is 1 um. A step that is told
+    /// of anyway is not told of twice.
     #[test]
     fn errors_that_add_up_to_more_than_the_accuracy_are_told() {
         let scene = Scene::parse(SCENE, "s", Path::new(".")).expect("a scene");

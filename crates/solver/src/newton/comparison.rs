@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::Step;
 use super::path_error::{Apart, Increment};
-use super::substepping::End;
 use crate::flow::Coupling;
+use crate::problem::Load;
 use crate::system::{State, System};
 
 /// The end of a substep in one increment and in two.
@@ -20,6 +20,14 @@ pub(super) struct Both<'a> {
     pub(super) slides: bool,
     /// Whether the substep is not divided any more.
     pub(super) is_smallest: bool,
+}
+
+/// A place on the way of the loads.
+#[derive(Clone)]
+pub(super) struct End {
+    pub(super) load: Load,
+    /// The share of the load step up to it.
+    pub(super) share: f64,
 }
 
 /// How far the end of a substep in one increment is from that in two.
@@ -61,6 +69,17 @@ impl Compared {
             in_time,
             error,
         }
+    }
+}
+
+impl End {
+    /// A share of the way of a load step.
+    pub(super) fn between(start: &Load, end: &Load, share: f64) -> Self {
+        let load = match share == 1.0 {
+            true => end.clone(),
+            false => Load::between(start, end, share),
+        };
+        Self { load, share }
     }
 }
 

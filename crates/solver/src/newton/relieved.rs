@@ -13,8 +13,8 @@ use super::facet_points::{interface, tangent};
 use super::path_error::Increment;
 use crate::system::System;
 
-/// Shear traction beyond what friction bears, against the largest traction then, that tells of walls
-/// that slide.
+/// Shear traction beyond what friction bears, against the largest traction then, that tells of
+/// walls that slide.
 const OVERLOADED: f64 = 0.1;
 /// Bisections of the way to where walls begin to slide.
 const BISECTIONS: usize = 30;

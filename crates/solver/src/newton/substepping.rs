@@ -8,7 +8,7 @@
 //! what drives the flow walk with it. What no division resolves, walls that jump to another place
 //! in an instant, is let be and recorded.
 
-use super::comparison::{Both, Compared, Ended};
+use super::comparison::{Both, Compared, End, Ended};
 use super::free_blocks;
 use super::path_error::{self, Apart};
 use super::relieved;
@@ -36,14 +36,6 @@ struct Substep {
     is_smallest: bool,
     /// Whether it is a half of another, which is compared in any case.
     is_half: bool,
-}
-
-/// A place on the way of the loads.
-#[derive(Clone)]
-pub(super) struct End {
-    pub(super) load: Load,
-    /// The share of the load step up to it.
-    pub(super) share: f64,
 }
 
 /// What a substep came to.
@@ -87,6 +79,15 @@ struct Half {
     /// The share of the load step up to it.
     share: f64,
     end: Result<Box<Ended>, StepOutcome>,
+}
+
+impl Half {
+    fn of(to: &End, end: Result<Ended, StepOutcome>) -> Self {
+        Self {
+            share: to.share,
+            end: end.map(Box::new),
+        }
+    }
 }
 
 /// A state on the way, and the share of the step that leads to it.
@@ -216,10 +217,8 @@ impl Newton {
     }
 
     fn solve_substep(&mut self, step: &mut Step<'_>, from: &State, substep: Substep) -> Solved {
-        let solved = match substep.whole {
-            Some(known) => known,
-            None => self.solve_counted(step, from, &substep.end),
-        };
+        let known = substep.whole;
+        let solved = known.unwrap_or_else(|| self.solve_counted(step, from, &substep.end));
         let mut found = TooLong::default();
         let whole = match solved {
             Ok(whole) => whole,
@@ -269,10 +268,7 @@ impl Newton {
         };
         accepted.map_or_else(
             |shorter| {
-                let own = || Half {
-                    share: substep.middle.share,
-                    end: half.map(Box::new),
-                };
+                let own = || Half::of(&substep.middle, half);
                 found.half = Some(shorter.unwrap_or_else(own));
                 found.whole = Some(Box::new(whole.state));
                 Solved::TooLong(found)
@@ -299,8 +295,8 @@ impl Newton {
     /// from it.
     ///
     /// # Errors
-    /// If that is too far for a substep that may be divided; with a shorter increment from its start
-    /// that was tried, if there is one beside its first half.
+    /// If that is too far for a substep that may be divided; with a shorter increment from its
+    /// start that was tried, if there is one beside its first half.
     fn accept(&mut self, step: &mut Step<'_>, both: Both<'_>) -> Result<Accepted, Option<Half>> {
         let size = step.size_at(path_error::largest_jump(step.system, &both.end.state));
         let tolerance = self.path_tolerance(step);
@@ -449,17 +445,6 @@ fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool 
 /// which is the same increment, has failed: because it is tried in earnest, or from another guess.
 fn may_succeed(step: &Step<'_>, way: &Way) -> bool {
     step.system.is_smooth() || (step.is_tried_briefly && way.increment <= SMALLEST_SUBSTEP)
-}
-
-impl End {
-    /// A share of the way of a load step.
-    fn between(start: &Load, end: &Load, share: f64) -> Self {
-        let load = match share == 1.0 {
-            true => end.clone(),
-            false => Load::between(start, end, share),
-        };
-        Self { load, share }
-    }
 }
 
 /// What stands for a substep that no division resolves: the end of a longer one that converged in
