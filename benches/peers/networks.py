@@ -47,8 +47,8 @@ class Case:
 
 
 CASES = (
-    Case("network-20", (0.24, 0.12, 0.1), "50e6", 420, 3),
-    Case("network-20", (0.17, 0.085, 0.07), "50e6", 1019, 3),
+    Case("network-20", (0.24, 0.12, 0.1), "50e6", 667, 3),
+    Case("network-20", (0.204, 0.102, 0.085), "50e6", 1019, 3),
     Case("network-100", (1.0, 0.5, 0.45), "10e6", 127, 3),
     Case("network-100", (), "10e6", 725, 3),
     Case("network-100", (), "10e6", 5068, 2, refined=True),
@@ -216,4 +216,5 @@ def main():
     say("wrote docs/performance/networks.md")
 
 
-main()
+if __name__ == "__main__":
+    main()
