@@ -12,8 +12,11 @@ use crate::linear::iterative::Iterative;
 use crate::linear::tangent_solver::TangentSolver;
 use crate::system::System;
 
-/// A direct solver is not even analysed if in a solid body it would lose by this factor; in thin
-/// ones it takes less.
+/// A direct solver is not even analysed if in a solid body it would lose by this factor: to analyse
+/// it takes as long as many iterations.
+const BEATEN: f64 = 2.0;
+/// Where the iterative solver gives up, a direct one is hopeless if in a solid body it would take
+/// so many times what that should have; in thin ones it takes less.
 const HOPELESS: f64 = 20.0;
 
 /// The chosen solver and what is known of it before any value is computed.
@@ -41,7 +44,7 @@ impl Plan {
     ) -> Result<Self, LinearFailure> {
         let iterative = iterative(unknowns, workload);
         let is_wanted = |method| forced.is_none_or(|forced| forced == method);
-        let limit = HOPELESS * iterative.seconds;
+        let limit = BEATEN * iterative.seconds;
         let analysed = [LinearMethod::Direct, LinearMethod::Condensed];
         let analysed = analysed.into_iter().filter(|&method| match forced {
             Some(forced) => forced == method,
