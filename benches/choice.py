@@ -119,10 +119,10 @@ def write(lines, ratios, rounds):
 
 Written by `python3 benches/choice.py`: each scene of `geometries/` with the solver that the program
 chooses and with each of the three by name, in turn, on two threads. Seconds are those of the whole
-run without its mesh, in brackets those of the solver alone; medians of {rounds} rounds, of two where a
-run takes over {BRIEF:.0f} s. The ratio is that of the run as chosen to the best of the three. A dash is a
-solver that refuses, fails or takes over four times as long. Scenes of flow in rigid rock are left out:
-they have no choice.
+run without its mesh, in brackets those of the solver alone; medians of {rounds} rounds, or of two where
+a run takes over {BRIEF:.0f} s. The ratio is that of the run as chosen to the best of the three. A dash is
+a solver that refuses, fails or takes over four times as long. Scenes of flow in rigid rock, which
+have no choice, are left out.
 
 Over {LARGEST_RATIO} times the best: {said}; the worst {worst:.2f}.
 
