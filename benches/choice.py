@@ -1,6 +1,6 @@
 """The linear solver that is chosen for each scene of geometries/, beside the three that could be.
 
-    python3 benches/choice.py [--rounds 3] [--limit 120] [SCENE...]
+    python3 benches/choice.py [--rounds 3] [--limit 60] [SCENE...]
 
 Runs each scene with the solver of the program's choice and with each of the three by name, in turn, on meshes that are
 kept, and writes docs/performance/choice.md. A solver that takes longer than the limit (s) and four times the chosen one

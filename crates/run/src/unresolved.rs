@@ -1,9 +1,10 @@
 //! Parts of a load path, and of a flow in time, that no division resolves, in words.
 
 use kluft_scene::{Doubt, Scene};
-use kluft_solver::{NewtonSettings, StepRecord, System, UnresolvedCause};
+use kluft_solver::{StepRecord, System, UnresolvedCause};
 
 use crate::failures::facet_place;
+use crate::stages::newton_settings;
 use crate::summary::StepMeasures;
 
 /// What of the path of a load step is not resolved, and where.
@@ -54,10 +55,7 @@ pub fn warning(scene: &Scene, steps: &[StepMeasures]) -> Option<String> {
 /// not all together, against the `largest` jump (m) that they have led to: the worst, and how many
 /// there are.
 pub fn warning_of_sums(scene: &Scene, steps: &[StepMeasures], largest: f64) -> Option<String> {
-    let accuracy = scene
-        .solver
-        .path_accuracy
-        .unwrap_or(NewtonSettings::default().path);
+    let accuracy = newton_settings(&scene.solver).path;
     let resolved = (1..)
         .zip(steps)
         .filter(|(_, step)| step.unresolved.is_none());
