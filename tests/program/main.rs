@@ -49,6 +49,7 @@ mod resting_fluid;
 mod results;
 mod resume;
 mod soak;
+mod solver_choice;
 mod stages;
 mod stimulation;
 mod strangers;

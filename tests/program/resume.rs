@@ -88,10 +88,15 @@ pub fn outcome(out: &Path) -> (BTreeMap<String, Vec<u8>>, Value) {
 
 /// Starts a run and kills it as soon as there is a checkpoint.
 pub fn kill_after_a_step(workshop: &Workshop) {
+    kill_at(workshop, "resume.bin");
+}
+
+/// Starts a run and kills it as soon as there is a file of this name.
+pub fn kill_at(workshop: &Workshop, file: &str) {
     let child = start(workshop, "out", &[]);
-    let checkpoint = workshop.path("out/resume.bin");
+    let awaited = workshop.path("out").join(file);
     let begin = Instant::now();
-    while !checkpoint.exists() && begin.elapsed() < Duration::from_secs(60) {
+    while !awaited.exists() && begin.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));
     }
     assert!(kill(child), "it ended before it was killed");
@@ -101,6 +106,11 @@ pub fn kill_after_a_step(workshop: &Workshop) {
 /// interrupted.
 pub fn goes_on_to_the_same_bits(workshop: &Workshop) {
     kill_after_a_step(workshop);
+    ends_in_the_same_bits(workshop);
+}
+
+/// Resumes a run that was killed: what it leaves is what a run leaves that was never interrupted.
+pub fn ends_in_the_same_bits(workshop: &Workshop) {
     let run = resume_without_gmsh(workshop, "out");
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
     assert!(run.out.contains("resumed    after step "), "{}", run.out);

@@ -106,7 +106,8 @@ fn prepare<'r, 'a, 'p>(
     acting: ActingCases,
 ) -> Result<PreparedRock<'r, 'a, 'p>, Interruption> {
     let mut system = run.assemble(&binding.problem)?;
-    let plan = run.plan(&system, None)?;
+    let steps = binding.problem.schedule.steps.len();
+    let plan = run.plan(&system, steps, None)?;
     run.decide(binding);
     let newton = run.set_up(&mut system, plan)?;
     // The pressures of a step and those of the step before are cases of their own, so that all

@@ -15,6 +15,7 @@ use kluft_solver::{RestartState, StageEnd, TransientState};
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_128;
 
+use crate::choice::Choice;
 use crate::flow_summary::StepFlow;
 use crate::measure::Measure;
 use crate::summary::{FractureSummary, Seconds, StepFracture, StepMeasures};
@@ -22,7 +23,7 @@ use crate::summary::{FractureSummary, Seconds, StepFracture, StepMeasures};
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 14\n";
+const HEAD: &[u8] = b"kluft checkpoint 15\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -54,8 +55,8 @@ pub struct Identity {
 /// What is finished, and how to go on.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Progress<'a> {
-    /// Name of the linear solver, and why it was chosen.
-    pub choice: (String, String),
+    /// The linear solver.
+    pub choice: Choice,
     /// The finished load steps.
     pub steps: Vec<StepMeasures>,
     /// Their flows, if there is a fluid.
@@ -316,7 +317,11 @@ mod tests {
 
     fn progress() -> Progress<'static> {
         Progress {
-            choice: ("direct".into(), "why".into()),
+            choice: Choice {
+                solver: "direct".into(),
+                why: vec!["why".into()],
+                ..Choice::default()
+            },
             steps: Vec::new(),
             flows: vec![None],
             files: Vec::new(),

@@ -96,16 +96,31 @@ fn locking(problem: &Problem) -> Option<&lie_core::Rock> {
     rocks.find(|rock| linear && is_isotropic(rock) && rock.poisson_ratio > NEARLY_INCOMPRESSIBLE)
 }
 
+/// What a linear solver costs.
+fn cost(prediction: &Prediction) -> String {
+    format!(
+        "{} {} and {}",
+        prediction.method,
+        duration(prediction.seconds),
+        gigabytes(prediction.memory_bytes)
+    )
+}
+
+/// That another linear solver takes the place of the present one, from a load step on.
+pub fn of_other_plan(plan: &Plan, present: LinearMethod, number: usize) -> String {
+    let (chosen, mut others) = (plan.prediction(), plan.predictions.iter());
+    let present = others.find(|p| p.method == present).map(cost);
+    format!(
+        "linear solver: {} from step {number} on, by what load steps take; predicted for those left {} \
+         (against {})",
+        plan.method,
+        cost(chosen),
+        present.unwrap_or_default()
+    )
+}
+
 /// Which linear solver, and what the others would have cost.
 pub fn of_plan(plan: &Plan, asked: &SolverEntry) -> String {
-    let cost = |prediction: &Prediction| {
-        format!(
-            "{} {} and {}",
-            prediction.method,
-            duration(prediction.seconds),
-            gigabytes(prediction.memory_bytes)
-        )
-    };
     let why = match asked.linear {
         Some(_) => "as the scene asks",
         None if plan.method == LinearMethod::Iterative => "the cheapest",

@@ -44,6 +44,7 @@ mod advance;
 mod begin;
 mod cases;
 mod checkpoint;
+mod choice;
 mod crack_front;
 mod decisions;
 mod doubts;

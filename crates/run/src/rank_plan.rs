@@ -39,7 +39,7 @@ impl Run<'_> {
             1 => "linear solver: iterative, on one rank".to_owned(),
             count => format!("linear solver: iterative, its rows divided among {count} ranks"),
         };
-        self.choice = (plan.method.to_string(), why);
+        self.choose(&plan, why);
         Ok(plan)
     }
 }

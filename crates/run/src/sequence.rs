@@ -78,7 +78,9 @@ impl Run<'_> {
         if steps.is_empty() {
             return Ok(system.leave(&system.initial_state(), &cells));
         }
-        let plan = self.plan(&system, former.as_ref())?;
+        let done = former.as_ref();
+        let done = done.map_or(self.finished.len(), |former| former.progress.steps.len());
+        let plan = self.plan(&system, steps.end - done, former.as_ref())?;
         if self.finished.is_empty() {
             self.summary.decisions.append(&mut binding.decisions);
             self.decide(&binding);
@@ -95,6 +97,7 @@ impl Run<'_> {
             None => self.enter(&mut system, plan)?,
         };
         prepared.stage = before;
+        prepared.first = steps.start;
         self.solve_until(&mut prepared, steps.end)?;
         let end = prepared.system.leave(&prepared.state, &cells);
         if stage + 1 == staged.count() {

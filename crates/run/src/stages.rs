@@ -12,6 +12,7 @@ use kluft_solver::{Iteration, LinearFailure, NewtonSettings, System};
 
 use crate::begin::provenance;
 use crate::checkpoint::{self, Identity};
+use crate::choice::Choice;
 use crate::ending::Ending;
 use crate::facts::facts;
 use crate::failures;
@@ -78,8 +79,8 @@ pub struct Run<'a> {
     pub probes: ProbeTable,
     /// The results that are kept.
     pub kept: Vec<StepResult>,
-    /// Name of the linear solver, and why it was chosen.
-    pub choice: (String, String),
+    /// The linear solver.
+    pub choice: Choice,
     /// What is hardly meant of scene and mesh.
     pub doubts: Vec<String>,
     /// Closed form of each fracture that has one.
@@ -144,7 +145,7 @@ impl<'a> Run<'a> {
             strength_shown: None,
             probes: ProbeTable::default(),
             kept: Vec::new(),
-            choice: Default::default(),
+            choice: Choice::default(),
             doubts: Vec::new(),
             oracles: Vec::new(),
             is_stopped: false,

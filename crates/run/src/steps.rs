@@ -28,6 +28,8 @@ pub(crate) struct Prepared<'s, 'p> {
     pub(crate) estimator: Option<Estimator>,
     /// What its stage of the body began with, if it is not the first.
     pub(crate) stage: Option<&'s StageEnd>,
+    /// The load step that it begins with, counted from 0.
+    pub(crate) first: usize,
 }
 
 impl Run<'_> {
@@ -40,7 +42,7 @@ impl Run<'_> {
         let problem = &binding.problem;
         let mut system = self.assemble(problem)?;
         self.let_flow(binding, &mut system)?;
-        let plan = self.plan(&system, None)?;
+        let plan = self.plan(&system, problem.schedule.steps.len(), None)?;
         let mut prepared = Prepared {
             newton: self.set_up(&mut system, plan)?,
             state: system.initial_state(),
@@ -49,6 +51,7 @@ impl Run<'_> {
             fluid: None,
             estimator: None,
             stage: None,
+            first: 0,
         };
         for index in 0..problem.schedule.steps.len() {
             self.solve_step(&mut prepared, index)?;
@@ -77,7 +80,8 @@ impl Run<'_> {
         let problem = &binding.problem;
         let mut system = self.assemble(problem)?;
         let flow = self.let_flow(binding, &mut system)?;
-        let plan = self.plan(&system, former.as_ref())?;
+        let steps = problem.schedule.steps.len();
+        let plan = self.plan(&system, steps, former.as_ref())?;
         if let Some(flow) = &binding.flow {
             self.permeability(problem, flow)?;
         }
@@ -92,7 +96,7 @@ impl Run<'_> {
         };
         prepared.flow = flow.as_ref();
         prepared.fluid = binding.flow.as_ref();
-        self.solve_until(&mut prepared, problem.schedule.steps.len())?;
+        self.solve_until(&mut prepared, steps)?;
         let Prepared {
             mut newton, state, ..
         } = prepared;
@@ -113,6 +117,7 @@ impl Run<'_> {
             let measures = self.solve_step(prepared, index)?;
             self.finished.push(measures);
             self.take_results(prepared)?;
+            self.choose_again(prepared, end)?;
             self.write_summary()?;
             self.write_checkpoint(prepared)?;
         }
@@ -122,7 +127,8 @@ impl Run<'_> {
     /// Takes over and tells what was decided for a problem.
     pub fn decide(&mut self, binding: &Binding) {
         let settings = newton_settings(&self.request.scene.solver);
-        self.summary.decisions.push(self.choice.1.clone());
+        let reason = self.choice.first_reason().to_owned();
+        self.summary.decisions.push(reason);
         let of_problem =
             decisions::of_problem(&binding.problem, binding.flow.as_ref(), settings.path);
         self.summary.decisions.extend(of_problem);
@@ -158,6 +164,7 @@ impl Run<'_> {
             fluid: None,
             estimator: None,
             stage: None,
+            first: 0,
         })
     }
 
@@ -194,6 +201,8 @@ impl Run<'_> {
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
+        let later = self.choice.later_reasons();
+        self.summary.decisions.extend_from_slice(later);
         let mut newton = self.set_up(system, plan)?;
         let system = &*system;
         let restart = former.restart.filter(|restart| restart.fits(system));
@@ -212,6 +221,7 @@ impl Run<'_> {
             fluid: None,
             estimator: None,
             stage: None,
+            first: 0,
         })
     }
 

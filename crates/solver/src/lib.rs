@@ -55,8 +55,8 @@ pub use kluft_algebra::{
 };
 pub use linear::{
     Condensed, Direct, ExtraMemory, FlowWorkload, Iterative, LinearMethod, LinearSolution,
-    NonsymmetricSolver, Plan, Prediction, SolverHistory, TangentSolver, Tangents, Unknowns,
-    Workload, first_coarsening, first_guess, serves,
+    NonsymmetricSolver, Observed, Plan, Prediction, SolverHistory, TangentSolver, Tangents,
+    Unknowns, Workload, first_coarsening, first_guess, serves,
 };
 pub use newton::{
     Determinacy, Iteration, Newton, NewtonSettings, RestartState, StepOutcome, StepRecord,

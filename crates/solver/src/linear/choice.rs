@@ -4,17 +4,18 @@
 use kluft_algebra::{Analysis, LinearFailure, NodeOrder};
 
 use crate::linear::condensed::Condensed;
-use crate::linear::cost::{
-    LinearMethod, Prediction, Unknowns, Workload, in_solid, iterative, predict,
-};
+use crate::linear::cost::{LinearMethod, Prediction, Unknowns, in_solid, iterative, predict};
 use crate::linear::direct::Direct;
 use crate::linear::iterative::Iterative;
 use crate::linear::tangent_solver::TangentSolver;
+use crate::linear::workload::Workload;
 use crate::system::System;
 
 /// A direct solver is not even analysed if in a solid body it would lose by this factor: to analyse
 /// it takes as long as many iterations.
-const BEATEN: f64 = 2.0;
+const BEATEN: f64 = 1.0;
+/// Predictions of two solvers may be wrong by this factor against each other.
+const UNCERTAIN: f64 = 1.5;
 /// Where the iterative solver gives up, a direct one is hopeless if in a solid body it would take
 /// so many times what that should have; in thin ones it takes less.
 const HOPELESS: f64 = 20.0;
@@ -48,7 +49,9 @@ impl Plan {
         let analysed = [LinearMethod::Direct, LinearMethod::Condensed];
         let analysed = analysed.into_iter().filter(|&method| match forced {
             Some(forced) => forced == method,
-            None => in_solid(unknowns, workload, method) < limit,
+            None => {
+                workload.present == Some(method) || in_solid(unknowns, workload, method) < limit
+            }
         });
         let analysed: Vec<LinearMethod> = analysed.collect();
         let mut predictions = vec![iterative];
@@ -67,6 +70,7 @@ impl Plan {
         let fastest =
             fitting.min_by(|a, b| a.effective_seconds().total_cmp(&b.effective_seconds()));
         let smallest = candidates().min_by_key(|p| p.memory_bytes);
+        let fastest = fastest.map(|fastest| worth(fastest, &predictions, workload));
         let method = fastest.or(smallest).map_or(iterative.method, |p| p.method);
         let analysis = analyses.into_iter().find(|(of, _)| *of == method);
         Ok(Self {
@@ -117,6 +121,20 @@ impl Plan {
             _ => Box::new(Iterative::new(system)?),
         })
     }
+}
+
+/// The fastest solver, or the one that stands, unless that takes so much longer that a prediction
+/// can tell.
+fn worth<'a>(
+    fastest: &'a Prediction,
+    predictions: &'a [Prediction],
+    workload: Workload,
+) -> &'a Prediction {
+    let mut present = predictions.iter();
+    let present = present.find(|p| workload.present == Some(p.method));
+    present
+        .filter(|present| present.seconds < UNCERTAIN * fastest.seconds)
+        .unwrap_or(fastest)
 }
 
 fn analysis(

@@ -17,13 +17,15 @@ mod nonsymmetric;
 mod released;
 mod split_aggregates;
 mod tangent_solver;
+mod workload;
 
 pub use choice::Plan;
 pub use condensed::Condensed;
-pub use cost::{ExtraMemory, FlowWorkload, LinearMethod, Prediction, Unknowns, Workload};
+pub use cost::{LinearMethod, Prediction, Unknowns};
 pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
 pub use iterative::{Iterative, first_coarsening, first_guess, serves};
 pub use nonsymmetric::NonsymmetricSolver;
 pub(crate) use released::Released;
 pub use tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};
+pub use workload::{ExtraMemory, FlowWorkload, Observed, Workload};

@@ -57,6 +57,24 @@ impl Newton {
         })
     }
 
+    /// Puts the linear solver of another plan in the place of the present one, whose memory is given
+    /// back before; the path of the load steps so far stays known.
+    ///
+    /// # Errors
+    /// If it cannot be prepared.
+    pub fn exchange(&mut self, system: &System<'_>, plan: Plan) -> Result<(), LinearFailure> {
+        let path = std::mem::take(&mut self.path);
+        self.release();
+        let own = Self::planned(system, self.settings, plan)?;
+        *self = Self { path, ..own };
+        Ok(())
+    }
+
+    /// Whether a direct solver goes on where an iterative one has given up.
+    pub fn has_fallen_back(&self) -> bool {
+        self.linear.has_fallen_back()
+    }
+
     /// On top of a linear solver of the system, which may be the caller's own; whether it iterates.
     pub fn on(
         system: &System<'_>,
