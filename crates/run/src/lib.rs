@@ -45,6 +45,7 @@ mod begin;
 mod cases;
 mod checkpoint;
 mod choice;
+mod choose;
 mod crack_front;
 mod decisions;
 mod doubts;

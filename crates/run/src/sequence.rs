@@ -46,6 +46,11 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Number of load steps that are solved, by this run or the former one that it goes on from.
+    fn done(&self, former: Option<&FormerRun>) -> usize {
+        former.map_or(self.finished.len(), |former| former.progress.steps.len())
+    }
+
     /// Solves the load steps of one body; returns what it leaves.
     fn solve_stage(
         &mut self,
@@ -78,9 +83,8 @@ impl Run<'_> {
         if steps.is_empty() {
             return Ok(system.leave(&system.initial_state(), &cells));
         }
-        let done = former.as_ref();
-        let done = done.map_or(self.finished.len(), |former| former.progress.steps.len());
-        let plan = self.plan(&system, steps.end - done, former.as_ref())?;
+        let left = steps.end - self.done(former.as_ref());
+        let plan = self.plan(&system, left, former.as_ref())?;
         if self.finished.is_empty() {
             self.summary.decisions.append(&mut binding.decisions);
             self.decide(&binding);

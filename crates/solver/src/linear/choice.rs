@@ -4,9 +4,10 @@
 use kluft_algebra::{Analysis, LinearFailure, NodeOrder};
 
 use crate::linear::condensed::Condensed;
-use crate::linear::cost::{LinearMethod, Prediction, Unknowns, in_solid, iterative, predict};
+use crate::linear::cost::{Prediction, Unknowns, in_solid, iterative, predict};
 use crate::linear::direct::Direct;
 use crate::linear::iterative::Iterative;
+use crate::linear::method::LinearMethod;
 use crate::linear::tangent_solver::TangentSolver;
 use crate::linear::workload::Workload;
 use crate::system::System;

@@ -3,11 +3,9 @@
 //! Times are predicted from operations and bytes moved, at fixed rates of an ordinary machine, so
 //! the predictions are the same everywhere; only their ratios matter.
 
-use std::fmt;
-use std::str::FromStr;
-
 use kluft_algebra::{Analysis, ScalarCholesky};
 
+use crate::linear::method::LinearMethod;
 use crate::linear::workload::Workload;
 use crate::space::pattern::Pattern;
 use crate::space::sector_nodes::SectorNodes;
@@ -25,46 +23,6 @@ const SOLID: f64 = 18.0;
 const QUICK: f64 = 0.05;
 /// Weight of so short a time.
 const NEGLIGIBLE: f64 = 1e-3;
-/// The linear solvers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LinearMethod {
-    /// Cholesky factorisation of the whole tangent, whenever it changes.
-    Direct,
-    /// Cholesky factorisation of the rock, once; what changes is solved for the jumps alone.
-    Condensed,
-    /// Conjugate gradients, preconditioned by a multigrid of rock and fractures; the part of the
-    /// rock is set up once.
-    Iterative,
-}
-
-impl LinearMethod {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Direct, Self::Condensed, Self::Iterative];
-
-    /// Its name in scenes and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Direct => "direct",
-            Self::Condensed => "condensed",
-            Self::Iterative => "iterative",
-        }
-    }
-}
-
-impl fmt::Display for LinearMethod {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.name())
-    }
-}
-
-impl FromStr for LinearMethod {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|method| method.name() == name);
-        found.ok_or_else(|| format!("there is no solver `{name}`"))
-    }
-}
 
 /// What there is to solve for.
 #[derive(Debug, Clone, Copy)]
@@ -176,9 +134,9 @@ pub(super) fn predict(
     Prediction {
         method,
         seconds: seconds + if stands { 0.0 } else { analyse },
-        memory_bytes: workload
-            .extra
-            .with(analysis.memory_bytes() + extra as usize + workload.flow_bytes(unknowns)),
+        memory_bytes: workload.extra.with(
+            analysis.memory_bytes() + extra as usize + workload.flow_bytes(unknowns.points.len()),
+        ),
         factor_entries: analysis.factor_entries(),
         operations: analysis.factor_operations(),
     }
@@ -199,7 +157,7 @@ pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Predictio
         seconds: blocks * (set_up + workload.iterations() * ITERATION_BYTES) / BYTES,
         memory_bytes: workload.extra.with(
             (blocks * MEMORY_BYTES) as usize
-                + workload.flow_bytes(unknowns)
+                + workload.flow_bytes(unknowns.points.len())
                 + workload.extra.iterative,
         ),
         factor_entries: 0,

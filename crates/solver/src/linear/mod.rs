@@ -10,6 +10,7 @@ mod divided_tests;
 #[cfg(test)]
 pub(crate) mod fractured_tests;
 mod iterative;
+mod method;
 mod moved_points;
 #[cfg(test)]
 mod multigrid_tests;
@@ -21,10 +22,11 @@ mod workload;
 
 pub use choice::Plan;
 pub use condensed::Condensed;
-pub use cost::{LinearMethod, Prediction, Unknowns};
+pub use cost::{Prediction, Unknowns};
 pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
 pub use iterative::{Iterative, first_coarsening, first_guess, serves};
+pub use method::LinearMethod;
 pub use nonsymmetric::NonsymmetricSolver;
 pub(crate) use released::Released;
 pub use tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};

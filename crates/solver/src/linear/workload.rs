@@ -5,7 +5,7 @@ use kluft_mesh::Mesh;
 use lie_core::{FractureLaw, Rock};
 use serde::{Deserialize, Serialize};
 
-use crate::linear::cost::{LinearMethod, Unknowns};
+use crate::linear::method::LinearMethod;
 use crate::problem::Problem;
 use crate::system::System;
 
@@ -110,9 +110,9 @@ impl FlowWorkload {
         Self::FIRST + Self::LATER * (self.increments * steps).saturating_sub(1) as f64
     }
 
-    fn memory_bytes(self, unknowns: Unknowns<'_>) -> usize {
+    fn memory_bytes(self, unknowns: usize) -> usize {
         let vectors = 2.0 * Self::ITERATIONS;
-        let basis = vectors * size_of::<DVec3>() as f64 * unknowns.points.len() as f64;
+        let basis = vectors * size_of::<DVec3>() as f64 * unknowns as f64;
         (basis + Self::BYTES * self.pressures as f64) as usize
     }
 }
@@ -184,7 +184,8 @@ impl Workload {
         self.flow.map_or(1.0, |_| FlowWorkload::ITERATIONS)
     }
 
-    pub(super) fn flow_bytes(self, unknowns: Unknowns<'_>) -> usize {
+    /// Memory of the flow beside so many unknown 3-vectors (bytes).
+    pub(super) fn flow_bytes(self, unknowns: usize) -> usize {
         self.flow.map_or(0, |flow| flow.memory_bytes(unknowns))
     }
 
@@ -221,8 +222,7 @@ impl Workload {
 
     /// Linear iterations of the multigrid for the whole run, of regular cells.
     pub(super) fn iterations(self) -> f64 {
-        /// Iterations of a solve that is not symmetric: half of the scenes with friction take less
-        /// than half of it, one in ten more.
+        /// Iterations of a solve that is not symmetric: most take fewer.
         const UNSYMMETRIC: f64 = 15.0;
         let weight = match self.flow {
             Some(_) => FlowWorkload::DEARER,

@@ -57,8 +57,8 @@ impl Newton {
         })
     }
 
-    /// Puts the linear solver of another plan in the place of the present one, whose memory is given
-    /// back before; the path of the load steps so far stays known.
+    /// Puts the linear solver of another plan in the place of the present one, whose memory is
+    /// given back before; the path of the load steps so far stays known.
     ///
     /// # Errors
     /// If it cannot be prepared.
