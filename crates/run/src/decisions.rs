@@ -121,12 +121,14 @@ pub fn of_other_plan(plan: &Plan, present: LinearMethod, number: usize) -> Strin
 
 /// Which linear solver, and what the others would have cost.
 pub fn of_plan(plan: &Plan, asked: &SolverEntry) -> String {
+    let chosen = plan.prediction();
+    let is_cheapest = plan.predictions.iter().all(|p| p.seconds >= chosen.seconds);
     let why = match asked.linear {
         Some(_) => "as the scene asks",
-        None if plan.method == LinearMethod::Iterative => "the cheapest",
+        None if is_cheapest => "the cheapest",
+        None if plan.method == LinearMethod::Iterative => "that which fits in memory",
         None => "exact and quick enough",
     };
-    let chosen = plan.prediction();
     let others = plan.predictions.iter().filter(|p| p.method != plan.method);
     let others: Vec<String> = others.map(cost).collect();
     let line = format!("linear solver: {why}, predicted {}", cost(chosen));
