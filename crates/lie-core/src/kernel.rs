@@ -179,9 +179,20 @@ pub fn centre(shape: Shape, nodes: &[DVec3]) -> DVec3 {
 /// Displacement gradient `H = sum_a u_a (x) grad N_a` at a point of a cell, and the volume (m^3) of
 /// that point.
 pub fn gradient_at(point: &RulePoint, nodes: &[DVec3], displacement: &[DVec3]) -> (DMat3, f64) {
+    let (inverse, volume) = inverse_jacobian(point, nodes);
+    (gradient(point, inverse, displacement), volume)
+}
+
+/// The inverse of the Jacobian matrix `dx/dxi` (1/m) at a point of a cell, and the volume (m^3) of
+/// that point.
+pub fn inverse_jacobian(point: &RulePoint, nodes: &[DVec3]) -> (DMat3, f64) {
     let jacobian = reference_gradient(point, nodes);
-    let gradient = reference_gradient(point, displacement) * jacobian.inverse();
-    (gradient, point.weight * jacobian.determinant())
+    (jacobian.inverse(), point.weight * jacobian.determinant())
+}
+
+/// Displacement gradient at a point of a cell with this inverse of its Jacobian matrix (1/m).
+pub fn gradient(point: &RulePoint, inverse: DMat3, displacement: &[DVec3]) -> DMat3 {
+    reference_gradient(point, displacement) * inverse
 }
 
 /// `sum_a v_a (x) dN_a/dxi` at a point: of places the Jacobian matrix.

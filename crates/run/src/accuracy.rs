@@ -81,7 +81,7 @@ pub fn of(
     solution: &Solution,
     duals: Option<&Duals>,
 ) -> Accuracy {
-    let error = estimator.stress_error(system, &solution.displacements);
+    let (error, of_duals) = errors(system, estimator, solution, duals);
     let stress_errors = (0..error.of_cell.len()).map(|cell| {
         let modulus = system.problem().rock(cell).young_modulus;
         (modulus * error.of_cell[cell] / error.volumes[cell]).sqrt()
@@ -95,14 +95,46 @@ pub fn of(
             .iter()
             .map(|part| part / error.energy)
             .collect(),
-        jumps: duals.map(|duals| of_all_jumps(estimator, system, duals, solution, &error)),
+        jumps: of_duals.map(|duals| of_all_jumps(estimator, system, &duals, solution, &error)),
     }
+}
+
+/// Errors of the stresses under unit tractions on the walls.
+struct DualErrors {
+    opening: StressError,
+    slip: Option<StressError>,
+}
+
+fn errors(
+    system: &System<'_>,
+    estimator: &Estimator,
+    solution: &Solution,
+    duals: Option<&Duals>,
+) -> (StressError, Option<DualErrors>) {
+    let displacements = &solution.displacements;
+    let Some(Duals { opening, slip }) = duals else {
+        return (estimator.stress_error(system, displacements), None);
+    };
+    let Some(slip) = slip else {
+        let [error, opening] = estimator.stress_error_beside(system, displacements, opening);
+        return (
+            error,
+            Some(DualErrors {
+                opening,
+                slip: None,
+            }),
+        );
+    };
+    let duals = [&opening[..], &slip[..]];
+    let [error, opening, slip] = estimator.stress_error_beside_two(system, displacements, duals);
+    let slip = Some(slip);
+    (error, Some(DualErrors { opening, slip }))
 }
 
 fn of_all_jumps(
     estimator: &Estimator,
     system: &System<'_>,
-    duals: &Duals,
+    duals: &DualErrors,
     solution: &Solution,
     stress: &StressError,
 ) -> JumpAccuracy {
@@ -116,7 +148,7 @@ fn of_all_jumps(
         SAFETY
     };
     let floor = ITERATION * largest(results, |result| result.jump);
-    let mean_error = |dual: &Vec<DVec3>| estimator.mean_error(system, dual, stress);
+    let mean_error = |dual: &StressError| estimator.mean_error(system, dual, stress);
     let opening = mean_error(&duals.opening);
     let slip = duals.slip.as_ref().map(mean_error);
     let mut mean_jump = vec![(0.0, 0.0); system.problem().fractures.len()];

@@ -6,6 +6,7 @@
 //! with `e` and `e_z` the errors of both solutions, the error of the mean jump is `a(e, e_z) / A <=
 //! sum |e|_K |e_z|_K / A`, in energy norms (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
 
+mod deformed;
 mod flux;
 mod nearest_fracture;
 mod patches;
@@ -13,15 +14,16 @@ mod sizes;
 
 use glam::DVec3;
 use kluft_mesh::{Mesh, Shape};
-use lie_core::{FinePoint, SymmetricStress, kernel, recovery_rule};
+use lie_core::{FinePoint, Rock, SymmetricStress, kernel, recovery_rule};
 use rayon::prelude::*;
 
 use crate::newton::Newton;
 use crate::problem::Load;
-use crate::space::cell::{Cell, StrainOffsets, components};
+use crate::space::cell::StrainOffsets;
 use crate::system::System;
+use deformed::{Deformation, DeformedCell};
 use kluft_algebra::{Division, LinearFailure, RowOwnership};
-use patches::Patches;
+use patches::{Patches, Recovered};
 
 pub use flux::FluxError;
 pub use sizes::target_sizes;
@@ -55,6 +57,22 @@ pub struct Estimator {
     patches: Patches,
     /// The fracture nearest to each cell; beyond all numbers where there is none.
     pub nearest_fracture: Vec<u32>,
+}
+
+/// Parts of a cell in the sums of `S` states.
+struct CellErrors<const S: usize> {
+    /// See [`StressError::of_cell`].
+    errors: [f64; S],
+    energies: [f64; S],
+    volume: f64,
+}
+
+/// Displacements (m) of a system's points with what strains its cells beside them.
+fn strained<'a>(system: &'a System<'_>, displacements: &'a [DVec3]) -> Deformation<'a> {
+    Deformation {
+        displacements,
+        offsets: system.strain_offsets(),
+    }
 }
 
 /// Error of the stress of one state.
@@ -133,67 +151,118 @@ impl Estimator {
 
     /// Estimates the error of the stresses of `displacements` (m), one a point. All ranks must ask.
     pub fn stress_error(&self, system: &System<'_>, displacements: &[DVec3]) -> StressError {
-        self.error_beside(system, displacements, system.strain_offsets())
-    }
-
-    fn error_beside(
-        &self,
-        system: &System<'_>,
-        displacements: &[DVec3],
-        offsets: &StrainOffsets,
-    ) -> StressError {
-        let problem = system.problem;
-        let points = &system.discretisation.points;
-        let recovered = self
-            .patches
-            .recover(problem, points, (displacements, offsets));
-        let of_cell = |index: usize| {
-            let first = problem.mesh.cells.range(index).start;
-            let cell = Cell::of(problem, points, displacements, index).strained(offsets, index);
-            let (mut error, mut energy, mut whole) = (0.0, 0.0, 0.0);
-            let at = |fine: &FinePoint| {
-                let (gradient, volume) =
-                    kernel::gradient_at(&fine.point, cell.nodes(), cell.moved());
-                let stress = components(cell.rock.stress(gradient));
-                (stress, volume / fine.point.weight)
-            };
-            let rule = &recovery_rule(cell.shape).fine;
-            let uniform = (cell.shape == Shape::Tet4).then(|| at(&rule[0]));
-            for fine in rule {
-                let place = kernel::position(&fine.point, cell.nodes());
-                let (found, density) = uniform.unwrap_or_else(|| at(fine));
-                let volume = density * fine.point.weight;
-                let smooth = self.patches.stress(&recovered, first, &fine.corners, place);
-                let difference = std::array::from_fn(|i| smooth[i] - found[i]);
-                error += volume * cell.rock.energy_density(&difference);
-                energy += volume * cell.rock.energy_density(&found);
-                whole += volume;
-            }
-            (error, (energy, whole))
-        };
-        let cells = self.division.own().into_par_iter();
-        let (of_cell, others): (Vec<f64>, Vec<(f64, f64)>) = cells.map(of_cell).unzip();
-        let (energies, volumes): (Vec<f64>, Vec<f64>) = others.into_iter().unzip();
-        let mut error = StressError {
-            of_cell: self.division.gathered(of_cell),
-            energy: self.division.gathered(energies).iter().sum(),
-            volumes: self.division.gathered(volumes),
-        };
-        if problem.mesh.has_quarter_points {
-            error.take_over_at_fronts(&problem.mesh);
-        }
+        let [error] = self.errors(system, [strained(system, displacements)]);
         error
     }
 
+    /// The same, and the error of the stresses of the [`dual_solution`] along some directions.
+    pub fn stress_error_beside(
+        &self,
+        system: &System<'_>,
+        displacements: &[DVec3],
+        dual: &[DVec3],
+    ) -> [StressError; 2] {
+        let unstrained = StrainOffsets::default();
+        let dual = Deformation {
+            displacements: dual,
+            offsets: &unstrained,
+        };
+        self.errors(system, [strained(system, displacements), dual])
+    }
+
+    /// The same beside two of them.
+    pub fn stress_error_beside_two(
+        &self,
+        system: &System<'_>,
+        displacements: &[DVec3],
+        duals: [&[DVec3]; 2],
+    ) -> [StressError; 3] {
+        let unstrained = StrainOffsets::default();
+        let [one, other] = duals.map(|displacements| Deformation {
+            displacements,
+            offsets: &unstrained,
+        });
+        self.errors(system, [strained(system, displacements), one, other])
+    }
+
+    fn errors<const S: usize>(
+        &self,
+        system: &System<'_>,
+        deformations: [Deformation<'_>; S],
+    ) -> [StressError; S] {
+        let mesh = &system.problem.mesh;
+        let points = &system.discretisation.points;
+        let deformed = || DeformedCell::of(system.problem, points, deformations);
+        let recovered = self.patches.recover(&mesh.cells, deformed);
+        let cells = self.division.own().into_par_iter();
+        let of_cells: Vec<CellErrors<S>> = cells
+            .map_init(deformed, |deformed, cell| {
+                let rock = system.problem.rock(cell);
+                self.of_cell(&recovered, deformed, (cell, rock))
+            })
+            .collect();
+        let gathered = |of: &dyn Fn(&CellErrors<S>) -> f64| {
+            let own = of_cells.iter().map(of);
+            self.division.gathered(own.collect::<Vec<f64>>())
+        };
+        let volumes = gathered(&|cell| cell.volume);
+        std::array::from_fn(|at| {
+            let mut error = StressError {
+                of_cell: gathered(&|cell| cell.errors[at]),
+                energy: gathered(&|cell| cell.energies[at]).iter().sum(),
+                volumes: volumes.clone(),
+            };
+            if mesh.has_quarter_points {
+                error.take_over_at_fronts(mesh);
+            }
+            error
+        })
+    }
+
+    fn of_cell<const S: usize>(
+        &self,
+        recovered: &Recovered<S>,
+        deformed: &mut DeformedCell<'_, S>,
+        (cell, rock): (usize, &Rock),
+    ) -> CellErrors<S> {
+        let shape = deformed.look_at(cell);
+        let first = deformed.first_slot();
+        let mut sums = CellErrors {
+            errors: [0.0; S],
+            energies: [0.0; S],
+            volume: 0.0,
+        };
+        let at = |fine: &FinePoint| {
+            let (stresses, volume) = deformed.stresses(&fine.point);
+            (stresses, volume / fine.point.weight)
+        };
+        let rule = &recovery_rule(shape).fine;
+        let uniform = (shape == Shape::Tet4).then(|| at(&rule[0]));
+        for fine in rule {
+            let place = kernel::position(&fine.point, deformed.nodes());
+            let (found, density) = uniform.unwrap_or_else(|| at(fine));
+            let volume = density * fine.point.weight;
+            let smooth = self
+                .patches
+                .stresses(recovered, first, &fine.corners, place);
+            for (state, (found, smooth)) in found.iter().zip(&smooth).enumerate() {
+                let difference = std::array::from_fn(|i| smooth[i] - found[i]);
+                sums.errors[state] += volume * rock.energy_density(&difference);
+                sums.energies[state] += volume * rock.energy_density(found);
+            }
+            sums.volume += volume;
+        }
+        sums
+    }
+
     /// Estimates the error of the mean over each fracture of the jump along some directions, given
-    /// the [`dual_solution`] along these.
+    /// the error of the [`dual_solution`] along these.
     pub fn mean_error(
         &self,
         system: &System<'_>,
-        dual: &[DVec3],
+        dual: &StressError,
         stress: &StressError,
     ) -> MeanError {
-        let dual = self.error_beside(system, dual, &StrainOffsets::default());
         let mut areas = vec![0.0; system.problem.fractures.len()];
         for point in &system.discretisation.interface.points {
             areas[point.fracture as usize] += point.area;

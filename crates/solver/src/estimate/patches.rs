@@ -11,9 +11,9 @@ use lie_core::kernel::{self, MAX_NODES};
 use lie_core::{RulePoint, SymmetricStress, recovery_rule};
 use rayon::prelude::*;
 
+use super::deformed::DeformedCell;
 use crate::problem::Problem;
-use crate::space::cell::{self, Cell, StrainOffsets, components};
-use crate::space::sector_nodes::SectorNodes;
+use crate::space::cell::positions;
 use crate::system::Discretisation;
 use kluft_algebra::small::inverse_factor;
 use kluft_algebra::{Lists, RowOwnership};
@@ -52,9 +52,9 @@ pub(super) struct Patches {
 /// No patch.
 const NONE: u32 = u32::MAX;
 
-/// A recovered stress: for each patch the coefficients of each component (Pa), term by term.
-pub(super) struct Recovered {
-    coefficients: Vec<SymmetricStress>,
+/// `S` recovered stresses: for each patch the coefficients of each component (Pa), term by term.
+pub(super) struct Recovered<const S: usize> {
+    coefficients: Vec<[SymmetricStress; S]>,
 }
 
 impl Patches {
@@ -113,10 +113,11 @@ impl Patches {
         patches.frames = middles
             .map(|(patch, middle)| (middle, patches.size(mesh, patch, middle)))
             .collect();
-        patches.samples = patches.sampled(cells, |cell, point| {
-            let mut nodes = [DVec3::ZERO; MAX_NODES];
-            kernel::position(point, cell::positions(mesh, cell, &mut nodes))
-        });
+        patches.samples = patches.sampled(
+            cells,
+            || [DVec3::ZERO; MAX_NODES],
+            |nodes, cell, point| kernel::position(point, positions(mesh, cell, nodes)),
+        );
         patches
     }
 
@@ -161,16 +162,19 @@ impl Patches {
         self.sample_offset[cell]..self.sample_offset[cell + 1]
     }
 
-    /// Values at all samples, cell by cell; zero in cells that no patch is fitted to.
-    fn sampled<T: Send + Clone + Default>(
+    /// Values at all samples, cell by cell, found with a workspace; zero in cells that no patch is
+    /// fitted to.
+    fn sampled<T: Send + Clone + Zero, W>(
         &self,
         cells: &Elements,
-        value: impl Fn(usize, &RulePoint) -> T + Sync,
+        workspace: impl Fn() -> W + Sync,
+        value: impl Fn(&mut W, usize, &RulePoint) -> T + Sync,
     ) -> Vec<T> {
-        let mut values = vec![T::default(); self.sample_offset[cells.len()]];
+        let mut values = vec![T::ZERO; self.sample_offset[cells.len()]];
         let tasks = RowOwnership::even(cells.len(), CELLS_PER_TASK);
         let shares = tasks.split(&mut values, &self.sample_offset);
         shares.into_par_iter().for_each(|(owned, mut rest)| {
+            let mut workspace = workspace();
             for cell in owned {
                 let samples = &recovery_rule(cells.shapes[cell]).samples;
                 let (own, tail) = rest.split_at_mut(samples.len());
@@ -179,7 +183,7 @@ impl Patches {
                     continue;
                 }
                 for (target, sample) in own.iter_mut().zip(samples) {
-                    *target = value(cell, sample);
+                    *target = value(&mut workspace, cell, sample);
                 }
             }
         });
@@ -196,27 +200,26 @@ impl Patches {
         distance.fold(0.0, f64::max)
     }
 
-    /// Fits a polynomial to the stresses of `displacements` in every patch.
-    pub(super) fn recover(
+    /// Fits polynomials to the stresses of cells, which each task looks at by one of `deformed`, in
+    /// every patch.
+    pub(super) fn recover<'a, const S: usize>(
         &self,
-        problem: &Problem,
-        points: &SectorNodes,
-        (displacements, offsets): (&[DVec3], &StrainOffsets),
-    ) -> Recovered {
-        let cells = &problem.mesh.cells;
-        let stresses = self.sampled(cells, |index, sample| {
-            let cell = Cell::of(problem, points, displacements, index).strained(offsets, index);
-            let (gradient, _) = kernel::gradient_at(sample, cell.nodes(), cell.moved());
-            components(cell.rock.stress(gradient))
+        cells: &Elements,
+        deformed: impl Fn() -> DeformedCell<'a, S> + Sync,
+    ) -> Recovered<S> {
+        let stresses = self.sampled(cells, deformed, |deformed, cell, sample| {
+            deformed.look_at(cell);
+            deformed.stresses(sample).0
         });
-        let mut coefficients = vec![[0.0; 6]; self.terms * self.len()];
+        let mut coefficients = vec![[[0.0; 6]; S]; self.terms * self.len()];
         let patches = coefficients.par_chunks_mut(self.terms).enumerate();
         let fitted = patches.filter(|(patch, _)| self.is_fitted[*patch]);
         fitted.for_each(|(patch, coefficients)| match self.terms {
             QUADRATIC => {
-                coefficients.copy_from_slice(&self.fit::<QUADRATIC>(cells, &stresses, patch));
+                let fit = self.fit::<QUADRATIC, S>(cells, &stresses, patch);
+                coefficients.copy_from_slice(&fit);
             }
-            _ => coefficients.copy_from_slice(&self.fit::<LINEAR>(cells, &stresses, patch)),
+            _ => coefficients.copy_from_slice(&self.fit::<LINEAR, S>(cells, &stresses, patch)),
         });
         Recovered { coefficients }
     }
@@ -246,14 +249,14 @@ impl Patches {
         (around, terms.unwrap_or(1))
     }
 
-    fn fit<const TERMS: usize>(
+    fn fit<const TERMS: usize, const S: usize>(
         &self,
         cells: &Elements,
-        stresses: &[SymmetricStress],
+        stresses: &[[SymmetricStress; S]],
         patch: usize,
-    ) -> [[f64; 6]; TERMS] {
+    ) -> [[SymmetricStress; S]; TERMS] {
         let mut normal = [[0.0; TERMS]; TERMS];
-        let mut right = [[0.0; 6]; TERMS];
+        let mut right = [[[0.0; 6]; S]; TERMS];
         let (around, used) = self.around(cells, patch);
         for sample in around.into_iter().flat_map(|cell| self.samples_of(cell)) {
             let terms = self.terms(patch, self.samples[sample]);
@@ -270,33 +273,45 @@ impl Patches {
     }
 
     /// `1, x, y, z, x^2, y^2, z^2, xy, yz, xz` in the frame of a patch.
+    #[inline]
     fn terms(&self, patch: usize, place: DVec3) -> [f64; QUADRATIC] {
         let (middle, size) = self.frames[patch];
         let DVec3 { x, y, z } = (place - middle) / size;
         [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z]
     }
 
-    /// Recovered stress (Pa) at a place in the cell whose first slot is `first`: the polynomials of
-    /// its corners, blended by the linear shape functions `shares`.
-    pub(super) fn stress(
+    /// Recovered stresses (Pa) at a place in the cell whose first slot is `first`: the polynomials
+    /// of its corners, blended by the linear shape functions `shares`.
+    pub(super) fn stresses<const S: usize>(
         &self,
-        recovered: &Recovered,
+        recovered: &Recovered<S>,
         first: usize,
         shares: &[f64],
         place: DVec3,
-    ) -> SymmetricStress {
-        let mut stress = [0.0; 6];
+    ) -> [SymmetricStress; S] {
+        let mut stresses = [[0.0; 6]; S];
         for (local, share) in shares.iter().enumerate() {
             let patch = self.of_slot[first + local] as usize;
             let coefficients = &recovered.coefficients[self.terms * patch..][..self.terms];
             for (term, coefficients) in self.terms(patch, place).iter().zip(coefficients) {
-                for (sum, coefficient) in stress.iter_mut().zip(coefficients) {
-                    *sum += share * term * coefficient;
-                }
+                add(&mut stresses, share * term, coefficients);
             }
         }
-        stress
+        stresses
     }
+}
+
+/// Values at samples of which nothing is known.
+trait Zero {
+    const ZERO: Self;
+}
+
+impl Zero for DVec3 {
+    const ZERO: Self = Self::ZERO;
+}
+
+impl<const S: usize> Zero for [SymmetricStress; S] {
+    const ZERO: Self = [[0.0; 6]; S];
 }
 
 /// Number of terms of polynomials on these cells.
@@ -319,13 +334,13 @@ fn sample_offset(cells: &Elements) -> Vec<usize> {
 
 /// `A c = b` for positive semidefinite `A`, given by its lower triangle, with zeros for terms that
 /// depend on those before them.
-fn solve<const TERMS: usize>(
+fn solve<const TERMS: usize, const S: usize>(
     normal: &[[f64; TERMS]; TERMS],
-    right: &[[f64; 6]; TERMS],
-) -> [[f64; 6]; TERMS] {
+    right: &[[SymmetricStress; S]; TERMS],
+) -> [[SymmetricStress; S]; TERMS] {
     let (inverse, _) = inverse_factor(normal, DEPENDENT);
-    let mut half = [[0.0; 6]; TERMS];
-    let mut solution = [[0.0; 6]; TERMS];
+    let mut half = [[[0.0; 6]; S]; TERMS];
+    let mut solution = [[[0.0; 6]; S]; TERMS];
     for i in 0..TERMS {
         for j in 0..=i {
             add(&mut half[i], inverse[i][j], &right[j]);
@@ -339,8 +354,10 @@ fn solve<const TERMS: usize>(
     solution
 }
 
-fn add(sum: &mut [f64; 6], factor: f64, terms: &[f64; 6]) {
-    for (sum, term) in sum.iter_mut().zip(terms) {
+#[inline]
+fn add<const S: usize>(sum: &mut [SymmetricStress; S], factor: f64, terms: &[SymmetricStress; S]) {
+    let sum = sum.as_flattened_mut().iter_mut();
+    for (sum, term) in sum.zip(terms.as_flattened()) {
         *sum += factor * term;
     }
 }

@@ -20,7 +20,7 @@ const BYTES: f64 = 2e10;
 /// Cholesky factors of solid bodies take about this times the square of the unknowns (operations).
 const SOLID: f64 = 18.0;
 /// Time below which a direct solver is taken even if the iterative one is faster (s).
-const QUICK: f64 = 0.05;
+const QUICK: f64 = 0.1;
 /// Weight of so short a time.
 const NEGLIGIBLE: f64 = 1e-3;
 
