@@ -22,7 +22,12 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Acc
         let errors = accuracy.stress_errors.iter();
         real_field("stress_error", errors.map(|&error| [error]))
     });
-    let principals: Vec<[f64; 3]> = solution.stresses.par_iter().map(principal).collect();
+    let stresses = || real_field("stress", solution.stresses.iter().copied());
+    let principals = || {
+        let principals: Vec<[f64; 3]> = solution.stresses.par_iter().map(principal).collect();
+        real_field("principal_stress", principals.into_iter())
+    };
+    let (stresses, principals) = rayon::join(stresses, principals);
     let mut grid = Grid {
         points: points
             .node
@@ -36,11 +41,7 @@ pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Acc
             .into_iter()
             .chain(tags(mesh, &points.node))
             .collect(),
-        cell_fields: vec![
-            real_field("stress", solution.stresses.iter().copied()),
-            real_field("principal_stress", principals.into_iter()),
-            integer_field("rock", rocks),
-        ],
+        cell_fields: vec![stresses, principals, integer_field("rock", rocks)],
     };
     grid.cell_fields.extend(errors);
     grid

@@ -142,10 +142,14 @@ impl Estimator {
         let ranks = communicator.size();
         let starts = (0..=ranks).map(|rank| rank * cells / ranks);
         let division = communicator.divide(RowOwnership::of_starts(starts.collect()));
+        let (patches, nearest_fracture) = rayon::join(
+            || Patches::of(system.problem, &system.discretisation, division.own()),
+            || nearest_fracture::nearest_fracture(&system.problem.mesh),
+        );
         Self {
-            patches: Patches::of(system.problem, &system.discretisation, division.own()),
             division,
-            nearest_fracture: nearest_fracture::nearest_fracture(&system.problem.mesh),
+            patches,
+            nearest_fracture,
         }
     }
 

@@ -65,22 +65,20 @@ impl Patches {
         discretisation: &Discretisation,
         wanted: Range<usize>,
     ) -> Self {
-        let Discretisation {
-            points, pattern, ..
-        } = discretisation;
+        let of_cell_node = &discretisation.points.of_cell_node;
         let mesh = &problem.mesh;
         let cells = &mesh.cells;
-        let materials = problem.material_of_cell();
-        let mut corners: Vec<(u64, u32)> = Vec::with_capacity(4 * cells.len());
-        for (cell, &material) in materials.iter().enumerate() {
+        let materials = problem.material_of_cell().par_iter().enumerate();
+        // Point and rock, slot and cell.
+        let corners = materials.flat_map_iter(|(cell, &material)| {
             let rock = u64::from(material);
             let count = cells.shapes[cell].corner_count();
-            let keys = cells.range(cell).take(count).map(|slot| {
-                let point = u64::from(points.of_cell_node[slot]);
-                (point << 32 | rock, slot as u32)
-            });
-            corners.extend(keys);
-        }
+            cells.range(cell).take(count).map(move |slot| {
+                let point = u64::from(of_cell_node[slot]);
+                (point << 32 | rock, slot as u32, cell as u32)
+            })
+        });
+        let mut corners: Vec<(u64, u32, u32)> = corners.collect();
         corners.par_sort_unstable();
         let mut of_slot = vec![NONE; cells.nodes.len()];
         let mut around = Lists {
@@ -89,10 +87,9 @@ impl Patches {
         };
         let mut middles = Vec::new();
         for (patch, group) in corners.chunk_by(|a, b| a.0 == b.0).enumerate() {
-            for &(_, slot) in group {
+            for &(_, slot, cell) in group {
                 of_slot[slot as usize] = patch as u32;
-                let (cell, _) = pattern.cell_of_slot.locate(slot, cells);
-                around.entries.push(cell as u32);
+                around.entries.push(cell);
             }
             around.offset.push(around.entries.len());
             let middle = cells.nodes[group[0].1 as usize];
