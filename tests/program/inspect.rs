@@ -153,7 +153,7 @@ fn a_t_is_found_with_its_roles_and_blocks() {
 /// The counts of an inspection are those of the run.
 #[test]
 fn the_unknowns_are_those_of_the_run() {
-    let workshop = Workshop::new("three-planes", &[]);
+    let workshop = Workshop::new("three-planes", &[("h = 0.15", "h = 0.3")]);
     let report = report(&workshop);
     let said = summary(&workshop.solve("out", &[]));
     assert_eq!(report["unknowns"]["total"], said["unknowns"]["total"]);
