@@ -76,9 +76,13 @@ impl Run<'_> {
         self.choice.why.push(why);
     }
 
+    /// What all load steps of a system ask for. Until the last of them a solver stands beside the
+    /// estimate.
     fn workload(&self, system: &System<'_>) -> Workload {
         let settings = newton_settings(&self.request.scene.solver);
-        Workload::of_system(system, settings.time)
+        let points = system.discretisation().points().len();
+        let workload = Workload::of_system(system, settings.time);
+        workload.with_extra_memory(&system.problem().mesh, points)
     }
 
     fn plan_within(
@@ -88,8 +92,6 @@ impl Run<'_> {
         forced: Option<LinearMethod>,
     ) -> Result<Plan, LinearFailure> {
         let limit = self.choice.memory;
-        let points = system.discretisation().points().len();
-        let workload = workload.with_extra_memory(&system.problem().mesh, points);
         let unknowns = system.discretisation().into();
         self.stage(Stage::ChooseSolver, |_| {
             Plan::of(unknowns, workload, forced, limit)
