@@ -6,8 +6,8 @@ use glam::{DMat3, DVec3};
 use kluft_mesh::Shape;
 use kluft_mesh::structured::{Patch, cells_of};
 use kluft_solver::{
-    Discretisation, Estimator, Newton, NewtonSettings, Problem, System, dual_solution, norm,
-    solution, unobserved,
+    Deformation, Discretisation, Estimator, Newton, NewtonSettings, Problem, System, dual_solution,
+    norm, solution, unobserved,
 };
 use lie_core::{ClosureKind, Orthotropy, Rock, kernel, recovery_rule};
 
@@ -136,8 +136,11 @@ fn the_error_at_a_crack_front_is_met() {
     let normals: Vec<DVec3> = points.iter().map(|point| point.normal).collect();
     let dual = dual_solution(&system, &mut newton, &normals).expect("solved");
     let estimator = Estimator::of(&system);
-    let displacements = &found.displacements;
-    let [stress, of_dual] = estimator.stress_error_beside(&system, displacements, &dual);
+    let states = [
+        Deformation::of(&system, &found.displacements),
+        Deformation::of_dual(&dual),
+    ];
+    let [stress, of_dual] = estimator.stress_errors(&system, states);
     let effectivity = (stress.of_cell.iter().sum::<f64>() / (pressure * missing)).sqrt();
     assert!((0.5..2.0).contains(&effectivity), "{effectivity}");
 

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use kluft_solver::{
-    Estimator, FacetResult, MeanError, Newton, Solution, StressError, System, dual_solution,
+    Deformation, Estimator, FacetResult, MeanError, Newton, Solution, StressError, System,
+    dual_solution,
 };
 
 use crate::summary::FractureSummary;
@@ -111,23 +112,25 @@ fn errors(
     solution: &Solution,
     duals: Option<&Duals>,
 ) -> (StressError, Option<DualErrors>) {
-    let displacements = &solution.displacements;
     let Some(Duals { opening, slip }) = duals else {
-        return (estimator.stress_error(system, displacements), None);
-    };
-    let Some(slip) = slip else {
-        let [error, opening] = estimator.stress_error_beside(system, displacements, opening);
         return (
-            error,
-            Some(DualErrors {
-                opening,
-                slip: None,
-            }),
+            estimator.stress_error(system, &solution.displacements),
+            None,
         );
     };
-    let duals = [&opening[..], &slip[..]];
-    let [error, opening, slip] = estimator.stress_error_beside_two(system, displacements, duals);
-    let slip = Some(slip);
+    let state = Deformation::of(system, &solution.displacements);
+    let opening = Deformation::of_dual(opening);
+    let (error, opening, slip) = match slip {
+        None => {
+            let [error, opening] = estimator.stress_errors(system, [state, opening]);
+            (error, opening, None)
+        }
+        Some(slip) => {
+            let all = [state, opening, Deformation::of_dual(slip)];
+            let [error, opening, slip] = estimator.stress_errors(system, all);
+            (error, opening, Some(slip))
+        }
+    };
     (error, Some(DualErrors { opening, slip }))
 }
 

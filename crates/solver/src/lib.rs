@@ -43,7 +43,9 @@ mod system;
 pub use assembly::facet_point::FacetPoint;
 pub use assembly::interface::Interface;
 pub use assembly::loads::{CaseLoads, Loads};
-pub use estimate::{Estimator, FluxError, MeanError, StressError, dual_solution, target_sizes};
+pub use estimate::{
+    Deformation, Estimator, FluxError, MeanError, StressError, dual_solution, target_sizes,
+};
 pub use flow::{
     ConditionFlow, Coupling, EquivalentPermeability, FlowBalance, FlowFields, FlowNetwork,
     FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor, TimeStep,

@@ -8,12 +8,31 @@ use lie_core::{RulePoint, SymmetricStress};
 use crate::problem::Problem;
 use crate::space::cell::{StrainOffsets, components, positions};
 use crate::space::sector_nodes::SectorNodes;
+use crate::system::System;
 
 /// Displacements of the points (m), and what strains cells beside them.
 #[derive(Clone, Copy)]
-pub(super) struct Deformation<'a> {
-    pub(super) displacements: &'a [DVec3],
-    pub(super) offsets: &'a StrainOffsets,
+pub struct Deformation<'a> {
+    displacements: &'a [DVec3],
+    offsets: Option<&'a StrainOffsets>,
+}
+
+impl<'a> Deformation<'a> {
+    /// That of a state of a system.
+    pub fn of(system: &'a System<'_>, displacements: &'a [DVec3]) -> Self {
+        Self {
+            displacements,
+            offsets: Some(system.strain_offsets()),
+        }
+    }
+
+    /// That of a [`dual_solution`](super::dual_solution).
+    pub fn of_dual(displacements: &'a [DVec3]) -> Self {
+        Self {
+            displacements,
+            offsets: None,
+        }
+    }
 }
 
 /// A mesh under `S` deformations, looked at cell by cell.
@@ -55,9 +74,8 @@ impl<'a, const S: usize> DeformedCell<'a, S> {
                 for (moved, slot) in moved.iter_mut().zip(slots.clone()) {
                     *moved = of.displacements[self.points.of_cell_node[slot] as usize];
                 }
-                let offsets = of.offsets.0.get(&(cell as u32));
-                for (moved, offset) in moved.iter_mut().zip(offsets.into_iter().flatten()) {
-                    *moved += *offset;
+                if let Some(offsets) = of.offsets {
+                    offsets.add_to(moved, cell);
                 }
             }
         }

@@ -19,12 +19,12 @@ use rayon::prelude::*;
 
 use crate::newton::Newton;
 use crate::problem::Load;
-use crate::space::cell::StrainOffsets;
 use crate::system::System;
-use deformed::{Deformation, DeformedCell};
+use deformed::DeformedCell;
 use kluft_algebra::{Division, LinearFailure, RowOwnership};
 use patches::{Patches, Recovered};
 
+pub use deformed::Deformation;
 pub use flux::FluxError;
 pub use sizes::target_sizes;
 
@@ -65,14 +65,6 @@ struct CellErrors<const S: usize> {
     errors: [f64; S],
     energies: [f64; S],
     volume: f64,
-}
-
-/// Displacements (m) of a system's points with what strains its cells beside them.
-fn strained<'a>(system: &'a System<'_>, displacements: &'a [DVec3]) -> Deformation<'a> {
-    Deformation {
-        displacements,
-        offsets: system.strain_offsets(),
-    }
 }
 
 /// Error of the stress of one state.
@@ -155,41 +147,12 @@ impl Estimator {
 
     /// Estimates the error of the stresses of `displacements` (m), one a point. All ranks must ask.
     pub fn stress_error(&self, system: &System<'_>, displacements: &[DVec3]) -> StressError {
-        let [error] = self.errors(system, [strained(system, displacements)]);
+        let [error] = self.stress_errors(system, [Deformation::of(system, displacements)]);
         error
     }
 
-    /// The same, and the error of the stresses of the [`dual_solution`] along some directions.
-    pub fn stress_error_beside(
-        &self,
-        system: &System<'_>,
-        displacements: &[DVec3],
-        dual: &[DVec3],
-    ) -> [StressError; 2] {
-        let unstrained = StrainOffsets::default();
-        let dual = Deformation {
-            displacements: dual,
-            offsets: &unstrained,
-        };
-        self.errors(system, [strained(system, displacements), dual])
-    }
-
-    /// The same beside two of them.
-    pub fn stress_error_beside_two(
-        &self,
-        system: &System<'_>,
-        displacements: &[DVec3],
-        duals: [&[DVec3]; 2],
-    ) -> [StressError; 3] {
-        let unstrained = StrainOffsets::default();
-        let [one, other] = duals.map(|displacements| Deformation {
-            displacements,
-            offsets: &unstrained,
-        });
-        self.errors(system, [strained(system, displacements), one, other])
-    }
-
-    fn errors<const S: usize>(
+    /// The same for several deformations at once. All ranks must ask.
+    pub fn stress_errors<const S: usize>(
         &self,
         system: &System<'_>,
         deformations: [Deformation<'_>; S],

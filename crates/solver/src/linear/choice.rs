@@ -12,9 +12,6 @@ use crate::linear::tangent_solver::TangentSolver;
 use crate::linear::workload::Workload;
 use crate::system::System;
 
-/// A direct solver is not even analysed if in a solid body it would lose by this factor: to analyse
-/// it takes as long as many iterations.
-const BEATEN: f64 = 1.0;
 /// Predictions of two solvers may be wrong by this factor against each other.
 const UNCERTAIN: f64 = 1.5;
 /// Where the iterative solver gives up, a direct one is hopeless if in a solid body it would take
@@ -46,12 +43,13 @@ impl Plan {
     ) -> Result<Self, LinearFailure> {
         let iterative = iterative(unknowns, workload);
         let is_wanted = |method| forced.is_none_or(|forced| forced == method);
-        let limit = BEATEN * iterative.seconds;
         let analysed = [LinearMethod::Direct, LinearMethod::Condensed];
         let analysed = analysed.into_iter().filter(|&method| match forced {
             Some(forced) => forced == method,
+            // To analyse one that would lose in a solid body takes as long as many iterations.
             None => {
-                workload.present == Some(method) || in_solid(unknowns, workload, method) < limit
+                let in_solid = in_solid(unknowns, workload, method);
+                workload.present == Some(method) || in_solid < iterative.seconds
             }
         });
         let analysed: Vec<LinearMethod> = analysed.collect();

@@ -15,6 +15,16 @@ use crate::space::sector_nodes::SectorNodes;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StrainOffsets(pub(crate) BTreeMap<u32, Vec<DVec3>>);
 
+impl StrainOffsets {
+    /// Adds those of a cell to the displacements of its nodes (m).
+    pub(crate) fn add_to(&self, moved: &mut [DVec3], cell: usize) {
+        let own = self.0.get(&(cell as u32)).into_iter().flatten();
+        for (moved, offset) in moved.iter_mut().zip(own) {
+            *moved += *offset;
+        }
+    }
+}
+
 /// Nodes and displacements of one cell.
 pub(crate) struct Cell<'a> {
     pub(crate) shape: Shape,
@@ -49,10 +59,7 @@ impl<'a> Cell<'a> {
 
     /// The same, with the displacements that strain it.
     pub(crate) fn strained(mut self, offsets: &StrainOffsets, cell: usize) -> Self {
-        let own = offsets.0.get(&(cell as u32)).into_iter().flatten();
-        for (moved, offset) in self.moved.iter_mut().zip(own) {
-            *moved += *offset;
-        }
+        offsets.add_to(&mut self.moved, cell);
         self
     }
 
