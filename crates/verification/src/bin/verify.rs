@@ -71,6 +71,10 @@ struct SoakChoice {
     /// Keep the results in docs/verification although the cases are not the usual ones
     #[arg(long, conflicts_with = "quick")]
     keep: bool,
+    /// Add to the cases of the random materials that former calls with this option have kept in
+    /// docs/verification, without running them again
+    #[arg(long, conflicts_with_all = ["quick", "keep"])]
+    add: bool,
     /// One case by its number, or the first of several
     #[arg(long, value_name = "NUMBER")]
     case: Option<usize>,
@@ -122,7 +126,7 @@ fn write(report: &Report, choice: &Choice) -> Result<(), Box<dyn Error>> {
 fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
     let report = soak::report();
     let is_usual = choice.cases().is_none() && choice.minutes.is_none();
-    let is_other = !is_usual && !choice.keep;
+    let is_other = !is_usual && !choice.keep && !choice.add;
     let (effort, folder) = target(choice.quick || is_other);
     let mut asked = Asked::of(effort);
     asked.seed = choice.seed;
@@ -131,6 +135,7 @@ fn write_soak(choice: &SoakChoice) -> Result<(), Box<dyn Error>> {
         .minutes
         .map(|count| Duration::from_secs(60 * u64::from(count)));
     asked.until = time.map(|time| Instant::now() + time);
+    asked.records = choice.add.then(|| folder.join(report.name));
     asked.program = choice.program.clone().unwrap_or(asked.program);
     report.chosen(&choice.only)?;
     let is_chosen = |name: &str| choice.only.is_empty() || choice.only.iter().any(|n| n == name);

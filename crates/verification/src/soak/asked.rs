@@ -1,13 +1,16 @@
 //! What is asked of a suite, and how its cases are run.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
+use super::records::{self, Verdicts};
+use super::tally::Verdict;
 use crate::report::Effort;
 use crate::root;
 
@@ -22,6 +25,8 @@ pub struct Asked {
     pub cases: Option<Range<usize>>,
     /// When no more cases are begun.
     pub until: Option<Instant>,
+    /// The folder where verdicts are kept that count too, and whose cases are not run again.
+    pub records: Option<PathBuf>,
     /// The program that is run, killed and starved.
     pub program: PathBuf,
 }
@@ -36,6 +41,7 @@ impl Asked {
             seed: 1,
             cases: None,
             until: None,
+            records: None,
             program: here.with_file_name(name),
         }
     }
@@ -52,23 +58,73 @@ impl Asked {
         full: usize,
         run: impl Fn(usize) -> T + Sync,
     ) -> Vec<T> {
+        let cases: Vec<usize> = self.wanted(quick, full).collect();
+        let done = self.each_of(&cases, run).into_iter();
+        done.map(|(_, result)| result).collect()
+    }
+
+    /// Like [`Self::each`]; cases with a verdict in [`Self::records`] are not run, and all that are
+    /// kept there count.
+    ///
+    /// # Panics
+    /// If a case does, or records cannot be read or written.
+    pub fn verdicts(
+        &self,
+        suite: &str,
+        [quick, full]: [usize; 2],
+        run: impl Fn(usize) -> Verdict + Sync,
+    ) -> Vec<Verdict> {
+        let Some(folder) = &self.records else {
+            return self.each(quick, full, run);
+        };
+        let file = folder.join(format!("{suite}-seed-{}.jsonl", self.seed));
+        let sound = |done: io::Result<()>| {
+            done.unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        };
+        let mut kept = Verdicts::new();
+        sound(records::read(&file).map(|verdicts| kept = verdicts));
+        let is_new = |case: &usize| !kept.contains_key(case);
+        let cases: Vec<usize> = self.wanted(quick, full).filter(is_new).collect();
+        let unbroken = Mutex::new(());
+        let added = self.each_of(&cases, |case| {
+            let verdict = run(case);
+            let line = unbroken.lock();
+            sound(records::add(&file, case, &verdict));
+            drop(line);
+            verdict
+        });
+        kept.extend(added);
+        sound(records::write(&file, &kept));
+        kept.into_values().collect()
+    }
+
+    /// The cases that are asked for.
+    fn wanted(&self, quick: usize, full: usize) -> Range<usize> {
         let usual = match self.effort {
             Effort::Quick => 0..quick,
             Effort::Full => 0..full,
         };
-        let cases = self.cases.clone().unwrap_or(usual);
-        let next = AtomicUsize::new(cases.start);
+        self.cases.clone().unwrap_or(usual)
+    }
+
+    /// Runs cases; those that there was time for, with what they return.
+    fn each_of<T: Send>(
+        &self,
+        cases: &[usize],
+        run: impl Fn(usize) -> T + Sync,
+    ) -> Vec<(usize, T)> {
+        let next = AtomicUsize::new(0);
         let ended = AtomicUsize::new(0);
         let is_time = || self.until.is_none_or(|until| Instant::now() < until);
-        let counted = |case| {
+        let counted = |&case: &usize| {
             let result = run(case);
             tell_progress(1 + ended.fetch_add(1, Ordering::Relaxed), cases.len());
             (case, result)
         };
         let work = || {
-            let numbers =
+            let places =
                 std::iter::from_fn(|| is_time().then(|| next.fetch_add(1, Ordering::Relaxed)));
-            let own = numbers.take_while(|&case| case < cases.end);
+            let own = places.map_while(|place| cases.get(place));
             own.map(counted).collect::<Vec<_>>()
         };
         let threads = thread::available_parallelism().map_or(1, usize::from);
@@ -79,7 +135,7 @@ impl Asked {
                 .collect()
         });
         done.sort_by_key(|(case, _)| *case);
-        done.into_iter().map(|(_, result)| result).collect()
+        done
     }
 
     /// Keeps an input of a case that did not hold in `target/verification/soak`; returns its name

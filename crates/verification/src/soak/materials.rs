@@ -111,7 +111,7 @@ impl Case {
 /// Runs the suite.
 pub fn run(asked: &Asked) -> Finding {
     let meshes = Meshes::none();
-    let verdicts = asked.each(3, 1000, |number| {
+    let verdicts = asked.verdicts(STUDY.name, [3, 1000], |number| {
         let case = Case::of(number, asked.seed);
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.expect("a thread");

@@ -17,6 +17,7 @@ pub mod networks;
 mod program;
 pub mod races;
 mod random_stream;
+mod records;
 mod solve;
 mod tally;
 
