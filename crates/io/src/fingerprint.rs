@@ -1,7 +1,7 @@
 //! Sums by which files and texts are known again.
 
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use kluft_mesh::Defect;
@@ -40,9 +40,48 @@ pub fn fingerprint(text: &str) -> Fingerprint {
     XxHash3_128::oneshot(text.as_bytes())
 }
 
+/// A writer that sums up what passes through it.
+pub(crate) struct SumWriter<W> {
+    out: W,
+    sum: XxHash3_128,
+}
+
+impl<W: Write> SumWriter<W> {
+    pub(crate) fn new(out: W) -> Self {
+        let sum = XxHash3_128::new();
+        Self { out, sum }
+    }
+
+    /// The sum of all that was written.
+    pub(crate) fn finish(self) -> Fingerprint {
+        self.sum.finish_128()
+    }
+}
+
+impl<W: Write> Write for SumWriter<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.out.write(bytes)?;
+        self.sum.write(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_written_has_the_sum_of_its_bytes() {
+        let mut out = SumWriter::new(Vec::new());
+        write!(out, "a{}", "b".repeat(9999)).expect("written");
+        let text = format!("a{}", "b".repeat(9999));
+        assert_eq!(out.out, text.as_bytes());
+        assert_eq!(out.finish(), fingerprint(&text));
+    }
 
     #[test]
     fn a_file_has_the_sum_of_its_text() {

@@ -29,5 +29,5 @@ pub use pvd::write_pvd;
 pub use pvtu::write_pvtu;
 pub use vtm::write_vtm;
 pub use vtu::{
-    Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu, write_vtu_with,
+    EncodedGrid, Field, Grid, Values, shape_of_vtk_cell, vtk_cell, vtk_connectivity, write_vtu,
 };

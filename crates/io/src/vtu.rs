@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use crate::about::About;
 use crate::atomic::write_atomically;
+use crate::fingerprint::{Fingerprint, SumWriter};
 use crate::vtu_array::{COMPRESSOR, EncodedArray};
 
 /// Cells or facets with values on their points and on themselves.
@@ -66,34 +67,8 @@ impl Values {
 /// # Panics
 /// When the lengths of the parts of `grid` do not fit together: an error of the caller.
 pub fn write_vtu(path: &Path, grid: Grid) -> Result<(), Defect> {
-    write_vtu_with(path, grid, &About::default())
-}
-
-/// As [`write_vtu`], with what the grid says of itself.
-///
-/// # Errors
-/// If the file cannot be written.
-///
-/// # Panics
-/// As [`write_vtu`].
-pub fn write_vtu_with(path: &Path, grid: Grid, about: &About) -> Result<(), Defect> {
-    check_lengths(&grid);
-    let grid = if grid.shapes.is_empty() {
-        Grid {
-            offsets: vec![0],
-            ..Grid::default()
-        }
-    } else {
-        grid
-    };
-    let encoded = EncodedGrid::of(&grid).map_err(|error| {
-        Defect::new(
-            path.display().to_string(),
-            format!("cannot be encoded: {error}"),
-            "report this as an error of the program, with the scene",
-        )
-    })?;
-    write_atomically(path, |out| encoded.write(out, about))
+    let encoded = EncodedGrid::of(grid, path)?;
+    encoded.write(path, &About::default()).map(drop)
 }
 
 fn check_lengths(grid: &Grid) {
@@ -139,8 +114,8 @@ fn check_fields(fields: &[Field], count: usize) {
     }
 }
 
-/// A grid with its arrays encoded.
-struct EncodedGrid {
+/// A grid with its arrays encoded, ready to be written.
+pub struct EncodedGrid {
     points: usize,
     cells: usize,
     point_data: Vec<EncodedArray>,
@@ -150,7 +125,49 @@ struct EncodedGrid {
 }
 
 impl EncodedGrid {
-    fn of(grid: &Grid) -> io::Result<Self> {
+    /// Encodes a grid for the file `path`, on all threads. One without cells has no points and no
+    /// fields either.
+    ///
+    /// # Errors
+    /// If the compressor refuses.
+    ///
+    /// # Panics
+    /// As [`write_vtu`].
+    pub fn of(grid: Grid, path: &Path) -> Result<Self, Defect> {
+        check_lengths(&grid);
+        let grid = match grid.shapes.is_empty() {
+            true => Grid {
+                offsets: vec![0],
+                ..Grid::default()
+            },
+            false => grid,
+        };
+        Self::encode(&grid).map_err(|error| {
+            Defect::new(
+                path.display().to_string(),
+                format!("cannot be encoded: {error}"),
+                "report this as an error of the program, with the scene",
+            )
+        })
+    }
+
+    /// Writes it as a `.vtu` with what it says of itself, to a temporary name beside `path`, then
+    /// renames. The sum of the file's bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path, about: &About) -> Result<Fingerprint, Defect> {
+        let mut sum = 0;
+        write_atomically(path, |out| {
+            let mut summed = SumWriter::new(out);
+            self.write_into(&mut summed, about)?;
+            sum = summed.finish();
+            Ok(())
+        })?;
+        Ok(sum)
+    }
+
+    fn encode(grid: &Grid) -> io::Result<Self> {
         Ok(Self {
             points: grid.points.len(),
             cells: grid.shapes.len(),
@@ -161,7 +178,7 @@ impl EncodedGrid {
         })
     }
 
-    fn write(&self, out: &mut impl Write, about: &About) -> io::Result<()> {
+    fn write_into(&self, out: &mut impl Write, about: &About) -> io::Result<()> {
         write!(
             out,
             r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="{COMPRESSOR}"><UnstructuredGrid>"#

@@ -103,6 +103,7 @@ impl Rock {
 
     /// Energy density of a stress, `sigma : C^-1 : sigma` (J/m^3), twice what the rock stores:
     /// `((1 + nu) sigma : sigma - nu tr(sigma)^2) / E` in isotropic rock.
+    #[inline]
     pub fn energy_density(&self, stress: &SymmetricStress) -> f64 {
         let [xx, yy, zz, xy, yz, xz] = *stress;
         if let Some(anisotropy) = &self.anisotropy {

@@ -5,6 +5,7 @@ use kluft_solver::{
     Deformation, Estimator, FacetResult, MeanError, Newton, Solution, StressError, System,
     dual_solution,
 };
+use rayon::prelude::*;
 
 use crate::summary::FractureSummary;
 
@@ -83,7 +84,8 @@ pub fn of(
     duals: Option<&Duals>,
 ) -> Accuracy {
     let (error, of_duals) = errors(system, estimator, solution, duals);
-    let stress_errors = (0..error.of_cell.len()).map(|cell| {
+    let cells = (0..error.of_cell.len()).into_par_iter();
+    let stress_errors = cells.map(|cell| {
         let modulus = system.problem().rock(cell).young_modulus;
         (modulus * error.of_cell[cell] / error.volumes[cell]).sqrt()
     });
@@ -93,7 +95,7 @@ pub fn of(
         stress_errors: stress_errors.collect(),
         energy_shares: error
             .of_cell
-            .iter()
+            .par_iter()
             .map(|part| part / error.energy)
             .collect(),
         jumps: of_duals.map(|duals| of_all_jumps(estimator, system, &duals, solution, &error)),
@@ -160,7 +162,7 @@ fn of_all_jumps(
         *sum += point.area * result.jump.length();
         *area += point.area;
     }
-    let of_cell = (0..stress.of_cell.len()).map(|cell| {
+    let of_cell = (0..stress.of_cell.len()).into_par_iter().map(|cell| {
         let fracture = estimator.nearest_fracture[cell] as usize;
         let Some((sum, area)) = mean_jump.get(fracture).filter(|(sum, _)| *sum > 0.0) else {
             return 0.0;

@@ -88,6 +88,7 @@ mod sequence;
 mod set_up;
 mod spread;
 mod stages;
+mod step_files;
 mod step_results;
 mod steps;
 mod strength;

@@ -1,10 +1,11 @@
 //! The folder of the results: grids for ParaView and their collections.
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 
 use kluft_io::{
-    About, ClaimedFolder, Fingerprint, Grid, fingerprint_of, sync_folder, write_pvd, write_pvtu,
-    write_vtm, write_vtu_with,
+    About, ClaimedFolder, EncodedGrid, Fingerprint, Grid, fingerprint_of, sync_folder, write_pvd,
+    write_pvtu, write_vtm,
 };
 use kluft_mesh::Defect;
 use kluft_report::Surface;
@@ -19,6 +20,7 @@ use crate::page::{self, Shown};
 use crate::pieces::Piece;
 use crate::probes;
 use crate::ranks::Ranks;
+use crate::step_files::{names, parts};
 use crate::strength_summary;
 
 /// The collections of the grids of all load steps.
@@ -303,7 +305,8 @@ impl Output {
         })
     }
 
-    /// Writes the grids of one load step with its time for ParaView.
+    /// Writes the grids of one load step with its time for ParaView. While the disk takes them, the
+    /// threads at hand do what there is to do `meanwhile`.
     ///
     /// # Errors
     /// If a file cannot be written.
@@ -312,28 +315,39 @@ impl Output {
         time: f64,
         rock_grid: impl FnOnce() -> Grid + Send,
         fracture_grid: impl FnOnce() -> Grid + Send,
+        meanwhile: impl FnOnce(),
     ) -> Result<(), Defect> {
         if !self.is_kept() {
+            meanwhile();
             return Ok(());
         }
-        let [rock, fractures] = names(self.rock.len() + 1, self.pieces);
+        let names = names(self.rock.len() + 1, self.pieces);
+        let [rock, fractures] = &names;
         self.about.time = Some(time);
         let of_rock = || {
             let grid = rock_grid();
             let body = box_of(&grid.points);
-            (self.write_grid(&rock, grid), body)
+            (self.encoded(rock, grid), body)
         };
         let of_fractures = || {
             let grid = fracture_grid();
             let surface = self.shows.then(|| Surface::of(&grid, &page::fields()));
-            (self.write_grid(&fractures, grid), surface)
+            (self.encoded(fractures, grid), surface)
         };
-        let ((rock_sum, body), (fracture_sum, surface)) = rayon::join(of_rock, of_fractures);
-        let sums = [rock_sum?, fracture_sum?];
+        let ((rock_grid, body), (fracture_grid, surface)) = rayon::join(of_rock, of_fractures);
+        let (rock_grid, fracture_grid) = (rock_grid?, fracture_grid?);
+        let write = || -> Result<StepFiles, Defect> {
+            let sums = [
+                self.write_grid(rock, &rock_grid)?,
+                self.write_grid(fractures, &fracture_grid)?,
+            ];
+            self.publish(rock)?;
+            self.publish(fractures)?;
+            Ok(sums)
+        };
+        let sums = beside(write, meanwhile)?;
         self.shown = surface.map(|surface| Shown { surface, body });
-        self.publish(&rock)?;
-        self.publish(&fractures)?;
-        self.collect(time, [rock, fractures], sums)
+        self.collect(time, names, sums)
     }
 
     /// Lets the collections list the grids of one load step, which are in their places.
@@ -374,7 +388,8 @@ impl Output {
         let mut written = Vec::new();
         for (name, grid) in names.iter().zip(own) {
             let name = &parts(name, self.pieces)[ranks.rank()];
-            written.push(self.write_grid(name, grid));
+            let encoded = self.encoded(name, grid);
+            written.push(encoded.and_then(|grid| self.write_grid(name, &grid)));
         }
         let written: Result<Vec<u128>, Defect> = written.into_iter().collect();
         ranks.agree(written.map_err(|defect| vec![defect]))?;
@@ -419,16 +434,30 @@ impl Output {
             })
     }
 
+    fn encoded(&self, name: &str, grid: Grid) -> Result<EncodedGrid, Defect> {
+        EncodedGrid::of(grid, &self.path(name))
+    }
+
     /// Writes a grid that is not yet published, and sums up its bytes.
-    fn write_grid(&self, name: &str, grid: Grid) -> Result<u128, Defect> {
-        let unfinished = self.unfinished(name);
-        let written = write_vtu_with(&unfinished, grid, &self.about)
-            .and_then(|()| fingerprint_of(&unfinished));
+    fn write_grid(&self, name: &str, grid: &EncodedGrid) -> Result<Fingerprint, Defect> {
+        let written = grid.write(&self.unfinished(name), &self.about);
         written.map_err(|defect| Defect {
             place: self.path(name).display().to_string(),
             ..defect
         })
     }
+}
+
+/// Writes on a thread of its own, if there is one to be had, and does something else meanwhile.
+fn beside<T: Send>(write: impl Fn() -> T + Sync, meanwhile: impl FnOnce()) -> T {
+    std::thread::scope(|scope| {
+        let writing = std::thread::Builder::new().spawn_scoped(scope, &write);
+        meanwhile();
+        match writing {
+            Ok(writing) => writing.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            Err(_) => write(),
+        }
+    })
 }
 
 /// Lowest and highest coordinates.
@@ -457,20 +486,4 @@ fn list<'a>(
     names: impl Iterator<Item = &'a str>,
 ) -> Result<(), Vec<Defect>> {
     folder.list(names).map_err(|defect| vec![defect])
-}
-
-/// Names of the grids of a load step, each in one file or in several pieces.
-fn names(number: usize, pieces: usize) -> [String; 2] {
-    let end = if pieces > 1 { "pvtu" } else { "vtu" };
-    ["rock", "fractures"].map(|kind| format!("{kind}_{number:04}.{end}"))
-}
-
-/// Names of the pieces of a grid; none if it stands in one file.
-fn parts(name: &str, pieces: usize) -> Vec<String> {
-    match name.strip_suffix(".pvtu") {
-        Some(name) => (0..pieces)
-            .map(|piece| format!("{name}_{piece:04}.vtu"))
-            .collect(),
-        None => Vec::new(),
-    }
 }

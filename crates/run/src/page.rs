@@ -10,6 +10,7 @@ mod strength;
 use kluft_chart::Chart;
 use kluft_report::{Frame, Page, Surface};
 use kluft_scene::counted;
+use rayon::prelude::*;
 
 pub use iterations::Iterations;
 pub use strength::StrengthShown;
@@ -150,9 +151,10 @@ impl Told<'_> {
             return;
         };
         let frame = Frame::of(&shown.surface, shown.body);
-        let pictures = FIELDS.iter();
+        let pictures = FIELDS.par_iter();
         let pictures = pictures.filter_map(|(name, title, unit)| frame.picture(name, title, unit));
-        let pictures: Vec<_> = pictures.take(MOST_PICTURES).collect();
+        let mut pictures: Vec<_> = pictures.collect();
+        pictures.truncate(MOST_PICTURES);
         page.heading("Fractures after the last load step");
         page.pictures(&pictures);
         page.remark(&format!(

@@ -188,7 +188,8 @@ impl Run<'_> {
             let mesh = &problem.mesh;
             let rock = || in_plane(mesh, rock_grid(problem));
             let fractures = || in_plane(mesh, fracture_grid(mesh, made, solved));
-            run.output.write_step(step.load.time, rock, fractures)?;
+            run.output
+                .write_step(step.load.time, rock, fractures, || ())?;
             run.write_sources()?;
             let text = run.flow_history.text().as_bytes();
             let write = |path: &Path| write_atomically(path, |out| out.write_all(text));

@@ -53,7 +53,7 @@ impl<'a> Saving<'a> {
     /// # Errors
     /// If a file cannot be written.
     pub fn step(&mut self, time: f64, rock: Grid, fractures: Grid) -> Result<(), Defect> {
-        self.output.write_step(time, || rock, || fractures)
+        self.output.write_step(time, || rock, || fractures, || ())
     }
 
     /// Writes what speaks of the whole run.

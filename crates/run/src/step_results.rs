@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use kluft_io::{Grid, write_atomically};
-use kluft_solver::{Determinacy, Estimator, FacetResult, Solution, determinacy, solution};
+use kluft_solver::{Determinacy, Estimator, FacetResult, Solution, System, determinacy, solution};
 
 use crate::accuracy::{self, Accuracy};
 use crate::doubts;
@@ -63,9 +63,32 @@ impl Run<'_> {
         self.summary.measures.push(energy(accuracy.energy));
         let flow = self.take_flow(system, (&prepared.state, &nodes), prepared.flow)?;
         self.permeability_after_step(system.problem(), prepared.fluid, &nodes)?;
+        self.warn_after_step(system, &solution, &nodes);
+        let written = Written {
+            solution: &solution,
+            nodes: &nodes,
+            accuracy: &accuracy,
+            facets: facets.as_deref(),
+            flow: flow.as_ref(),
+        };
+        let mut parts = None;
+        let has_history = self.output.is_kept() || self.request.keep_results;
+        self.write_grids(prepared, &written, || {
+            parts = has_history.then(|| Parts::of(system, &prepared.state, &solution));
+        })?;
+        self.write_sources()?;
+        self.probe(prepared, (&solution, &nodes), flow.as_ref())?;
+        match parts {
+            Some(parts) => self.write_history(prepared, parts),
+            None => Ok(()),
+        }
+    }
+
+    /// Sums up what is doubtful about the run so far.
+    fn warn_after_step(&mut self, system: &System<'_>, solution: &Solution, nodes: &[FacetResult]) {
         let scene = self.request.scene;
         let (problem, fractures) = (system.problem(), &self.summary.fractures);
-        let of_result = doubts::of_result(scene, problem, &solution, &nodes, fractures);
+        let of_result = doubts::of_result(scene, problem, solution, nodes, fractures);
         let unclear = undetermined::warnings(scene, fractures);
         let jumps = nodes.iter().map(|node| node.jump.length());
         let largest = jumps.fold(0.0, f64::max);
@@ -78,17 +101,6 @@ impl Run<'_> {
         self.summary
             .warnings
             .extend(unresolved.into_iter().flatten());
-        let written = Written {
-            solution: &solution,
-            nodes: &nodes,
-            accuracy: &accuracy,
-            facets: facets.as_deref(),
-            flow: flow.as_ref(),
-        };
-        self.write_grids(prepared, &written)?;
-        self.write_sources()?;
-        self.probe(prepared, (&solution, &nodes), flow.as_ref())?;
-        self.write_history(prepared, &solution)
     }
 
     /// Estimates the error of a load step; of the last one those of the jumps too.
@@ -123,11 +135,13 @@ impl Run<'_> {
         accuracy
     }
 
-    /// Writes the grids of the load step that was solved last.
+    /// Writes the grids of the load step that was solved last; `meanwhile` is done while the disk
+    /// takes them.
     fn write_grids(
         &mut self,
         prepared: &Prepared<'_, '_>,
         written: &Written<'_>,
+        meanwhile: impl FnOnce(),
     ) -> Result<(), Interruption> {
         let system = prepared.system;
         let problem = system.problem();
@@ -151,19 +165,21 @@ impl Run<'_> {
                 in_plane(&problem.mesh, grid)
             };
             if let Some(ranks) = ranks {
+                meanwhile();
                 let piece = Piece::of(system, &(ranks.owner)(), ranks.rank());
                 let grids = [&rock(), &fractures()];
                 return run.output.write_pieces(time, grids, &piece, ranks);
             }
             let of_one = |defect| vec![defect];
             if !run.request.keep_results {
-                let written = run.output.write_step(time, rock, fractures);
+                let written = run.output.write_step(time, rock, fractures, meanwhile);
                 return written.map_err(of_one);
             }
             let (rock, fractures) = rayon::join(rock, fractures);
+            let (of_rock, of_fractures) = (|| rock.clone(), || fractures.clone());
             let written = run
                 .output
-                .write_step(time, || rock.clone(), || fractures.clone());
+                .write_step(time, of_rock, of_fractures, meanwhile);
             run.keep(rock, fractures);
             written.map_err(of_one)
         })?;
@@ -214,15 +230,11 @@ impl Run<'_> {
     fn write_history(
         &mut self,
         prepared: &Prepared<'_, '_>,
-        solution: &Solution,
+        parts: Parts<'_>,
     ) -> Result<(), Interruption> {
-        if !self.output.is_kept() && !self.request.keep_results {
-            return Ok(());
-        }
         let system = prepared.system;
         let number = self.finished.len();
         let last = self.finished.last();
-        let parts = Parts::of(system, &prepared.state, solution);
         self.history.add(&Entry {
             number,
             step: &system.problem().schedule.steps[number - 1],

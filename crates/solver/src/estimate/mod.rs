@@ -6,6 +6,7 @@
 //! with `e` and `e_z` the errors of both solutions, the error of the mean jump is `a(e, e_z) / A <=
 //! sum |e|_K |e_z|_K / A`, in energy norms (R. Becker and R. Rannacher, Acta Numerica 10, 2001).
 
+mod corner_groups;
 mod deformed;
 mod flux;
 mod nearest_fracture;
@@ -136,7 +137,10 @@ impl Estimator {
         let division = communicator.divide(RowOwnership::of_starts(starts.collect()));
         let (patches, nearest_fracture) = rayon::join(
             || Patches::of(system.problem, &system.discretisation, division.own()),
-            || nearest_fracture::nearest_fracture(&system.problem.mesh),
+            || {
+                let pattern = &system.discretisation.pattern;
+                nearest_fracture::nearest_fracture(&system.problem.mesh, pattern)
+            },
         );
         Self {
             division,
@@ -168,8 +172,8 @@ impl Estimator {
                 self.of_cell(&recovered, deformed, (cell, rock))
             })
             .collect();
-        let gathered = |of: &dyn Fn(&CellErrors<S>) -> f64| {
-            let own = of_cells.iter().map(of);
+        let gathered = |of: &(dyn Fn(&CellErrors<S>) -> f64 + Sync)| {
+            let own = of_cells.par_iter().map(of);
             self.division.gathered(own.collect::<Vec<f64>>())
         };
         let volumes = gathered(&|cell| cell.volume);
@@ -201,21 +205,22 @@ impl Estimator {
         };
         let at = |fine: &FinePoint| {
             let (stresses, volume) = deformed.stresses(&fine.point);
-            (stresses, volume / fine.point.weight)
+            let energies = stresses.each_ref().map(|found| rock.energy_density(found));
+            (stresses, energies, volume / fine.point.weight)
         };
         let rule = &recovery_rule(shape).fine;
         let uniform = (shape == Shape::Tet4).then(|| at(&rule[0]));
         for fine in rule {
             let place = kernel::position(&fine.point, deformed.nodes());
-            let (found, density) = uniform.unwrap_or_else(|| at(fine));
+            let (found, energies, density) = uniform.unwrap_or_else(|| at(fine));
             let volume = density * fine.point.weight;
             let smooth = self
                 .patches
                 .stresses(recovered, first, &fine.corners, place);
-            for (state, (found, smooth)) in found.iter().zip(&smooth).enumerate() {
-                let difference = std::array::from_fn(|i| smooth[i] - found[i]);
+            for state in 0..S {
+                let difference = std::array::from_fn(|i| smooth[state][i] - found[state][i]);
                 sums.errors[state] += volume * rock.energy_density(&difference);
-                sums.energies[state] += volume * rock.energy_density(found);
+                sums.energies[state] += volume * energies[state];
             }
             sums.volume += volume;
         }
@@ -234,20 +239,21 @@ impl Estimator {
         for point in &system.discretisation.interface.points {
             areas[point.fracture as usize] += point.area;
         }
+        let parts = stress.of_cell.par_iter().zip(&dual.of_cell);
+        let parts = parts.zip(&self.nearest_fracture);
+        let part = |((e, z), &fracture): ((&f64, &f64), &u32)| {
+            let area = areas.get(fracture as usize);
+            area.map_or(0.0, |area| (e * z).sqrt() / area)
+        };
+        let of_cell: Vec<f64> = parts.map(part).collect();
         let mut of_fracture = vec![0.0; areas.len()];
-        let products = stress.of_cell.iter().zip(&dual.of_cell);
-        let of_cell = products
-            .zip(&self.nearest_fracture)
-            .map(|((e, z), &fracture)| {
-                let Some(area) = areas.get(fracture as usize) else {
-                    return 0.0;
-                };
-                let part = (e * z).sqrt() / area;
-                of_fracture[fracture as usize] += part;
-                part
-            });
+        for (part, &fracture) in of_cell.iter().zip(&self.nearest_fracture) {
+            if let Some(sum) = of_fracture.get_mut(fracture as usize) {
+                *sum += part;
+            }
+        }
         MeanError {
-            of_cell: of_cell.collect(),
+            of_cell,
             of_fracture,
         }
     }

@@ -2,14 +2,14 @@
 
 use kluft_mesh::Mesh;
 
-use kluft_algebra::Lists;
+use crate::space::pattern::Pattern;
 
 /// No fracture.
 const NONE: u32 = u32::MAX;
 
 /// The fracture that the fewest cells lie between it and each cell, the first of several; beyond
 /// all numbers where there is none.
-pub(super) fn nearest_fracture(mesh: &Mesh) -> Vec<u32> {
+pub(super) fn nearest_fracture(mesh: &Mesh, pattern: &Pattern) -> Vec<u32> {
     let facets = &mesh.facets;
     let mut of_node = vec![NONE; mesh.nodes.len()];
     for facet in 0..facets.elements.len() {
@@ -18,11 +18,6 @@ pub(super) fn nearest_fracture(mesh: &Mesh) -> Vec<u32> {
             *own = (*own).min(facets.fracture[facet]);
         }
     }
-    let slots = Lists::group(mesh.cells.nodes.iter().copied(), mesh.nodes.len());
-    let mut cell_of_slot = vec![0; mesh.cells.nodes.len()];
-    for cell in 0..mesh.cells.len() {
-        cell_of_slot[mesh.cells.range(cell)].fill(cell as u32);
-    }
     let mut of_cell = vec![NONE; mesh.cells.len()];
     let mut front: Vec<u32> = (0..mesh.nodes.len() as u32)
         .filter(|&node| of_node[node as usize] != NONE)
@@ -30,8 +25,8 @@ pub(super) fn nearest_fracture(mesh: &Mesh) -> Vec<u32> {
     while !front.is_empty() {
         let mut reached = Vec::new();
         for &node in &front {
-            for &slot in slots.of(node as usize) {
-                let cell = cell_of_slot[slot as usize] as usize;
+            for &slot in pattern.slots.of(node as usize) {
+                let (cell, _) = pattern.cell_of_slot.locate(slot, &mesh.cells);
                 if of_cell[cell] == NONE {
                     of_cell[cell] = of_node[node as usize];
                     reached.push(cell);

@@ -11,6 +11,7 @@ use lie_core::kernel::{self, MAX_NODES};
 use lie_core::{RulePoint, SymmetricStress, recovery_rule};
 use rayon::prelude::*;
 
+use super::corner_groups::CornerGroups;
 use super::deformed::DeformedCell;
 use crate::problem::Problem;
 use crate::space::cell::positions;
@@ -32,7 +33,7 @@ const SAMPLES_PER_TERM: f64 = 1.5;
 
 /// The corner of a cell belongs to one patch.
 pub(super) struct Patches {
-    /// Patch of each corner of the cells, by slot in their flat node list; `NONE` for other nodes.
+    /// See [`CornerGroups::of_slot`].
     pub(super) of_slot: Vec<u32>,
     /// Cells of each patch, ascending.
     cells: Lists,
@@ -50,8 +51,6 @@ pub(super) struct Patches {
 }
 
 /// No patch.
-const NONE: u32 = u32::MAX;
-
 /// `S` recovered stresses: for each patch the coefficients of each component (Pa), term by term.
 pub(super) struct Recovered<const S: usize> {
     coefficients: Vec<[SymmetricStress; S]>,
@@ -65,36 +64,12 @@ impl Patches {
         discretisation: &Discretisation,
         wanted: Range<usize>,
     ) -> Self {
-        let of_cell_node = &discretisation.points.of_cell_node;
-        let mesh = &problem.mesh;
-        let cells = &mesh.cells;
-        let materials = problem.material_of_cell().par_iter().enumerate();
-        // Point and rock, slot and cell.
-        let corners = materials.flat_map_iter(|(cell, &material)| {
-            let rock = u64::from(material);
-            let count = cells.shapes[cell].corner_count();
-            cells.range(cell).take(count).map(move |slot| {
-                let point = u64::from(of_cell_node[slot]);
-                (point << 32 | rock, slot as u32, cell as u32)
-            })
-        });
-        let mut corners: Vec<(u64, u32, u32)> = corners.collect();
-        corners.par_sort_unstable();
-        let mut of_slot = vec![NONE; cells.nodes.len()];
-        let mut around = Lists {
-            offset: vec![0],
-            entries: Vec::with_capacity(corners.len()),
-        };
-        let mut middles = Vec::new();
-        for (patch, group) in corners.chunk_by(|a, b| a.0 == b.0).enumerate() {
-            for &(_, slot, cell) in group {
-                of_slot[slot as usize] = patch as u32;
-                around.entries.push(cell);
-            }
-            around.offset.push(around.entries.len());
-            let middle = cells.nodes[group[0].1 as usize];
-            middles.push(mesh.nodes[middle as usize]);
-        }
+        let (mesh, cells) = (&problem.mesh, &problem.mesh.cells);
+        let CornerGroups {
+            of_slot,
+            cells: around,
+            middles,
+        } = CornerGroups::of(problem, discretisation);
         let mut patches = Self {
             of_slot,
             cells: around,
@@ -256,7 +231,7 @@ impl Patches {
         let mut right = [[[0.0; 6]; S]; TERMS];
         let (around, used) = self.around(cells, patch);
         for sample in around.into_iter().flat_map(|cell| self.samples_of(cell)) {
-            let terms = self.terms(patch, self.samples[sample]);
+            let terms = self.terms_at::<TERMS>(patch, self.samples[sample]);
             for i in 0..TERMS {
                 for j in 0..=i {
                     normal[i][j] += terms[i] * terms[j];
@@ -269,12 +244,13 @@ impl Patches {
         solve(&normal, &right)
     }
 
-    /// `1, x, y, z, x^2, y^2, z^2, xy, yz, xz` in the frame of a patch.
+    /// The first of `1, x, y, z, x^2, y^2, z^2, xy, yz, xz` in the frame of a patch.
     #[inline]
-    fn terms(&self, patch: usize, place: DVec3) -> [f64; QUADRATIC] {
+    fn terms_at<const TERMS: usize>(&self, patch: usize, place: DVec3) -> [f64; TERMS] {
         let (middle, size) = self.frames[patch];
         let DVec3 { x, y, z } = (place - middle) / size;
-        [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z]
+        let all: [f64; QUADRATIC] = [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z];
+        std::array::from_fn(|term| all[term])
     }
 
     /// Recovered stresses (Pa) at a place in the cell whose first slot is `first`: the polynomials
@@ -286,11 +262,26 @@ impl Patches {
         shares: &[f64],
         place: DVec3,
     ) -> [SymmetricStress; S] {
+        match self.terms {
+            QUADRATIC => self.blended::<QUADRATIC, S>(recovered, first, shares, place),
+            _ => self.blended::<LINEAR, S>(recovered, first, shares, place),
+        }
+    }
+
+    #[inline]
+    fn blended<const TERMS: usize, const S: usize>(
+        &self,
+        recovered: &Recovered<S>,
+        first: usize,
+        shares: &[f64],
+        place: DVec3,
+    ) -> [SymmetricStress; S] {
         let mut stresses = [[0.0; 6]; S];
-        for (local, share) in shares.iter().enumerate() {
-            let patch = self.of_slot[first + local] as usize;
-            let coefficients = &recovered.coefficients[self.terms * patch..][..self.terms];
-            for (term, coefficients) in self.terms(patch, place).iter().zip(coefficients) {
+        for (share, &patch) in shares.iter().zip(&self.of_slot[first..]) {
+            let patch = patch as usize;
+            let coefficients = &recovered.coefficients[TERMS * patch..][..TERMS];
+            let terms = self.terms_at::<TERMS>(patch, place);
+            for (term, coefficients) in terms.iter().zip(coefficients) {
                 add(&mut stresses, share * term, coefficients);
             }
         }
