@@ -64,15 +64,17 @@ impl Interface {
             .collect();
         let (nodal, middle): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
         let fractures = problem.fractures.iter();
+        let all = || nodal.iter().chain(&middle).flatten();
+        let (points_count, terms) = (all().count(), all().map(|drawn| drawn.terms.len()).sum());
         let mut interface = Self {
-            points: Vec::new(),
+            points: Vec::with_capacity(points_count),
             laws: fractures.map(|fracture| fracture.law).collect(),
             rules: (0..problem.fractures.len() as u32)
                 .map(|fracture| problem.rule_of(fracture))
                 .collect(),
             term_offset: vec![0],
-            terms: Vec::new(),
-            point_of_term: Vec::new(),
+            terms: Vec::with_capacity(terms),
+            point_of_term: Vec::with_capacity(terms),
             prescribed: Vec::new(),
             unknowns: Vec::new(),
             terms_of_unknown: Lists::default(),

@@ -37,7 +37,7 @@ pub(super) struct Patches {
     pub(super) of_slot: Vec<u32>,
     /// Cells of each patch, ascending.
     cells: Lists,
-    /// Middle (m) and size (m) of each patch.
+    /// Middle (m) and size (m) of each patch, 0 of those that nothing is fitted in.
     frames: Vec<(DVec3, f64)>,
     /// Where the stress of each cell is sampled (m); start of each cell's samples, and their
     /// number.
@@ -82,9 +82,11 @@ impl Patches {
         };
         patches.restrict(cells, wanted);
         let middles = middles.into_par_iter().enumerate();
-        patches.frames = middles
-            .map(|(patch, middle)| (middle, patches.size(mesh, patch, middle)))
-            .collect();
+        let frame = |(patch, middle): (usize, DVec3)| match patches.is_fitted[patch] {
+            true => (middle, patches.size(mesh, patch, middle)),
+            false => (middle, 0.0),
+        };
+        patches.frames = middles.map(frame).collect();
         patches.samples = patches.sampled(
             cells,
             || [DVec3::ZERO; MAX_NODES],

@@ -8,6 +8,8 @@
 //! what drives the flow walk with it. What no division resolves, walls that jump to another place
 //! in an instant, is let be and recorded.
 
+use std::borrow::Cow;
+
 use super::comparison::{Both, Compared, End, Ended};
 use super::free_blocks;
 use super::path_error::{self, Apart};
@@ -97,8 +99,10 @@ struct Reached {
 }
 
 /// How far a load step is solved.
-struct Way {
-    here: Reached,
+struct Way<'a> {
+    here: Cow<'a, State>,
+    /// The share of the step that leads to it.
+    share: f64,
     /// Length of the next substep.
     increment: f64,
     /// The end of the shortest substep beyond here that converged in one increment.
@@ -125,20 +129,18 @@ impl Newton {
         };
         tell_falls(step, state, load);
         let mut way = Way {
-            here: Reached {
-                state: state.clone(),
-                share: 0.0,
-            },
+            here: Cow::Borrowed(state),
+            share: 0.0,
             increment: 1.0,
             coarse: None,
             half: None,
         };
-        while way.here.share < 1.0 {
-            let end = f64::min(way.here.share + way.increment, 1.0);
-            let middle = 0.5 * (way.here.share + end);
+        while way.share < 1.0 {
+            let end = f64::min(way.share + way.increment, 1.0);
+            let middle = 0.5 * (way.share + end);
             let known = way.half.take().filter(|half| half.share == end);
             let substep = Substep {
-                start: End::between(&start, load, way.here.share),
+                start: End::between(&start, load, way.share),
                 middle: End::between(&start, load, middle),
                 end: End::between(&start, load, end),
                 whole: known.map(|half| half.end.map(|end| *end)),
@@ -148,7 +150,7 @@ impl Newton {
             // Whole steps are tried in earnest before they are divided.
             step.is_tried_briefly =
                 step.system.is_path_dependent() && way.increment < 1.0 && !substep.is_smallest;
-            let next = match self.solve_substep(step, &way.here.state, substep) {
+            let next = match self.solve_substep(step, &way.here, substep) {
                 Solved::Accepted(accepted) => {
                     way.increment *= if accepted.may_grow { 2.0 } else { 1.0 };
                     Some(Reached {
@@ -159,14 +161,14 @@ impl Newton {
                 Solved::TooLong(found) => self.divide(step, &mut way, found, end)?,
             };
             if let Some(next) = next {
-                self.path.remember(step.system, &way.here.state);
+                self.path.remember(step.system, &way.here);
                 way.coarse = way.coarse.take().filter(|end| end.share > next.share);
-                way.here = next;
+                (way.here, way.share) = (Cow::Owned(next.state), next.share);
                 step.pushed.clear();
-                step.record.completed = way.here.share;
+                step.record.completed = way.share;
             }
         }
-        Ok(way.here.state)
+        Ok(way.here.into_owned())
     }
 
     /// Goes on after a substep to `end` that is too long: by a shorter one, or by the direct
@@ -177,7 +179,7 @@ impl Newton {
     fn divide(
         &mut self,
         step: &mut Step<'_>,
-        way: &mut Way,
+        way: &mut Way<'_>,
         found: TooLong,
         end: f64,
     ) -> Result<Option<Reached>, StepOutcome> {
@@ -192,9 +194,9 @@ impl Newton {
         let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way.increment);
         match found.why.filter(is_final) {
             None => {
-                let length = f64::min(way.increment, 1.0 - way.here.share);
+                let length = f64::min(way.increment, 1.0 - way.share);
                 let tried = found.half.as_ref();
-                let tried = tried.map_or(length, |half| half.share - way.here.share);
+                let tried = tried.map_or(length, |half| half.share - way.share);
                 way.increment = f64::min(0.5 * length, tried);
                 let would_differ = |half: &Half| half.end.is_err() && may_succeed(step, way);
                 way.half = found.half.filter(|half| !would_differ(half));
@@ -203,7 +205,7 @@ impl Newton {
             Some(outcome) if self.may_fall_back(step, &outcome) => Ok(None),
             Some(outcome) => {
                 let end = let_be(step, outcome, way.coarse.take())?;
-                way.increment = end.share - way.here.share;
+                way.increment = end.share - way.share;
                 Ok(Some(end))
             }
         }
@@ -443,7 +445,7 @@ fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool 
 
 /// Whether the next substep, tried as a whole, may come to an end where the first half of the last,
 /// which is the same increment, has failed: because it is tried in earnest, or from another guess.
-fn may_succeed(step: &Step<'_>, way: &Way) -> bool {
+fn may_succeed(step: &Step<'_>, way: &Way<'_>) -> bool {
     step.system.is_smooth() || (step.is_tried_briefly && way.increment <= SMALLEST_SUBSTEP)
 }
 
