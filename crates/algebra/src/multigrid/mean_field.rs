@@ -123,23 +123,19 @@ pub struct CoarseBasis {
 
 impl CoarseBasis {
     /// A basis of `rows` unknowns and one node for each of `modes`. `motions` tells the nodes that
-    /// move an unknown, ascending, and how: blocks as rows. It is called twice a row.
+    /// move an unknown, ascending, and how: blocks as rows.
     pub fn new(
         rows: usize,
         modes: Vec<Modes<6>>,
         motions: impl Fn(usize) -> Vec<(u32, [[f64; 6]; 3])> + Sync + Send,
     ) -> Self {
-        let prolongator = Sparse::build(
-            rows,
-            rows_per_task::<3>(),
-            || (),
-            |(), row| motions(row).len(),
-            |(), row, columns, blocks| {
-                for (place, (column, block)) in motions(row).into_iter().enumerate() {
-                    (columns[place], blocks[place]) = (column, narrow(&block));
-                }
-            },
-        );
+        let append = |row: usize, columns: &mut Vec<u32>, blocks: &mut Vec<[[f32; 6]; 3]>| {
+            for (column, block) in motions(row) {
+                columns.push(column);
+                blocks.push(narrow(&block));
+            }
+        };
+        let prolongator = Sparse::collect(rows, rows_per_task::<3>(), append);
         Self {
             prolongator,
             modes,

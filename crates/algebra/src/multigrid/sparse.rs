@@ -81,6 +81,46 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
         matrix
     }
 
+    /// A matrix whose rows, columns and blocks, `row` appends, once each: for rows that take longer
+    /// to find than to copy.
+    pub(super) fn collect(
+        rows: usize,
+        rows_per_task: usize,
+        row: impl Fn(usize, &mut Vec<u32>, &mut Vec<[[f32; L]; M]>) + Sync,
+    ) -> Self {
+        let tasks = RowOwnership::even(rows, rows_per_task);
+        let found = tasks.ranges().collect::<Vec<_>>().into_par_iter();
+        let found = found.map(|own| {
+            let (mut columns, mut blocks) = (Vec::new(), Vec::new());
+            let ends = own.map(|at| {
+                row(at, &mut columns, &mut blocks);
+                columns.len()
+            });
+            let ends: Vec<usize> = ends.collect();
+            (ends, columns, blocks)
+        });
+        let found: Vec<_> = found.collect();
+        let mut offset = Vec::with_capacity(rows + 1);
+        offset.push(0);
+        for (ends, ..) in &found {
+            let start = offset[offset.len() - 1];
+            offset.extend(ends.iter().map(|end| start + end));
+        }
+        let mut columns: Vec<u32> = bytemuck::zeroed_vec(offset[rows]);
+        let mut blocks: Vec<[[f32; L]; M]> = vec![[[0.0; L]; M]; offset[rows]];
+        let shares = tasks.split(&mut columns, &offset).into_par_iter();
+        let shares = shares.zip(tasks.split(&mut blocks, &offset)).zip(found);
+        shares.for_each(|(((_, columns), (_, blocks)), (_, own, of_own))| {
+            columns.copy_from_slice(&own);
+            blocks.copy_from_slice(&of_own);
+        });
+        Self {
+            offset,
+            columns,
+            blocks,
+        }
+    }
+
     /// The same in the storage of a matrix that is needed no more: mapping fresh memory costs more
     /// than filling it.
     pub(super) fn rebuild<S>(
