@@ -34,6 +34,7 @@ mod iterate;
 mod iteration;
 mod line_search;
 mod load_step;
+mod mean_strain;
 mod path_error;
 mod predictor;
 mod record;

@@ -9,6 +9,7 @@ use super::facet_points::{self, LastTrial, Linearisation};
 use super::fluid;
 use super::forcing_term;
 use super::iterate::Iterate;
+use super::mean_strain;
 use super::recycling::GalerkinGuess;
 use super::{Iteration, Newton, Step, StepOutcome};
 use crate::flow::Coupling;
@@ -28,7 +29,10 @@ impl Newton {
                 last,
             }) => (state, last_trials, Some(last)),
             None => {
-                let continued = self.continued(system, &from, load);
+                let mut continued = self.continued(system, &from, load);
+                if self.path.len() == 0 {
+                    mean_strain::close(system, &from.load, &mut continued);
+                }
                 let last_trials = vec![LastTrial::default(); from.facet_points.len()];
                 (continued, last_trials, None)
             }
