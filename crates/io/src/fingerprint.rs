@@ -1,7 +1,7 @@
 //! Sums by which files and texts are known again.
 
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, BufReader, Write};
 use std::path::Path;
 
 use kluft_mesh::Defect;
@@ -16,17 +16,10 @@ pub type Fingerprint = u128;
 /// If the file cannot be read.
 pub fn fingerprint_of(path: &Path) -> Result<Fingerprint, Defect> {
     let sum = || -> io::Result<Fingerprint> {
-        let mut file = File::open(path)?;
-        let mut buffer = vec![0; 1 << 18];
-        let mut sum = XxHash3_128::new();
-        loop {
-            match file.read(&mut buffer) {
-                Ok(0) => return Ok(sum.finish_128()),
-                Ok(count) => sum.write(&buffer[..count]),
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
-            }
-        }
+        let mut file = BufReader::with_capacity(1 << 18, File::open(path)?);
+        let mut out = SumWriter::new(io::sink());
+        io::copy(&mut file, &mut out)?;
+        Ok(out.finish())
     };
     sum().map_err(|error| {
         let place = path.display().to_string();

@@ -66,21 +66,6 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
             + size_of_val(&self.blocks[..])
     }
 
-    /// A matrix whose rows `fill` writes, once for their number of blocks and once for the blocks.
-    /// `scratch` is what a task keeps from row to row; it must not influence the result. `fill`
-    /// runs with the widest vectors of the machine as far as it is inlined.
-    pub(super) fn build<S>(
-        rows: usize,
-        rows_per_task: usize,
-        scratch: impl Fn() -> S + Sync + Send,
-        count: impl Fn(&mut S, usize) -> usize + Sync + Send,
-        fill: impl Fn(&mut S, usize, &mut [u32], &mut [[[f32; L]; M]]) + Sync + Send,
-    ) -> Self {
-        let mut matrix = Self::default();
-        matrix.rebuild(rows, rows_per_task, scratch, count, fill);
-        matrix
-    }
-
     /// A matrix whose rows, columns and blocks, `row` appends, once each: for rows that take longer
     /// to find than to copy.
     pub(super) fn collect(
@@ -119,6 +104,21 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
             columns,
             blocks,
         }
+    }
+
+    /// A matrix whose rows `fill` writes, once for their number of blocks and once for the blocks.
+    /// `scratch` is what a task keeps from row to row; it must not influence the result. `fill`
+    /// runs with the widest vectors of the machine as far as it is inlined.
+    pub(super) fn build<S>(
+        rows: usize,
+        rows_per_task: usize,
+        scratch: impl Fn() -> S + Sync + Send,
+        count: impl Fn(&mut S, usize) -> usize + Sync + Send,
+        fill: impl Fn(&mut S, usize, &mut [u32], &mut [[[f32; L]; M]]) + Sync + Send,
+    ) -> Self {
+        let mut matrix = Self::default();
+        matrix.rebuild(rows, rows_per_task, scratch, count, fill);
+        matrix
     }
 
     /// The same in the storage of a matrix that is needed no more: mapping fresh memory costs more

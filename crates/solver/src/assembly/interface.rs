@@ -192,6 +192,15 @@ impl Interface {
         self.rules[fracture as usize]
     }
 
+    /// Area of each fracture (m^2).
+    pub(crate) fn areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.rules.len()];
+        for point in &self.points {
+            areas[point.fracture as usize] += point.area;
+        }
+        areas
+    }
+
     /// Lets the walls carry the initial stress, which is total, beside a fluid whose pressure at
     /// each facet point is given (Pa).
     pub(crate) fn set_initial_pressures(&mut self, problem: &Problem, pressures: &[f64]) {

@@ -235,10 +235,7 @@ impl Estimator {
         dual: &StressError,
         stress: &StressError,
     ) -> MeanError {
-        let mut areas = vec![0.0; system.problem.fractures.len()];
-        for point in &system.discretisation.interface.points {
-            areas[point.fracture as usize] += point.area;
-        }
+        let areas = system.discretisation.interface.areas();
         let parts = stress.of_cell.par_iter().zip(&dual.of_cell);
         let parts = parts.zip(&self.nearest_fracture);
         let part = |((e, z), &fracture): ((&f64, &f64), &u32)| {

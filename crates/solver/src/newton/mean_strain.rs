@@ -29,14 +29,14 @@ const NODES_PER_SUM: usize = 4096;
 /// A mode that depends on those before it but for this share is left out: no force moves it.
 const DEPENDENT: f64 = 1e-12;
 
-/// Closes the facet points of a state under another load than the one before, where laws are
-/// smooth and no support moves.
-pub(super) fn close(system: &System<'_>, before: &Load, state: &mut State) {
+/// Closes the facet points of a state, whose rock has these forces (N), under another load than the
+/// one before, where laws are smooth and no support moves.
+pub(super) fn close(system: &System<'_>, before: &Load, rock_forces: &[DVec3], state: &mut State) {
     let is_still = !moves_supports(system, before, &state.load);
     if !(is_still && system.is_smooth() && system.is_nonlinear() && system.coupling().is_none()) {
         return;
     }
-    let gradient = gradient(system, state);
+    let gradient = gradient(system, rock_forces, state);
     if !gradient.is_finite() {
         return;
     }
@@ -95,20 +95,13 @@ fn close_point(
 
 /// Radius of a disc as large as each fracture (m).
 fn crack_sizes(system: &System<'_>) -> Vec<f64> {
-    let mut areas = vec![0.0; system.problem.fractures.len()];
-    for point in &interface(system).points {
-        areas[point.fracture as usize] += point.area;
-    }
-    areas
-        .into_iter()
-        .map(|area: f64| (area / PI).sqrt())
-        .collect()
+    let areas = interface(system).areas().into_iter();
+    areas.map(|area| (area / PI).sqrt()).collect()
 }
 
 /// Gradient `H` of the displacements that balance what is out of balance in a state.
-fn gradient(system: &System<'_>, state: &State) -> DMat3 {
-    let rock_forces = system.rock_forces(&state.unknowns);
-    let residual = system.residual(&rock_forces, &system.law_tractions(state), &state.load);
+fn gradient(system: &System<'_>, rock_forces: &[DVec3], state: &State) -> DMat3 {
+    let residual = system.residual(rock_forces, &system.law_tractions(state), &state.load);
     let centre = centre(system);
     let mut work = [[0.0; MODES]; MODES];
     for (mode, work) in work.iter_mut().enumerate() {
@@ -263,7 +256,8 @@ mod tests {
     fn the_mean_strain_is_that_of_a_pressed_cube() {
         let problem = problem(ClosureKind::Logarithmic { cutoff: None });
         let system = System::assemble(&problem, Discretisation::of(&problem).expect("held"));
-        let found = gradient(&system, &loaded(&system));
+        let state = loaded(&system);
+        let found = gradient(&system, &system.rock_forces(&state.unknowns), &state);
         let wanted = DMat3::from_diagonal(DVec3::new(RATIO, RATIO, -1.0)) * (PRESSURE / YOUNG);
         let off = (found - wanted).to_cols_array().map(f64::abs);
         assert!(
@@ -301,7 +295,9 @@ mod tests {
         let closed = |problem: &Problem| {
             let system = System::assemble(problem, Discretisation::of(problem).expect("held"));
             let mut state = loaded(&system);
-            close(&system, &system.problem.schedule.start(), &mut state);
+            let rock_forces = system.rock_forces(&state.unknowns);
+            let before = system.problem.schedule.start();
+            close(&system, &before, &rock_forces, &mut state);
             state
                 .facet_points
                 .iter()

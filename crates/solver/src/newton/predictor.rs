@@ -29,10 +29,7 @@ impl Newton {
                 last,
             }) => (state, last_trials, Some(last)),
             None => {
-                let mut continued = self.continued(system, &from, load);
-                if self.path.len() == 0 {
-                    mean_strain::close(system, &from.load, &mut continued);
-                }
+                let continued = self.continued(system, &from, load);
                 let last_trials = vec![LastTrial::default(); from.facet_points.len()];
                 (continued, last_trials, None)
             }
@@ -40,6 +37,9 @@ impl Newton {
         let flow = fluid::begin(system, &from, &mut state);
         let reached = state.reached;
         let rock_forces = system.rock_forces(&state.unknowns);
+        if guess.is_none() && self.path.len() == 0 {
+            mean_strain::close(system, &from.load, &rock_forces, &mut state);
+        }
         let tractions = system.law_tractions(&state);
         let force = system.force_scale(&rock_forces, &tractions, load);
         let force = force.max(SHARE_OF_FORMER_SIZES * reached.force);

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
-use super::records::{self, Verdicts};
+use super::records;
 use super::tally::Verdict;
 use crate::report::Effort;
 use crate::root;
@@ -78,23 +78,19 @@ impl Asked {
             return self.each(quick, full, run);
         };
         let file = folder.join(format!("{suite}-seed-{}.jsonl", self.seed));
-        let sound = |done: io::Result<()>| {
-            done.unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-        };
-        let mut kept = Verdicts::new();
-        sound(records::read(&file).map(|verdicts| kept = verdicts));
+        let mut kept = expected(&file, records::read(&file));
         let is_new = |case: &usize| !kept.contains_key(case);
         let cases: Vec<usize> = self.wanted(quick, full).filter(is_new).collect();
         let unbroken = Mutex::new(());
         let added = self.each_of(&cases, |case| {
             let verdict = run(case);
             let line = unbroken.lock();
-            sound(records::add(&file, case, &verdict));
+            expected(&file, records::add(&file, case, &verdict));
             drop(line);
             verdict
         });
         kept.extend(added);
-        sound(records::write(&file, &kept));
+        expected(&file, records::write(&file, &kept));
         kept.into_values().collect()
     }
 
@@ -156,7 +152,12 @@ impl Asked {
 /// # Panics
 /// If it cannot be read.
 pub fn bytes_of(file: &Path) -> Vec<u8> {
-    fs::read(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+    expected(file, fs::read(file))
+}
+
+/// What comes of a file that must be there and fit to be written to.
+fn expected<T>(file: &Path, done: io::Result<T>) -> T {
+    done.unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
 /// Words on the progress of a suite.
