@@ -1,5 +1,7 @@
 //! Aggregates: groups of nodes that become one node of the next level.
 
+use rayon::prelude::*;
+
 use crate::lists::Lists;
 use crate::small::Modes;
 
@@ -8,6 +10,9 @@ use super::sparse::{Sparse, rows_per_task};
 
 /// Blocks whose norm is not above this share of the diagonal do not tie nodes together.
 pub(super) const STRENGTH: f32 = 0.05;
+/// Neighbours that a node has in common with the first node of an aggregate, if it lies beside it
+/// like the tip of a cell on the face of another.
+const FACE: usize = 3;
 /// Marks a node without strong neighbours: the smoother alone takes care of it.
 pub(super) const ALONE: u32 = u32::MAX;
 
@@ -64,29 +69,42 @@ pub(super) fn strong_neighbours<const N: usize>(
     )
 }
 
+/// How far an aggregate reaches from its first node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// To its neighbours.
+    Neighbours,
+    /// Beyond them, to nodes that share [`FACE`] of them. A node of the finest level has three
+    /// unknowns where one of the next level has six, and tetrahedra give it few neighbours: with
+    /// these alone the next level would be nearly as dear as the finest one.
+    Beyond,
+}
+
 /// Greedy aggregation (Vanek, Mandel, Brezina 1996): first whole neighbourhoods in the order of the
-/// nodes, then each node left over joins the strongest neighbouring one, and what is then left
-/// forms aggregates of its own. Neighbours are the [`strong_neighbours`].
-pub(super) fn aggregate(neighbours: &Sparse<1, 1>) -> Aggregates {
+/// nodes, then each node left over joins the neighbouring one that it is tied to most, and what is
+/// then left forms aggregates of its own. Neighbours are the [`strong_neighbours`].
+pub(super) fn aggregate(neighbours: &Sparse<1, 1>, reach: Reach) -> Aggregates {
     let greedy = Greedy { neighbours };
     let mut aggregates = Aggregates {
         of_node: vec![ALONE; neighbours.rows()],
         count: 0,
     };
+    let mut is_beside = vec![false; neighbours.rows()];
     for node in 0..neighbours.rows() {
-        let is_free = |other: usize| aggregates.of_node[other] == ALONE;
+        let is_free = |at: usize| aggregates.of_node[at] == ALONE && !is_beside[at];
         let mut strong = greedy.strong(node).peekable();
         if is_free(node) && strong.peek().is_some() && strong.all(|(at, _)| is_free(at)) {
             greedy.gather(node, &mut aggregates);
+            if reach == Reach::Beyond {
+                let beyond = greedy.beyond(node);
+                beyond.into_iter().for_each(|at| is_beside[at] = true);
+            }
         }
     }
-    let seeds = aggregates.of_node.clone();
-    for node in (0..neighbours.rows()).filter(|&node| seeds[node] == ALONE) {
-        let near = greedy.strong(node).filter(|(at, _)| seeds[*at] != ALONE);
-        // `max_by` keeps the last of equals: the order of the columns decides.
-        if let Some((at, _)) = near.max_by(|a, b| a.1.total_cmp(&b.1)) {
-            aggregates.of_node[node] = seeds[at];
-        }
+    greedy.join(&mut aggregates);
+    if reach == Reach::Beyond {
+        // Those that only such nodes tie to an aggregate.
+        greedy.join(&mut aggregates);
     }
     for node in 0..neighbours.rows() {
         if aggregates.of_node[node] == ALONE && greedy.strong(node).next().is_some() {
@@ -117,5 +135,38 @@ impl Greedy<'_> {
                 aggregates.of_node[other] = own;
             }
         }
+    }
+
+    /// Nodes that share at least [`FACE`] neighbours with a node; its neighbours may be among them.
+    fn beyond(&self, node: usize) -> Vec<usize> {
+        let beside = self.strong(node).flat_map(|(at, _)| self.strong(at));
+        let mut beside: Vec<usize> = beside.map(|(at, _)| at).collect();
+        beside.sort_unstable();
+        let equal = beside.chunk_by(|a, b| a == b);
+        let shared = equal.filter(|same| same.len() >= FACE);
+        shared.map(|same| same[0]).collect()
+    }
+
+    /// Each node without an aggregate joins the one whose nodes beside it have the largest sum of
+    /// norms.
+    fn join(&self, aggregates: &mut Aggregates) {
+        let of_node = &aggregates.of_node;
+        let joined = of_node.par_iter().enumerate().map(|(node, &own)| {
+            let mut sums: Vec<(u32, f32)> = Vec::new();
+            let is_free = own == ALONE;
+            let near = self
+                .strong(node)
+                .filter(|(at, _)| is_free && of_node[*at] != ALONE);
+            for (at, square) in near {
+                match sums.iter_mut().find(|(other, _)| *other == of_node[at]) {
+                    Some((_, sum)) => *sum += square.sqrt(),
+                    None => sums.push((of_node[at], square.sqrt())),
+                }
+            }
+            // `max_by` keeps the last of equals: the order of the columns decides.
+            let most = sums.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+            most.map_or(own, |(other, _)| *other)
+        });
+        aggregates.of_node = joined.collect();
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::aggregation::{self, Reach};
 use super::block_jacobi::{self, Factors};
 use super::clusters::Clusters;
 use super::continuity::Continuity;
@@ -9,7 +10,7 @@ use super::galerkin::CoarseNodes;
 use super::prolongation::Unsmoothed;
 use super::sparse::{Sparse, Transpose, rows_per_task};
 use super::sum_rows::SumRows;
-use super::{aggregation, spectrum, tentative};
+use super::{spectrum, tentative};
 use crate::block_rows::numbers;
 use crate::division::Division;
 use crate::failure::MultigridFailure;
@@ -50,7 +51,7 @@ impl MeanField {
             return Err(MultigridFailure::NotFinite);
         }
         let strong = aggregation::strong_neighbours(&matrix, &modes);
-        let aggregates = aggregation::aggregate(&strong.completed(division));
+        let aggregates = aggregation::aggregate(&strong.completed(division), Reach::Beyond);
         let tentative = tentative::tentative(&aggregates, &modes);
         let unsmoothed = Unsmoothed {
             aggregates: &aggregates,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::aggregation::{self, Reach};
 use super::block_jacobi::{self, Factors, InverseFactors};
 use super::clusters::Clusters;
 use super::coarsest::Dense;
@@ -14,7 +15,7 @@ use super::smoother::Smoother;
 use super::sparse::{Sparse, Transpose};
 use super::sum_rows::{RowSubset, SumRows};
 use super::triple_product::PartialProduct;
-use super::{aggregation, parts, spectrum, tentative};
+use super::{parts, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
 use crate::division::{Communicator, Division};
 use crate::failure::MultigridFailure;
@@ -260,7 +261,8 @@ fn below(
         let dense = Dense::new(matrix).ok_or(MultigridFailure::NotFinite)?;
         return Ok((Below::Inverse(dense), None));
     }
-    let whole = aggregation::aggregate(&aggregation::strong_neighbours(matrix, modes));
+    let strong = aggregation::strong_neighbours(matrix, modes);
+    let whole = aggregation::aggregate(&strong, Reach::Neighbours);
     let aggregates = parts::parts(&whole, level);
     if aggregates.count == 0 || aggregates.count as f64 > STAGNATION * matrix.rows() as f64 {
         return Ok((Below::Nothing, None));

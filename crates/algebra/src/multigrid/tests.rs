@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::aggregation::Reach;
 use super::block_jacobi::Factors;
 use super::clusters::Clusters;
 use super::{aggregation, tentative, *};
@@ -10,7 +11,7 @@ use crate::conjugate_gradients::{
     ConjugateGradientOutcome, ConjugateGradientSettings, conjugate_gradients,
 };
 use crate::division::Division;
-use crate::small;
+use crate::small::{self, Modes};
 use crate::thread_ranks::on_threads;
 
 struct Case {
@@ -22,6 +23,16 @@ struct Case {
 impl Case {
     fn rows(&self) -> BlockRows<'_> {
         self.matrix.rows(&self.pattern)
+    }
+
+    /// The matrix and the modes in unknowns that scale its diagonal.
+    fn scaled(&self) -> (Sparse<3, 3>, Vec<Modes<3>>) {
+        let rows = SumRows::of_fixed(self.rows());
+        let single = Clusters::single(rows.count());
+        let factors = Factors::of(&rows, &single).unwrap();
+        let mut scaled = Sparse::default();
+        block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
+        (scaled, block_jacobi::modes(&factors, &self.modes))
     }
 
     /// Solves for forces without a pattern; iterations.
@@ -117,13 +128,9 @@ fn iterations_hardly_grow_with_a_lattice() {
 #[test]
 fn rigid_motions_are_prolonged_exactly() {
     let case = lattice(8);
-    let rows = SumRows::of_fixed(case.rows());
-    let single = Clusters::single(rows.count());
-    let factors = Factors::of(&rows, &single).unwrap();
-    let mut scaled = Sparse::default();
-    block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
-    let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled, &modes));
+    let (scaled, modes) = case.scaled();
+    let strong = aggregation::strong_neighbours(&scaled, &modes);
+    let aggregates = aggregation::aggregate(&strong, Reach::Beyond);
     let tentative = tentative::tentative(&aggregates, &modes);
     for (node, &aggregate) in aggregates.of_node.iter().enumerate() {
         if aggregate == aggregation::ALONE {
@@ -138,6 +145,28 @@ fn rigid_motions_are_prolonged_exactly() {
             }
         }
     }
+}
+
+/// Fewer aggregates are what reaching beyond neighbours is for; nodes along edges, diagonals of
+/// faces and of cubes have neighbours in common by the face.
+#[test]
+fn aggregates_that_reach_beyond_neighbours_are_fewer() {
+    let (scaled, modes) = lattice(12).scaled();
+    let strong = aggregation::strong_neighbours(&scaled, &modes);
+    let [near, beyond] =
+        [Reach::Neighbours, Reach::Beyond].map(|reach| aggregation::aggregate(&strong, reach));
+    assert!(
+        3 * beyond.count < 2 * near.count,
+        "{} of {}",
+        beyond.count,
+        near.count
+    );
+    assert!(
+        beyond
+            .of_node
+            .iter()
+            .all(|&at| (at as usize) < beyond.count)
+    );
 }
 
 /// `(I - omega A) B`, row by row.
@@ -163,13 +192,9 @@ fn smoothed_modes(
 #[test]
 fn weak_neighbours_cost_no_rigid_motion() {
     let case = weighed_lattice(9, |span| [1.0, 1.0, 1.0, 0.02][span]);
-    let rows = SumRows::of_fixed(case.rows());
-    let single = Clusters::single(rows.count());
-    let factors = Factors::of(&rows, &single).unwrap();
-    let mut scaled = Sparse::default();
-    block_jacobi::set_matrix(&mut scaled, &rows, &single, &factors, |_| true);
-    let modes = block_jacobi::modes(&factors, &case.modes);
-    let aggregates = aggregation::aggregate(&aggregation::strong_neighbours(&scaled, &modes));
+    let (scaled, modes) = case.scaled();
+    let strong = aggregation::strong_neighbours(&scaled, &modes);
+    let aggregates = aggregation::aggregate(&strong, Reach::Beyond);
     let tentative = tentative::tentative(&aggregates, &modes);
     let unsmoothed = prolongation::Unsmoothed {
         aggregates: &aggregates,
