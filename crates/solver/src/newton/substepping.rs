@@ -19,9 +19,11 @@ use crate::flow::Coupling;
 use crate::problem::Load;
 use crate::system::{State, System};
 
-/// Smallest substep that is tried, as a share of the load step; what it differs from two halves is
-/// let be.
+/// Smallest substep that is divided, as a share of the load step, because it differs from two
+/// halves or pushes blocks that nothing holds.
 const SMALLEST_SUBSTEP: f64 = 1.0 / 64.0;
+/// Smallest substep that is tried where none has converged.
+const SMALLEST_TRIED: f64 = 1.0 / 256.0;
 /// Below this share of the error allowed the next substep is twice as long.
 const GROWTH_SHARE: f64 = 0.25;
 /// Error allowed in what is left of a load step whose path is lost by more, in path accuracies.
@@ -191,7 +193,7 @@ impl Newton {
             }
         };
         way.coarse = found.whole.map(reached(end)).or(way.coarse.take());
-        let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way.increment);
+        let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way);
         match found.why.filter(is_final) {
             None => {
                 let length = f64::min(way.increment, 1.0 - way.share);
@@ -437,8 +439,12 @@ fn tell_falls(step: &mut Step<'_>, from: &State, load: &Load) {
 
 /// Whether a shorter substep would change nothing about a failure. Without friction a block that
 /// moves freely at the end does so whatever the path.
-fn is_final(system: &System<'_>, outcome: &StepOutcome, increment: f64) -> bool {
-    increment <= SMALLEST_SUBSTEP
+fn is_final(system: &System<'_>, outcome: &StepOutcome, way: &Way<'_>) -> bool {
+    let smallest = match (outcome, &way.coarse) {
+        (StepOutcome::RigidBodyMotion, _) | (_, Some(_)) => SMALLEST_SUBSTEP,
+        (_, None) => SMALLEST_TRIED,
+    };
+    way.increment <= smallest
         || *outcome == StepOutcome::Stopped
         || (*outcome == StepOutcome::RigidBodyMotion && !system.is_path_dependent())
 }
