@@ -72,6 +72,16 @@ impl Compared {
     }
 }
 
+impl Ended {
+    /// Where it is on the way of the loads.
+    pub(super) fn place(&self) -> End {
+        End {
+            load: self.state.load.clone(),
+            share: self.share,
+        }
+    }
+}
+
 impl End {
     /// A share of the way of a load step.
     pub(super) fn between(start: &Load, end: &Load, share: f64) -> Self {

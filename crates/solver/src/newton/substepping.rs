@@ -320,11 +320,7 @@ impl Newton {
         }
         let accepted = match may_hide && path_error::is_bent(step.system, &second, size) {
             true => {
-                let middle = End {
-                    load: both.half.state.load.clone(),
-                    share: both.half.share,
-                };
-                let start = (&both.half.state, middle);
+                let start = (&both.half.state, both.half.place());
                 let solved = self.solve_half(step, start, both.end, is_smallest);
                 solved.map_err(|_| None)?
             }
@@ -355,18 +351,15 @@ impl Newton {
         end: Ended,
         is_smallest: bool,
     ) -> Result<Accepted, Option<Half>> {
-        let to = end.state.load.clone();
+        let to = end.place();
         let middle = End {
-            load: Load::between(&start.load, &to, 0.5),
-            share: 0.5 * (start.share + end.share),
+            load: Load::between(&start.load, &to.load, 0.5),
+            share: 0.5 * (start.share + to.share),
         };
         let substep = Substep {
             start,
             middle,
-            end: End {
-                load: to,
-                share: end.share,
-            },
+            end: to,
             whole: Some(Ok(end)),
             is_smallest,
             is_half: true,
