@@ -111,6 +111,8 @@ struct Way<'a> {
     coarse: Option<Reached>,
     /// What the increment to the end of the next substep came to, if the last was too long.
     half: Option<Half>,
+    /// Why nothing beyond here has converged in [`SMALLEST_SUBSTEP`] or less.
+    failed: Option<StepOutcome>,
 }
 
 impl Newton {
@@ -136,6 +138,7 @@ impl Newton {
             increment: 1.0,
             coarse: None,
             half: None,
+            failed: None,
         };
         while way.share < 1.0 {
             let end = f64::min(way.share + way.increment, 1.0);
@@ -166,6 +169,7 @@ impl Newton {
                 self.path.remember(step.system, &way.here);
                 way.coarse = way.coarse.take().filter(|end| end.share > next.share);
                 (way.here, way.share) = (Cow::Owned(next.state), next.share);
+                way.failed = None;
                 step.pushed.clear();
                 step.record.completed = way.share;
             }
@@ -194,7 +198,16 @@ impl Newton {
         };
         way.coarse = found.whole.map(reached(end)).or(way.coarse.take());
         let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way);
-        match found.why.filter(is_final) {
+        let both = |outcome: StepOutcome| match way.failed.clone() {
+            Some(former) => former.and(outcome),
+            None => outcome,
+        };
+        let why = found.why.map(|outcome| (is_final(&outcome), both(outcome)));
+        let (why, ends) = why.map_or((None, false), |(ends, outcome)| (Some(outcome), ends));
+        if way.increment <= SMALLEST_SUBSTEP {
+            way.failed.clone_from(&why);
+        }
+        match why.filter(|_| ends) {
             None => {
                 let length = f64::min(way.increment, 1.0 - way.share);
                 let tried = found.half.as_ref();
