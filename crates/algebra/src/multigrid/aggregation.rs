@@ -152,11 +152,11 @@ impl Greedy<'_> {
     fn join(&self, aggregates: &mut Aggregates) {
         let of_node = &aggregates.of_node;
         let joined = of_node.par_iter().enumerate().map(|(node, &own)| {
+            if own != ALONE {
+                return own;
+            }
             let mut sums: Vec<(u32, f32)> = Vec::new();
-            let is_free = own == ALONE;
-            let near = self
-                .strong(node)
-                .filter(|(at, _)| is_free && of_node[*at] != ALONE);
+            let near = self.strong(node).filter(|(at, _)| of_node[*at] != ALONE);
             for (at, square) in near {
                 match sums.iter_mut().find(|(other, _)| *other == of_node[at]) {
                     Some((_, sum)) => *sum += square.sqrt(),

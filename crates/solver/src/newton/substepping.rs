@@ -198,12 +198,11 @@ impl Newton {
         };
         way.coarse = found.whole.map(reached(end)).or(way.coarse.take());
         let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way);
-        let both = |outcome: StepOutcome| match way.failed.clone() {
-            Some(former) => former.and(outcome),
-            None => outcome,
+        let ends = found.why.as_ref().is_some_and(is_final);
+        let why = match (way.failed.take(), found.why) {
+            (Some(former), Some(outcome)) => Some(former.and(outcome)),
+            (_, why) => why,
         };
-        let why = found.why.map(|outcome| (is_final(&outcome), both(outcome)));
-        let (why, ends) = why.map_or((None, false), |(ends, outcome)| (Some(outcome), ends));
         if way.increment <= SMALLEST_SUBSTEP {
             way.failed.clone_from(&why);
         }
