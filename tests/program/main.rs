@@ -5,6 +5,7 @@ mod anisotropy;
 mod bad_input;
 mod book;
 mod boreholes;
+mod collapse;
 mod coupled_flow;
 mod displacements;
 mod documents;

@@ -72,6 +72,9 @@ pub fn with_what_is_kept(mut defects: Vec<Defect>, steps: usize) -> Vec<Defect> 
     defects
 }
 
+/// Share of a load step that counts as nothing of it.
+const NOTHING_BEARABLE: f64 = 0.002;
+
 /// Why a load step did not converge, and where.
 pub fn not_converged(
     system: &System<'_>,
@@ -85,12 +88,21 @@ pub fn not_converged(
         let percent = 100.0 * record.completed;
         format!("; {percent:.1} % of the load increment was completed")
     });
+    let bearable = record.bearable.filter(|share| *share > NOTHING_BEARABLE);
+    let bearable = bearable.map(|share| {
+        let percent = 100.0 * share;
+        format!("; the fractures can bear at most {percent:.1} % of the load increment")
+    });
     let motions = record.rigid_motions.iter().map(|block| {
         let told = &block.told;
         let (place, problem, remedy) = (&told.place, &told.problem, &told.remedy);
         format!("; {place}: {problem}: {remedy}")
     });
-    let rest: String = completed.into_iter().chain(motions).collect();
+    let rest: String = completed
+        .into_iter()
+        .chain(bearable)
+        .chain(motions)
+        .collect();
     format!("step {number} ({step}): {why}{rest}")
 }
 

@@ -7,6 +7,7 @@ use super::facet_points::{self, interface, tangent};
 use super::fluid;
 use super::iterate::Iterate;
 use crate::problem::Load;
+use crate::space::collapse;
 use crate::space::mechanism::Push;
 use crate::space::rigid_modes::{self, FreeBody, FreeMotions, Tie};
 use crate::system::{State, System};
@@ -28,11 +29,40 @@ pub(super) fn find(system: &System<'_>, iterate: &Iterate) -> Vec<FreeBody> {
     if push.is_held() || push.size() <= UNBALANCED * iterate.sizes.force {
         return Vec::new();
     }
+    pushed(system, &free, &push.along, &ties)
+}
+
+fn pushed(system: &System<'_>, free: &FreeMotions, along: &[f64], ties: &[Tie]) -> Vec<FreeBody> {
     let remedy = format!(
         "{} has opened or slides there; hold the block, lower the load, or give the fracture friction, cohesion or stiffness",
-        untied_fractures(system, &ties).join(", ")
+        untied_fractures(system, ties).join(", ")
     );
-    free.bodies(&system.problem.mesh, &push.along, &remedy)
+    free.bodies(&system.problem.mesh, along, &remedy)
+}
+
+/// The blocks of a mechanism for which a load is more than the fractures can bear, whatever the
+/// path; none where a fluid follows the walls, whose pressures are not known before.
+pub(super) fn collapse(system: &System<'_>, load: &Load) -> Vec<FreeBody> {
+    let found = || {
+        let (problem, space) = (system.problem, &system.discretisation);
+        let facets = problem.mesh.facets.fracture.iter();
+        let laws = system.laws();
+        let ties: Vec<Tie> = facets
+            .map(|fracture| collapse::tie(&laws[*fracture as usize]))
+            .collect();
+        let free = rigid_modes::free_motions(problem, &space.points, &space.supports, &ties)?;
+        let forces = system.load_forces(load);
+        let work = free.work(&problem.mesh, &space.points, &forces);
+        let (along, force) = collapse::find(&free, problem, laws, &work)?;
+        let rest = vec![DVec3::ZERO; forces.len()];
+        let no_tractions = vec![DVec3::ZERO; interface(system).points.len()];
+        let scale = system.force_scale(&rest, &no_tractions, load);
+        (force > UNBALANCED * scale).then(|| pushed(system, &free, &along, &ties))
+    };
+    match system.is_smooth() || system.coupling().is_some() {
+        true => Vec::new(),
+        false => found().unwrap_or_default(),
+    }
 }
 
 /// Whether a load pushes blocks from a state through open gaps to walls with friction.

@@ -47,6 +47,7 @@ mod solver;
 mod splitting;
 mod step;
 mod substepping;
+mod way;
 
 use step::Step;
 

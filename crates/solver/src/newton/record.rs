@@ -96,6 +96,9 @@ pub struct StepRecord {
     pub substeps: Vec<usize>,
     /// Share of the step, from the load before to that at its end, that was solved.
     pub completed: f64,
+    /// Share of the step beyond which no equilibrium is left, whatever the path, if its end is
+    /// beyond that: an upper bound of what fractures can bear.
+    pub bearable: Option<f64>,
     /// How it ended.
     pub outcome: StepOutcome,
     /// The part of it, if any, whose path is least resolved.
@@ -129,6 +132,7 @@ impl StepRecord {
             iterations: Vec::new(),
             substeps: Vec::new(),
             completed: 0.0,
+            bearable: None,
             unresolved: None,
             path_error: 0.0,
             path_error_at_one_place: 0.0,

@@ -15,6 +15,9 @@ use crate::system::{State, System};
 /// Who is told of each iteration, by its number and measures, and may stop the step.
 type Observe<'a> = dyn FnMut(usize, &Iteration) -> ControlFlow<()> + 'a;
 
+/// Bisections of a load step for the share of it that fractures can bear.
+const BISECTIONS: usize = 10;
+
 /// What all that is done in a load step works with.
 pub(super) struct Step<'a> {
     pub(super) system: &'a System<'a>,
@@ -43,6 +46,7 @@ pub(super) struct Step<'a> {
     pub(super) keeps_end: bool,
     /// The state in which the last increment failed, if it is kept.
     pub(super) end: Option<State>,
+    asked_for_collapse: bool,
     observe: &'a mut Observe<'a>,
     is_stopped: bool,
 }
@@ -63,6 +67,7 @@ impl<'a> Step<'a> {
             predicted: Vec::new(),
             keeps_end: false,
             end: None,
+            asked_for_collapse: false,
             observe,
             is_stopped: false,
         }
@@ -149,6 +154,37 @@ impl<'a> Step<'a> {
             return StepOutcome::RigidBodyMotion;
         }
         outcome
+    }
+
+    /// Asks once, when an increment from a load has failed, whether fractures can bear the end of
+    /// the load step at all.
+    ///
+    /// # Errors
+    /// If not: with the blocks of a mechanism, and how much they can bear, in the record.
+    pub(super) fn ask_for_collapse(&mut self, start: &Load) -> Result<(), StepOutcome> {
+        if std::mem::replace(&mut self.asked_for_collapse, true) {
+            return Ok(());
+        }
+        let (system, load) = (self.system, &self.record.load);
+        let blocks = free_blocks::collapse(system, load);
+        if blocks.is_empty() {
+            return Ok(());
+        }
+        let collapses = |share| {
+            let part = Load::between(start, load, share);
+            !free_blocks::collapse(system, &part).is_empty()
+        };
+        let halved = |(low, high), _| {
+            let middle = 0.5 * (low + high);
+            match collapses(middle) {
+                true => (low, middle),
+                false => (middle, high),
+            }
+        };
+        let (_, high) = (0..BISECTIONS).fold((0.0, 1.0), halved);
+        self.record.bearable = Some(high);
+        self.record.rigid_motions = blocks;
+        Err(StepOutcome::RigidBodyMotion)
     }
 
     /// The record after `seconds` altogether.

@@ -14,16 +14,12 @@ use super::comparison::{Both, Compared, End, Ended};
 use super::free_blocks;
 use super::path_error::{self, Apart};
 use super::relieved;
+use super::way::{Half, Reached, SMALLEST_SUBSTEP, TooLong, Way};
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
 use crate::flow::Coupling;
 use crate::problem::Load;
-use crate::system::{State, System};
+use crate::system::State;
 
-/// Smallest substep that is divided, as a share of the load step, because it differs from two
-/// halves or pushes blocks that nothing holds.
-const SMALLEST_SUBSTEP: f64 = 1.0 / 64.0;
-/// Smallest substep that is tried where none has converged.
-const SMALLEST_TRIED: f64 = 1.0 / 256.0;
 /// Below this share of the error allowed the next substep is twice as long.
 const GROWTH_SHARE: f64 = 0.25;
 /// Error allowed in what is left of a load step whose path is lost by more, in path accuracies.
@@ -64,55 +60,6 @@ impl Accepted {
             may_grow: true,
         }
     }
-}
-
-/// What is known of a substep that is to be divided.
-#[derive(Default)]
-struct TooLong {
-    /// Why, if it is not for accuracy.
-    why: Option<StepOutcome>,
-    /// Its end in one increment, if it was found.
-    whole: Option<Box<State>>,
-    /// What one increment to its middle came to, or to a place before that if that is known to be
-    /// too far, if it was tried.
-    half: Option<Half>,
-}
-
-/// What one increment to the middle of a substep, or of its first half, came to.
-struct Half {
-    /// The share of the load step up to it.
-    share: f64,
-    end: Result<Box<Ended>, StepOutcome>,
-}
-
-impl Half {
-    fn of(to: &End, end: Result<Ended, StepOutcome>) -> Self {
-        Self {
-            share: to.share,
-            end: end.map(Box::new),
-        }
-    }
-}
-
-/// A state on the way, and the share of the step that leads to it.
-struct Reached {
-    state: State,
-    share: f64,
-}
-
-/// How far a load step is solved.
-struct Way<'a> {
-    here: Cow<'a, State>,
-    /// The share of the step that leads to it.
-    share: f64,
-    /// Length of the next substep.
-    increment: f64,
-    /// The end of the shortest substep beyond here that converged in one increment.
-    coarse: Option<Reached>,
-    /// What the increment to the end of the next substep came to, if the last was too long.
-    half: Option<Half>,
-    /// Why nothing beyond here has converged in [`SMALLEST_SUBSTEP`] or less.
-    failed: Option<StepOutcome>,
 }
 
 impl Newton {
@@ -163,7 +110,10 @@ impl Newton {
                         share: end,
                     })
                 }
-                Solved::TooLong(found) => self.divide(step, &mut way, found, end)?,
+                Solved::TooLong(found) => {
+                    way.ask_for_collapse(step, &found, &start)?;
+                    self.divide(step, &mut way, found, end)?
+                }
             };
             if let Some(next) = next {
                 self.path.remember(step.system, &way.here);
@@ -197,7 +147,7 @@ impl Newton {
             }
         };
         way.coarse = found.whole.map(reached(end)).or(way.coarse.take());
-        let is_final = |why: &StepOutcome| is_torn || is_final(step.system, why, way);
+        let is_final = |why: &StepOutcome| is_torn || way.is_final(step.system, why);
         let ends = found.why.as_ref().is_some_and(is_final);
         let why = match (way.failed.take(), found.why) {
             (Some(former), Some(outcome)) => Some(former.and(outcome)),
@@ -212,7 +162,7 @@ impl Newton {
                 let tried = found.half.as_ref();
                 let tried = tried.map_or(length, |half| half.share - way.share);
                 way.increment = f64::min(0.5 * length, tried);
-                let would_differ = |half: &Half| half.end.is_err() && may_succeed(step, way);
+                let would_differ = |half: &Half| half.end.is_err() && way.may_succeed(step);
                 way.half = found.half.filter(|half| !would_differ(half));
                 Ok(None)
             }
@@ -440,24 +390,6 @@ fn tell_falls(step: &mut Step<'_>, from: &State, load: &Load) {
             facet_point: None,
         });
     }
-}
-
-/// Whether a shorter substep would change nothing about a failure. Without friction a block that
-/// moves freely at the end does so whatever the path.
-fn is_final(system: &System<'_>, outcome: &StepOutcome, way: &Way<'_>) -> bool {
-    let smallest = match (outcome, &way.coarse) {
-        (StepOutcome::RigidBodyMotion, _) | (_, Some(_)) => SMALLEST_SUBSTEP,
-        (_, None) => SMALLEST_TRIED,
-    };
-    way.increment <= smallest
-        || *outcome == StepOutcome::Stopped
-        || (*outcome == StepOutcome::RigidBodyMotion && !system.is_path_dependent())
-}
-
-/// Whether the next substep, tried as a whole, may come to an end where the first half of the last,
-/// which is the same increment, has failed: because it is tried in earnest, or from another guess.
-fn may_succeed(step: &Step<'_>, way: &Way<'_>) -> bool {
-    step.system.is_smooth() || (step.is_tried_briefly && way.increment <= SMALLEST_SUBSTEP)
 }
 
 /// What stands for a substep that no division resolves: the end of a longer one that converged in

@@ -1,10 +1,12 @@
 //! The enriched space: points and unknowns of nodes, who couples with whom, what is held.
 
 pub(crate) mod cell;
+pub(crate) mod collapse;
 mod demands;
 pub(crate) mod folded;
 pub(crate) mod mechanism;
 pub(crate) mod pattern;
+mod reactions;
 pub(crate) mod rigid_modes;
 pub(crate) mod sector_nodes;
 pub(crate) mod supports;

@@ -119,6 +119,7 @@ pub fn solve(problem: &Problem, settings: NewtonSettings) -> (StepRecord, Soluti
         fell_back: false,
         load,
         completed: f64::from(u8::from(converged)),
+        bearable: None,
         iterations,
         outcome,
         substeps: Vec::new(),
