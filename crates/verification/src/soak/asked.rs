@@ -94,6 +94,11 @@ impl Asked {
         kept.into_values().collect()
     }
 
+    /// Whether one case alone is asked for, to be looked at.
+    pub fn is_one_case(&self) -> bool {
+        self.cases.as_ref().is_some_and(|cases| cases.len() == 1)
+    }
+
     /// The cases that are asked for.
     fn wanted(&self, quick: usize, full: usize) -> Range<usize> {
         let usual = match self.effort {

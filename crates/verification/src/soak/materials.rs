@@ -58,6 +58,7 @@ struct Way {
 }
 
 struct Case {
+    number: usize,
     name: String,
     junction: usize,
     fineness: Fineness,
@@ -75,6 +76,7 @@ impl Case {
         let own = &JUNCTIONS[junction];
         let drawn = material::random(own.fractures, &mut RandomStream::new(seed, number));
         Self {
+            number,
             name: format!("{number} (seed {seed}, {}, {fineness:?})", own.name),
             junction,
             fineness,
@@ -113,27 +115,28 @@ pub fn run(asked: &Asked) -> Finding {
     let meshes = Meshes::none();
     let verdicts = asked.verdicts(STUDY.name, [3, 1000], |number| {
         let case = Case::of(number, asked.seed);
+        if asked.is_one_case() {
+            keep(asked, &case, "asked for alone");
+        }
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.expect("a thread");
-        let ends = ends(&case, &meshes, &pool);
-        let mut verdict = judged(&case, &ends);
-        if let Some(miss) = &mut verdict.miss {
-            let name = format!("materials-{}-{number}.toml", asked.seed);
-            asked.keep(&name, with_words(&case, miss).as_bytes());
-            let junction = &JUNCTIONS[case.junction];
-            asked.keep(
-                &format!("{}.geo", junction.name),
-                junction.geometry().as_bytes(),
-            );
+        let verdict = judged(&case, &ends(&case, &meshes, &pool));
+        if let Some(miss) = &verdict.miss {
+            keep(asked, &case, miss);
         }
         verdict
     });
     finding(TEXT, &verdicts)
 }
 
-fn with_words(case: &Case, miss: &str) -> String {
-    let words: String = miss.lines().map(|line| format!("# {line}\n")).collect();
-    words + &case.text
+/// Keeps the input of a case, with words on it.
+fn keep(asked: &Asked, case: &Case, words: &str) {
+    let words: String = words.lines().map(|line| format!("# {line}\n")).collect();
+    let junction = &JUNCTIONS[case.junction];
+    let scene = format!("materials-{}-{}.toml", asked.seed, case.number);
+    let geometry = format!("{}.geo", junction.name);
+    asked.keep(&scene, (words + &case.text).as_bytes());
+    asked.keep(&geometry, junction.geometry().as_bytes());
 }
 
 /// How the runs of a case end; the first that is out of iterations is the last.
