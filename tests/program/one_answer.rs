@@ -129,6 +129,22 @@ fn blocks_that_fly_until_they_meet_a_wall_are_held() {
     assert_one_answer(&[whole, divided].concat(), &["east", "north"]);
 }
 
+/// A layer of 1 m^2 that nothing but a joint of a hundred-millionth of the rock's stiffness holds
+/// slides by `T / K_s`, in few iterations.
+#[test]
+fn a_block_that_a_soft_joint_holds_slides_as_far_as_it_lets() {
+    for said in solved("soft_joint.toml", &[]) {
+        let slip = said["fractures"]["f"]["slip"]["mean"].as_f64();
+        let slip = slip.expect("a number");
+        assert!((slip - 10.0 / 1e3).abs() < 1e-6 * slip, "{slip}");
+        let iterations = said["steps"][0]["newton_iterations"].as_u64();
+        assert!(
+            iterations.is_some_and(|count| count <= 20),
+            "{iterations:?}"
+        );
+    }
+}
+
 /// A block above an open gap, pushed down and to a side with less than friction bears once it is
 /// closed: it comes to rest, but nothing tells where.
 #[test]

@@ -7,18 +7,76 @@
 //! They enter the matrix only and no balance.
 
 /// Share while nothing overshoots: walls that nothing holds at all have a tangent too.
-pub(super) const LEAST: f64 = 1e-6;
+const LEAST: f64 = 1e-6;
+/// The same in late iterations: where fractures a millionth as stiff as the rock beside them hold a
+/// block, springs as stiff as they are would make Newton's method converge linearly.
+const LEAST_LATE: f64 = 1e-10;
+/// Iterations of an increment after which they are late.
+const EARLY: usize = 8;
 /// Share that holds walls like rock.
 const LARGEST: f64 = 1.0;
 /// Factor from one share to the next.
 const FACTOR: f64 = 100.0;
 
-/// The share to take after an iterate that overshoots; none if that was the largest.
-pub(super) fn stronger(damping: f64) -> Option<f64> {
-    (damping < LARGEST).then(|| (FACTOR * damping).min(LARGEST))
+/// Springs on the facet points of an iterate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Damping {
+    /// Their stiffness, against that of the rock beside them.
+    pub(super) share: f64,
+    /// The least that linear solvers bear in late iterations.
+    least_late: f64,
 }
 
-/// The share to take after one that does not.
-pub(super) fn weaker(damping: f64) -> f64 {
-    (damping / FACTOR).max(LEAST)
+impl Damping {
+    /// That of the first iteration.
+    pub(super) const FIRST: Self = Self {
+        share: LEAST,
+        least_late: LEAST_LATE,
+    };
+
+    /// That to take after an iterate that overshoots; none if this is the largest.
+    pub(super) fn stronger(self) -> Option<Self> {
+        let share = (FACTOR * self.share).min(LARGEST);
+        (self.share < LARGEST).then_some(Self { share, ..self })
+    }
+
+    /// That to take after one that does not, in iteration `count` of an increment.
+    pub(super) fn weaker(self, count: usize) -> Self {
+        let least = if count > EARLY {
+            self.least_late
+        } else {
+            LEAST
+        };
+        let share = (self.share / FACTOR).max(least);
+        Self { share, ..self }
+    }
+
+    /// That to take where a linear solver has failed; none if this is no weaker than the first.
+    pub(super) fn as_at_first(self) -> Option<Self> {
+        let first = Self {
+            share: LEAST,
+            least_late: LEAST,
+        };
+        (self.share < LEAST).then_some(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn springs_soften_late_and_stay_as_stiff_as_solvers_need_them() {
+        let late = (1..30).fold(Damping::FIRST, Damping::weaker);
+        assert_eq!(
+            (1..=EARLY).fold(Damping::FIRST, Damping::weaker).share,
+            LEAST
+        );
+        assert_eq!(late.share, LEAST_LATE);
+        let borne = late.as_at_first().expect("stronger");
+        assert_eq!((9..30).fold(borne, Damping::weaker).share, LEAST);
+        assert!(borne.as_at_first().is_none());
+        let strong = borne.stronger().expect("stronger");
+        assert!(strong.share > borne.share);
+    }
 }

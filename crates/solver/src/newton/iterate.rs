@@ -4,6 +4,7 @@ use glam::DVec3;
 use kluft_algebra::largest;
 
 use super::acceleration::Acceleration;
+use super::damping::Damping;
 use super::facet_points::{LastTrial, Linearisation, Linearised};
 use super::fluid::FlowIterate;
 use crate::problem::Load;
@@ -22,8 +23,8 @@ pub(super) struct Iterate {
     pub(super) sizes: StateScales,
     /// Largest of the forces that must balance in the first guess (N).
     pub(super) first_force: f64,
-    /// Springs on the facet points, against the stiffness of the rock beside them, see `damping`.
-    pub(super) damping: f64,
+    /// Springs on the facet points, see `damping`.
+    pub(super) damping: Damping,
     /// What stands for the laws in the next linear solve.
     pub(super) linearisation: Linearisation,
     /// Former iterates of the splitting.

@@ -7,7 +7,6 @@ use kluft_algebra::{LinearFailure, norm};
 use rayon::prelude::*;
 
 use super::convergence;
-use super::damping;
 use super::facet_points::{self, Linearisation, interface};
 use super::fluid;
 use super::forcing_term;
@@ -188,15 +187,22 @@ impl Newton {
         let mut spent = 0;
         loop {
             let start = iterate.clone();
-            let mut iteration = self.advance(step, iterate, count)?;
+            let advanced = self.advance(step, iterate, count);
+            let mut iteration = match (advanced, start.damping.as_at_first()) {
+                (Err(StepOutcome::Linear(_)), Some(damping)) => {
+                    *iterate = Iterate { damping, ..start };
+                    continue;
+                }
+                (advanced, _) => advanced?,
+            };
             iteration.linear_iterations += spent;
             spent = iteration.linear_iterations;
             let overshoots = iterate.sizes.force > OVERSHOOT * start.first_force;
-            match damping::stronger(start.damping) {
+            match start.damping.stronger() {
                 Some(damping) if overshoots => *iterate = Iterate { damping, ..start },
                 _ => {
                     step.predicts = false;
-                    iterate.damping = damping::weaker(iterate.damping);
+                    iterate.damping = iterate.damping.weaker(count);
                     return Ok(iteration);
                 }
             }
@@ -215,7 +221,7 @@ impl Newton {
     ) -> Result<Iteration, StepOutcome> {
         let system = step.system;
         let planes = facet_points::linearised(system, &iterate.state, iterate.linearisation);
-        self.update_tangent(step, &planes.tangents, iterate.damping)?;
+        self.update_tangent(step, &planes.tangents, iterate.damping.share)?;
         let is_recycled = self.recycled.is_some() && system.is_smooth();
         let solved = self.solve_linearised(system, iterate, &planes.tangents);
         let (correction, spent) = solved.map_err(|failure| match failure {

@@ -3,7 +3,7 @@
 
 use super::acceleration::Acceleration;
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
-use super::damping;
+use super::damping::Damping;
 use super::drained;
 use super::facet_points::{self, LastTrial, Linearisation};
 use super::fluid;
@@ -50,7 +50,7 @@ impl Newton {
             corrections: Vec::new(),
             sizes: StateScales { force, ..reached },
             first_force: force,
-            damping: damping::LEAST,
+            damping: Damping::FIRST,
             linearisation: Linearisation::Tangents,
             conserves: system.coupling().is_some_and(Coupling::is_transient),
             acceleration: Acceleration::default(),
