@@ -14,8 +14,9 @@ use crate::system::{State, System};
 
 /// Stiffness that counts as none, against that of the rock beside a facet point.
 const NO_STIFFNESS: f64 = 1e-9;
-/// Most bodies of which it is asked before a load step whether they fall.
-const MOST_FALLING: usize = 50;
+/// Most bodies of which it is asked before a load step whether they fall, and after an increment
+/// that failed whether the load is too much for them.
+const MOST_BODIES: usize = 50;
 /// Force that pushes a block, against the largest force, above which it is not in balance.
 pub(super) const UNBALANCED: f64 = 1e-4;
 
@@ -43,13 +44,16 @@ fn pushed(system: &System<'_>, free: &FreeMotions, along: &[f64], ties: &[Tie]) 
 /// The blocks of a mechanism for which a load is more than the fractures can bear, whatever the
 /// path; none where a fluid follows the walls, whose pressures are not known before.
 pub(super) fn collapse(system: &System<'_>, load: &Load) -> Vec<FreeBody> {
-    let found = || {
+    let found = || -> Option<Vec<FreeBody>> {
         let (problem, space) = (system.problem, &system.discretisation);
         let facets = problem.mesh.facets.fracture.iter();
         let laws = system.laws();
         let ties: Vec<Tie> = facets
             .map(|fracture| collapse::tie(&laws[*fracture as usize]))
             .collect();
+        if rigid_modes::body_count(&problem.mesh, &ties) > MOST_BODIES {
+            return None;
+        }
         let free = rigid_modes::free_motions(problem, &space.points, &space.supports, &ties)?;
         let forces = system.load_forces(load);
         let work = free.work(&problem.mesh, &space.points, &forces);
@@ -69,7 +73,7 @@ pub(super) fn collapse(system: &System<'_>, load: &Load) -> Vec<FreeBody> {
 pub(super) fn fall(system: &System<'_>, from: &State, load: &Load) -> bool {
     let ties = ties(system, from);
     let bodies = rigid_modes::body_count(&system.problem.mesh, &ties);
-    if !(2..=MOST_FALLING).contains(&bodies) {
+    if !(2..=MOST_BODIES).contains(&bodies) {
         return false;
     }
     let mut state = from.clone();
