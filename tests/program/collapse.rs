@@ -1,29 +1,13 @@
 //! Loads beyond what fractures can bear are told as such, with how much they can, whatever the
 //! solver.
 
-use std::fs;
-
-use crate::harness::{Run, kluft, root, scratch};
-
-const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
+use crate::harness::Run;
+use crate::one_answer::{SOLVERS, ran_by};
 
 /// Runs of a layer on another, 1 m high and wide, with each solver.
 fn runs(edits: &[(&str, &str)]) -> Vec<Run> {
-    let own = root().join("tests/program/one_answer");
-    let text = fs::read_to_string(own.join("pushed_layer.toml")).expect("the scene");
-    let beside = format!("geometry = \"{}/", own.display());
-    let text = text.replace("geometry = \"", &beside);
-    let text = edits
-        .iter()
-        .fold(text, |text, (from, to)| text.replace(from, to));
-    let run = |solver: &&str| {
-        let folder = scratch();
-        let file = folder.path().join("scene.toml");
-        let text = format!("{text}\n[solver]\nlinear = \"{solver}\"\n");
-        fs::write(&file, text).expect("written");
-        kluft(&["run".as_ref(), file.as_os_str()])
-    };
-    SOLVERS.iter().map(run).collect()
+    let ran = ran_by(&SOLVERS, "pushed_layer.toml", edits);
+    ran.map(|(run, _)| run).collect()
 }
 
 /// The share of a load step, in percent, that a run says fractures can bear at most.

@@ -12,7 +12,8 @@ use tempfile::TempDir;
 
 use crate::harness::{Run, kluft, root, scratch, summary};
 
-const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
+/// All linear solvers.
+pub const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
 
 /// `summary.json` of a scene of this test with each solver; all must solve it.
 fn solved(scene: &str, edits: &[(&str, &str)]) -> Vec<Value> {
@@ -28,7 +29,7 @@ fn solved_by(solvers: &[&str], scene: &str, edits: &[(&str, &str)]) -> Vec<Value
 }
 
 /// Runs of a scene of this test with each solver, and the folders that hold `out`.
-fn ran_by(
+pub fn ran_by(
     solvers: &[&str],
     scene: &str,
     edits: &[(&str, &str)],

@@ -80,6 +80,15 @@ impl Ended {
             share: self.share,
         }
     }
+
+    /// The increment that it is the end of.
+    pub(super) fn since<'a>(&'a self, from: &'a State) -> Increment<'a> {
+        Increment {
+            from,
+            to: &self.state,
+            predicted: &self.predicted,
+        }
+    }
 }
 
 impl End {
@@ -90,17 +99,6 @@ impl End {
             false => Load::between(start, end, share),
         };
         Self { load, share }
-    }
-}
-
-impl Ended {
-    /// The increment that it is the end of.
-    pub(super) fn since<'a>(&'a self, from: &'a State) -> Increment<'a> {
-        Increment {
-            from,
-            to: &self.state,
-            predicted: &self.predicted,
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use super::facet_points::{self, interface, tangent};
 use super::fluid;
 use super::iterate::Iterate;
 use crate::problem::Load;
-use crate::space::collapse;
+use crate::space::collapse::{self, Resistance};
 use crate::space::mechanism::Push;
 use crate::space::rigid_modes::{self, FreeBody, FreeMotions, Tie};
 use crate::system::{State, System};
@@ -41,31 +41,55 @@ fn pushed(system: &System<'_>, free: &FreeMotions, along: &[f64], ties: &[Tie]) 
     free.bodies(&system.problem.mesh, along, &remedy)
 }
 
-/// The blocks of a mechanism for which a load is more than the fractures can bear, whatever the
-/// path; none where a fluid follows the walls, whose pressures are not known before.
-pub(super) fn collapse(system: &System<'_>, load: &Load) -> Vec<FreeBody> {
-    let found = || -> Option<Vec<FreeBody>> {
+/// What the fractures of a system bear, whatever the path.
+pub(super) struct Bearing<'a> {
+    system: &'a System<'a>,
+    ties: Vec<Tie>,
+    free: FreeMotions,
+    resistance: Resistance<'a>,
+}
+
+impl<'a> Bearing<'a> {
+    /// None where there is nothing to exceed, or too much to tell; nor where a fluid follows the
+    /// walls, whose pressures are not known before.
+    pub(super) fn of(system: &'a System<'a>) -> Option<Self> {
+        if system.is_smooth() || system.coupling().is_some() {
+            return None;
+        }
         let (problem, space) = (system.problem, &system.discretisation);
-        let facets = problem.mesh.facets.fracture.iter();
         let laws = system.laws();
-        let ties: Vec<Tie> = facets
-            .map(|fracture| collapse::tie(&laws[*fracture as usize]))
-            .collect();
+        let facets = problem.mesh.facets.fracture.iter();
+        let tie = |fracture: &u32| collapse::tie(&laws[*fracture as usize]);
+        let ties: Vec<Tie> = facets.map(tie).collect();
         if rigid_modes::body_count(&problem.mesh, &ties) > MOST_BODIES {
             return None;
         }
         let free = rigid_modes::free_motions(problem, &space.points, &space.supports, &ties)?;
+        Some(Self {
+            resistance: Resistance::of(&free, problem, laws)?,
+            system,
+            ties,
+            free,
+        })
+    }
+
+    /// The mechanism for which a load is too much, as coefficients of the free motions; none if
+    /// none is found.
+    pub(super) fn exceeded_by(&self, load: &Load) -> Option<Vec<f64>> {
+        let (system, problem) = (self.system, self.system.problem);
         let forces = system.load_forces(load);
-        let work = free.work(&problem.mesh, &space.points, &forces);
-        let (along, force) = collapse::find(&free, problem, laws, &work)?;
+        let points = &system.discretisation.points;
+        let work = self.free.work(&problem.mesh, points, &forces);
+        let (along, force) = self.resistance.exceeded_by(&work)?;
         let rest = vec![DVec3::ZERO; forces.len()];
         let no_tractions = vec![DVec3::ZERO; interface(system).points.len()];
         let scale = system.force_scale(&rest, &no_tractions, load);
-        (force > UNBALANCED * scale).then(|| pushed(system, &free, &along, &ties))
-    };
-    match system.is_smooth() || system.coupling().is_some() {
-        true => Vec::new(),
-        false => found().unwrap_or_default(),
+        (force > UNBALANCED * scale).then_some(along)
+    }
+
+    /// The blocks that a mechanism moves.
+    pub(super) fn blocks(&self, along: &[f64]) -> Vec<FreeBody> {
+        pushed(self.system, &self.free, along, &self.ties)
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::space::rigid_modes::FreeBody;
 
-use super::free_blocks;
+use super::free_blocks::{self, Bearing};
 use super::iterate::Iterate;
 use super::{Iteration, StepOutcome, StepRecord, UnresolvedCause, UnresolvedPath};
 use crate::problem::Load;
@@ -165,14 +165,16 @@ impl<'a> Step<'a> {
         if std::mem::replace(&mut self.asked_for_collapse, true) {
             return Ok(());
         }
-        let (system, load) = (self.system, &self.record.load);
-        let blocks = free_blocks::collapse(system, load);
-        if blocks.is_empty() {
+        let Some(bearing) = Bearing::of(self.system) else {
             return Ok(());
-        }
+        };
+        let load = &self.record.load;
+        let Some(along) = bearing.exceeded_by(load) else {
+            return Ok(());
+        };
         let collapses = |share| {
             let part = Load::between(start, load, share);
-            !free_blocks::collapse(system, &part).is_empty()
+            bearing.exceeded_by(&part).is_some()
         };
         let halved = |(low, high), _| {
             let middle = 0.5 * (low + high);
@@ -183,7 +185,7 @@ impl<'a> Step<'a> {
         };
         let (_, high) = (0..BISECTIONS).fold((0.0, 1.0), halved);
         self.record.bearable = Some(high);
-        self.record.rigid_motions = blocks;
+        self.record.rigid_motions = bearing.blocks(&along);
         Err(StepOutcome::RigidBodyMotion)
     }
 

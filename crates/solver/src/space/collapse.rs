@@ -14,10 +14,10 @@
 //! not slide.
 
 use glam::DVec3;
-use kluft_mesh::facet_area_vector;
 use lie_core::{FractureLaw, Tension};
 
-use super::mechanism::{MOST_MOTIONS, ROUNDING, length};
+use super::corner::{Corner, corners, length, unit};
+use super::mechanism::MOST_MOTIONS;
 use super::reactions::Reactions;
 use super::rigid_modes::{FreeMotions, Tie};
 use crate::problem::Problem;
@@ -38,34 +38,26 @@ pub(crate) fn tie(law: &FractureLaw) -> Tie {
     }
 }
 
-/// How walls part at a corner of a facet.
-struct Corner {
-    law: FractureLaw,
-    /// Jump of each motion.
-    jumps: Vec<DVec3>,
-    normal: DVec3,
-    /// Its share of the facet's area (m^2).
-    area: f64,
+/// Walls at a corner of a facet.
+struct Wall<'a> {
+    corner: Corner,
+    law: &'a FractureLaw,
 }
 
-impl Corner {
-    /// How far each motion moves the walls in a direction.
-    fn along(&self, direction: DVec3) -> Vec<f64> {
-        self.jumps.iter().map(|jump| jump.dot(direction)).collect()
-    }
-
+impl Wall<'_> {
     /// Directions in which walls may move only one way; `glue` keeps walls with cohesion from
     /// sliding.
     fn one_way(&self, glue: bool) -> Vec<Vec<f64>> {
-        let (first, second) = self.normal.any_orthonormal_pair();
+        let normal = self.corner.normal;
+        let (first, second) = normal.any_orthonormal_pair();
         let is_glued = match self.law.friction {
             Some(friction) => glue && friction.cohesion > 0.0,
             None => self.law.shear_stiffness > 0.0,
         };
         let glued = [first, -first, second, -second].into_iter();
         let glued = glued.filter(|_| is_glued);
-        let all = std::iter::once(self.normal).chain(glued);
-        all.map(|direction| self.along(direction)).collect()
+        let all = std::iter::once(normal).chain(glued);
+        all.map(|direction| self.corner.along(direction)).collect()
     }
 
     /// The plane that cuts off a motion along which walls slide without opening enough.
@@ -73,15 +65,19 @@ impl Corner {
         let (opening, slip) = self.parts(motion);
         let slope = self.law.friction?.coefficient;
         let is_outside = opening < slope * slip.length() - SMALL * length(motion);
-        is_outside.then(|| self.along(self.normal - slope * slip.normalize()))
+        is_outside.then(|| {
+            let normal = self.corner.normal;
+            self.corner.along(normal - slope * slip.normalize())
+        })
     }
 
     /// How far a motion opens the walls, and how far it lets them slide.
     fn parts(&self, motion: &[f64]) -> (f64, DVec3) {
-        let moved = self.jumps.iter().zip(motion);
+        let moved = self.corner.jumps.iter().zip(motion);
         let jump: DVec3 = moved.map(|(jump, share)| *jump * *share).sum();
-        let opening = jump.dot(self.normal);
-        (opening, jump - opening * self.normal)
+        let normal = self.corner.normal;
+        let opening = jump.dot(normal);
+        (opening, jump - opening * normal)
     }
 
     /// What walls that move spend (N times the motion).
@@ -92,77 +88,65 @@ impl Corner {
             Tension::Cohesive { strength, .. } => strength,
             Tension::CutOff | Tension::Elastic => 0.0,
         };
-        self.area * (cohesion * slip.length() + strength * opening.max(0.0))
+        self.corner.area * (cohesion * slip.length() + strength * opening.max(0.0))
     }
 }
 
-/// The motion of a mechanism that loads (N, as work along each free motion) drive and no wall can
-/// stop, and the force that is left to drive it (N); none if this finds none.
-pub(crate) fn find(
-    free: &FreeMotions,
-    problem: &Problem,
-    laws: &[FractureLaw],
-    loads: &[f64],
-) -> Option<(Vec<f64>, f64)> {
-    if loads.is_empty() || loads.len() > MOST_MOTIONS {
-        return None;
-    }
-    let corners = corners(free, problem, laws);
-    if corners.len() * loads.len() > MOST_COMPONENTS {
-        return None;
-    }
-    let found = [false, true].map(|glue| tried(&corners, loads, glue));
-    let most = found
-        .into_iter()
-        .flatten()
-        .max_by(|a, b| a.1.total_cmp(&b.1));
-    most.filter(|(_, left)| *left > 0.0)
+/// What walls bear of loads on blocks that may move freely.
+pub(crate) struct Resistance<'a> {
+    walls: Vec<Wall<'a>>,
 }
 
-/// The projection of loads onto the cone of motions, and the force that walls leave to drive it
-/// (N).
-fn tried(corners: &[Corner], loads: &[f64], glue: bool) -> Option<(Vec<f64>, f64)> {
-    let unit = |opening: Vec<f64>| -> Option<Vec<f64>> {
-        let size = length(&opening);
-        let unit = || opening.iter().map(|entry| entry / size).collect();
-        (size > ROUNDING).then(unit)
-    };
-    let one_way = corners.iter().flat_map(|corner| corner.one_way(glue));
-    let mut openings: Vec<Vec<f64>> = one_way.filter_map(unit).collect();
-    for _ in 0..MOST_ROUNDS {
-        let all = Reactions {
-            openings: &openings,
-            forces: loads,
-        };
-        let (_, along) = all.find()?;
-        let cuts = corners.iter().filter_map(|corner| corner.cut(&along));
-        let cuts: Vec<Vec<f64>> = cuts.filter_map(unit).collect();
-        if !cuts.is_empty() {
-            openings.extend(cuts);
-            continue;
+impl<'a> Resistance<'a> {
+    /// Of all walls between blocks; none if there are too many motions to tell.
+    pub(crate) fn of(
+        free: &FreeMotions,
+        problem: &Problem,
+        laws: &'a [FractureLaw],
+    ) -> Option<Self> {
+        let count = free.count();
+        if !(1..=MOST_MOTIONS).contains(&count) {
+            return None;
         }
-        let spent: f64 = corners.iter().map(|corner| corner.spends(&along)).sum();
-        // A projection onto a cone does as much work as the square of its length.
-        let size = length(&along);
-        return (size > 0.0).then(|| (along, size - spent / size));
+        let wall = |corner: Corner| Wall {
+            law: &laws[corner.fracture],
+            corner,
+        };
+        let walls: Vec<Wall> = corners(free, problem).into_iter().map(wall).collect();
+        (walls.len() * count <= MOST_COMPONENTS).then_some(Self { walls })
     }
-    None
-}
 
-/// Corners of facets between blocks.
-fn corners(free: &FreeMotions, problem: &Problem, laws: &[FractureLaw]) -> Vec<Corner> {
-    let mesh = &problem.mesh;
-    let of_facet = |facet: usize| {
-        let corners = mesh.corners(&mesh.facets.elements, facet);
-        let area = facet_area_vector(&corners);
-        let share = area.length() / corners.len() as f64;
-        corners.into_iter().map(move |at| Corner {
-            law: laws[mesh.facets.fracture[facet] as usize],
-            jumps: free.jumps(mesh, facet, at),
-            normal: area.normalize(),
-            area: share,
-        })
-    };
-    let all = (0..mesh.facets.elements.len()).flat_map(of_facet);
-    all.filter(|corner| !corner.jumps.is_empty()).collect()
+    /// The motion of a mechanism that loads (N, as work along each free motion) drive and no wall
+    /// can stop, and the force that is left to drive it (N); none if this finds none.
+    pub(crate) fn exceeded_by(&self, loads: &[f64]) -> Option<(Vec<f64>, f64)> {
+        let found = [false, true].map(|glue| self.tried(loads, glue));
+        let found = found.into_iter().flatten();
+        let most = found.max_by(|a, b| a.1.total_cmp(&b.1));
+        most.filter(|(_, left)| *left > 0.0)
+    }
+
+    /// The projection of loads onto the cone of motions, and the force that walls leave to drive it
+    /// (N).
+    fn tried(&self, loads: &[f64], glue: bool) -> Option<(Vec<f64>, f64)> {
+        let one_way = self.walls.iter().flat_map(|wall| wall.one_way(glue));
+        let mut openings: Vec<Vec<f64>> = one_way.filter_map(|own| unit(&own)).collect();
+        for _ in 0..MOST_ROUNDS {
+            let all = Reactions {
+                openings: &openings,
+                forces: loads,
+            };
+            let (_, along) = all.find()?;
+            let cuts = self.walls.iter().filter_map(|wall| wall.cut(&along));
+            let cuts: Vec<Vec<f64>> = cuts.filter_map(|own| unit(&own)).collect();
+            if !cuts.is_empty() {
+                openings.extend(cuts);
+                continue;
+            }
+            let spent: f64 = self.walls.iter().map(|wall| wall.spends(&along)).sum();
+            // A projection onto a cone does as much work as the square of its length.
+            let size = length(&along);
+            return (size > 0.0).then(|| (along, size - spent / size));
+        }
+        None
+    }
 }

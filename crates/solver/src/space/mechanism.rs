@@ -13,9 +13,9 @@
 //! walls with reactions, and those that the forces close, their friction may hold it.
 
 use glam::DVec3;
-use kluft_mesh::facet_area_vector;
 use lie_core::FractureLaw;
 
+use super::corner::{Corner, corners, length, unit};
 use super::reactions::Reactions;
 use super::rigid_modes::{FreeMotions, dot};
 use super::sector_nodes::SectorNodes;
@@ -25,13 +25,13 @@ use crate::problem::Problem;
 const NO_REACTION: f64 = 1e-3;
 /// Most free motions that are compared with the walls; of more, all that is pushed counts.
 pub(super) const MOST_MOTIONS: usize = 60;
-/// Normal jump of a motion, lengths in units of the body, that is rounding.
-pub(super) const ROUNDING: f64 = 1e-9;
 
 /// A corner of a facet that free motions open or close.
 struct Wall {
     /// How far each motion opens it.
     opening: Vec<f64>,
+    /// The same in units of its length.
+    unit: Vec<f64>,
     fracture: usize,
     /// Its share of the facet's area (m^2).
     area: f64,
@@ -59,7 +59,7 @@ impl Push {
             _ => Vec::new(),
         };
         let size = length(&forces);
-        let openings: Vec<Vec<f64>> = walls.iter().map(Wall::unit_opening).collect();
+        let openings: Vec<Vec<f64>> = walls.iter().map(|wall| wall.unit.clone()).collect();
         let all = Reactions {
             openings: &openings,
             forces: &forces,
@@ -88,11 +88,6 @@ impl Push {
 }
 
 impl Wall {
-    fn unit_opening(&self) -> Vec<f64> {
-        let size = length(&self.opening);
-        self.opening.iter().map(|entry| entry / size).collect()
-    }
-
     /// The force along it that it can bear with a reaction (N) once it is closed (N).
     fn friction(&self, problem: &Problem, reaction: f64) -> f64 {
         let FractureLaw {
@@ -110,27 +105,17 @@ impl Wall {
 
 /// All corners of facets but those that no motion opens or closes.
 fn walls(free: &FreeMotions, problem: &Problem) -> Vec<Wall> {
-    let mesh = &problem.mesh;
-    let of_facet = |facet: usize| {
-        let corners = mesh.corners(&mesh.facets.elements, facet);
-        let area = facet_area_vector(&corners);
-        let share = area.length() / corners.len() as f64;
-        let wall = move |at: DVec3| {
-            let jumps = free.jumps(mesh, facet, at);
-            let opening = jumps.iter().map(|jump| jump.dot(area.normalize()));
-            Wall {
-                opening: opening.collect(),
-                fracture: mesh.facets.fracture[facet] as usize,
-                area: share,
-            }
-        };
-        corners.into_iter().map(wall)
+    let wall = |corner: Corner| {
+        let opening = corner.along(corner.normal);
+        Some(Wall {
+            unit: unit(&opening)?,
+            opening,
+            fracture: corner.fracture,
+            area: corner.area,
+        })
     };
-    let all = (0..mesh.facets.elements.len()).flat_map(of_facet);
-    all.filter(|wall| length(&wall.opening) > ROUNDING)
+    corners(free, problem)
+        .into_iter()
+        .filter_map(wall)
         .collect()
-}
-
-pub(super) fn length(vector: &[f64]) -> f64 {
-    dot(vector, vector).sqrt()
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod cell;
 pub(crate) mod collapse;
+mod corner;
 mod demands;
 pub(crate) mod folded;
 pub(crate) mod mechanism;
