@@ -1,7 +1,8 @@
-//! A limit of the address space (`ulimit -v`).
+//! Systems that refuse memory: by a limit of the address space (`ulimit -v`), or because they
+//! promise no more than they have (`vm.overcommit_memory = 2`).
 //!
-//! An allocation that the system refuses ends a process at once. Where there is such a limit, a
-//! process of its own therefore does the work, and this one says what has become of it.
+//! An allocation that the system refuses ends a process at once. On such a system a process of its
+//! own therefore does the work, and this one says what has become of it.
 
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
@@ -18,10 +19,12 @@ use crate::invocation::Invocation;
 /// Names the process that the work is done for, to the worker and to those that it starts.
 const WORKS_FOR: &str = "KLUFT_WORKS_FOR";
 
-/// Lets a process of its own do the work of this one if its address space is limited, and returns
-/// its exit code; none if this one shall do it.
+/// Where Linux tells how it promises memory, and the word for promising no more than there is.
+const PROMISES: (&str, &str) = ("/proc/sys/vm/overcommit_memory", "2");
+
+/// Lets a process of its own do the work of this one if the system may refuse it memory, and
+/// returns its exit code; none if this one shall do it.
 pub fn delegate(called: &Invocation) -> Option<u8> {
-    let (limit, _) = getrlimit(Resource::RLIMIT_AS).ok()?;
     if let Some(master) = std::env::var_os(WORKS_FOR) {
         let parent = getppid().to_string();
         // A worker does not outlive who waits for it. That no signal is to be had is no reason to
@@ -29,20 +32,29 @@ pub fn delegate(called: &Invocation) -> Option<u8> {
         let _ = (master == *parent).then(|| prctl::set_pdeathsig(Signal::SIGKILL));
         return None;
     }
-    if limit == RLIM_INFINITY {
-        return None;
-    }
+    let refusing = refusing()?;
     let mut command = called.own.as_ref()?.command();
     command.args(called.words.iter().skip(1));
     command.env(WORKS_FOR, std::process::id().to_string());
-    Some(of_status(command.status().ok()?))
+    Some(of_status(command.status().ok()?, refusing))
 }
 
-fn of_status(status: ExitStatus) -> u8 {
+/// What may refuse memory to this process, and its key.
+fn refusing() -> Option<(&'static str, &'static str)> {
+    let (limit, _) = getrlimit(Resource::RLIMIT_AS).ok()?;
+    if limit != RLIM_INFINITY {
+        return Some(("the limit of its address space", "ulimit -v"));
+    }
+    let told = std::fs::read_to_string(PROMISES.0).ok()?;
+    let strict = "the system, which promises no more memory than it has,";
+    (told.trim() == PROMISES.1).then_some((strict, "vm.overcommit_memory"))
+}
+
+fn of_status(status: ExitStatus, refusing: (&str, &str)) -> u8 {
     match (status.code(), status.signal()) {
         (Some(code), _) => u8::try_from(code).unwrap_or(1),
         (None, Some(signal)) if signal == Signal::SIGABRT as i32 => {
-            let failure = Failure::Machine(vec![refused()]);
+            let failure = Failure::Machine(vec![refused(refusing)]);
             failure.print();
             failure.code()
         }
@@ -51,10 +63,10 @@ fn of_status(status: ExitStatus) -> u8 {
     }
 }
 
-fn refused() -> Defect {
+fn refused((by, key): (&str, &str)) -> Defect {
     Defect::new(
         "memory of this process",
-        "the limit of its address space refused the memory that is named above",
-        "mesh coarser (a larger h), run on fewer threads, or raise the limit (ulimit -v)",
+        format!("{by} refused the memory that is named above"),
+        format!("mesh coarser (a larger h), run on fewer threads, or raise the limit ({key})"),
     )
 }

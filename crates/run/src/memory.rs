@@ -17,8 +17,8 @@ pub fn used_bytes() -> usize {
 }
 
 /// Memory that this process can still have (bytes): what the machine gives without swapping, the
-/// limit of its control groups (of a container, a batch job) and that of its address space
-/// (`ulimit -v`) allow.
+/// limit of its control groups (of a container, a batch job), that of its address space
+/// (`ulimit -v`) and what the system promises (`vm.overcommit_memory = 2`) allow.
 pub fn available_bytes() -> Option<usize> {
     System::this().available()
 }
@@ -70,9 +70,11 @@ impl System {
 
     fn available(&self) -> Option<usize> {
         let machine = self.entry("proc/meminfo", "MemAvailable:");
-        let limits = [machine, self.left_beside_kernels()];
+        let reserved = [self.left_of_address_space(), self.left_of_promises()];
+        let beside_kernels = reserved.map(|left| Some(left?.saturating_sub(self.kernels())));
+        let limits = [machine].into_iter().chain(beside_kernels);
         let groups = self.left_of_groups();
-        limits.into_iter().flatten().chain(groups).min()
+        limits.flatten().chain(groups).min()
     }
 
     /// What the limit of the address space leaves.
@@ -86,15 +88,22 @@ impl System {
         Some(limit.saturating_sub(used))
     }
 
-    /// What the limit of the address space leaves beside what dense kernels reserve.
-    fn left_beside_kernels(&self) -> Option<usize> {
-        let left = self.left_of_address_space()?;
+    /// What a system that promises no more memory than it has still promises.
+    fn left_of_promises(&self) -> Option<usize> {
+        const STRICT: usize = 2;
+        (self.number("proc/sys/vm/overcommit_memory")? == STRICT).then_some(())?;
+        let promised = self.entry("proc/meminfo", "Committed_AS:")?;
+        let limit = self.entry("proc/meminfo", "CommitLimit:")?;
+        Some(limit.saturating_sub(promised))
+    }
+
+    /// Address space that dense kernels reserve.
+    fn kernels(&self) -> usize {
         let caches = (0..4).filter_map(|index| {
             let cache = format!("sys/devices/system/cpu/cpu0/cache/index{index}/size");
             self.number(cache)
         });
-        let reserved = KERNEL_CACHES * caches.max().unwrap_or(0);
-        Some(left.saturating_sub(reserved))
+        KERNEL_CACHES * caches.max().unwrap_or(0)
     }
 
     /// What each control group that this process belongs to leaves, of both versions.
@@ -153,7 +162,8 @@ mod tests {
         let root = tempfile::tempdir().expect("a folder");
         let meminfo = (
             "proc/meminfo",
-            "MemTotal: 9 kB\nMemAvailable:    8388608 kB\n",
+            "MemTotal: 9 kB\nMemAvailable:    8388608 kB\nCommitLimit:     6291456 kB\n\
+             Committed_AS:    1048576 kB\n",
         );
         for (file, text) in [meminfo].iter().chain(files) {
             let path = root.path().join(file);
@@ -195,6 +205,13 @@ mod tests {
         files.push(("sys/devices/system/cpu/cpu0/cache/index0/size", "48K\n"));
         files.push(("sys/devices/system/cpu/cpu0/cache/index3/size", "262144K\n"));
         assert_eq!(available(&files), Some(3 * GIB - GIB / 2));
+    }
+
+    #[test]
+    fn what_a_strict_system_has_promised_counts() {
+        let file = "proc/sys/vm/overcommit_memory";
+        assert_eq!(available(&[(file, "0\n")]), Some(8 * GIB));
+        assert_eq!(available(&[(file, "2\n")]), Some(5 * GIB));
     }
 
     #[test]

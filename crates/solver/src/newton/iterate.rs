@@ -61,6 +61,14 @@ pub(super) struct Update<'a> {
     pub(super) planes: &'a Linearised,
 }
 
+impl Iterate {
+    /// Lets only solves to come tell of the rock beside facet points.
+    pub(super) fn forget_secants(&mut self) {
+        let trials = self.last_trials.iter_mut();
+        trials.for_each(|last| *last = last.of_other_kind());
+    }
+}
+
 impl Correction {
     pub(super) fn of(system: &System<'_>, unknowns: Vec<DVec3>, is_recycled: bool) -> Self {
         Self {

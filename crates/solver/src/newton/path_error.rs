@@ -153,8 +153,8 @@ pub(super) fn is_bent(system: &System<'_>, increment: &Increment<'_>, size: f64)
         })
 }
 
-/// How far walls that stick at the end of an increment have slipped in it until they met, at each
-/// facet point (m).
+/// How far off the walls are that stick at the end of an increment, by what they have slipped in it
+/// until they met, at each facet point (m).
 pub(super) fn slips_until_met(system: &System<'_>, increment: &Increment<'_>) -> Vec<f64> {
     let points = &interface(system).points;
     let mut slips = vec![0.0; points.len()];
@@ -182,10 +182,12 @@ fn share_until_met(law: &FractureLaw, from: &FacetPointState, across: f64) -> Op
     (gap > 0.0 && across < 0.0).then(|| (gap / -across).min(1.0))
 }
 
-/// What of the slip at which they stick walls hold against the rock: all, if they have no elastic
-/// slip.
+/// What counts of a slip at which walls are taken to stick although it is no elastic one: as much
+/// as they hold against the rock, all of it without elastic slip, or what it would open them by.
 fn held(law: &FractureLaw, point: &FacetPoint) -> f64 {
-    1.0 / (1.0 + point.rock_stiffness().shear / law.shear_stiffness)
+    let along = 1.0 / (1.0 + point.rock_stiffness().shear / law.shear_stiffness);
+    let across = law.friction.map_or(0.0, |friction| friction.dilation);
+    along.max(across)
 }
 
 /// By how much walls are apart that carry nothing (m), else 0.

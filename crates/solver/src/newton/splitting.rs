@@ -13,7 +13,7 @@
 //! For laws that are monotone it always comes closer, by a factor an iteration. Its matrix never
 //! changes. It ends where Newton's method converges from what it has found.
 
-use super::facet_points::{LastTrial, Linearisation};
+use super::facet_points::Linearisation;
 use super::iterate::Iterate;
 use super::{Newton, Step, StepOutcome};
 
@@ -46,7 +46,7 @@ impl Newton {
             ended => return Ok(ended.is_ok()),
         }
         iterate.linearisation = Linearisation::Tangents;
-        iterate.last_trials = vec![LastTrial::default(); iterate.last_trials.len()];
+        iterate.forget_secants();
         match self.iterate_at_most(NEWTON_ITERATIONS, step, iterate) {
             Err(StepOutcome::Stopped) => Err(StepOutcome::Stopped),
             ended => Ok(ended.is_ok()),
@@ -76,7 +76,7 @@ impl Newton {
             }
             let mut tried = iterate.clone();
             tried.linearisation = Linearisation::Tangents;
-            tried.last_trials = vec![LastTrial::default(); iterate.last_trials.len()];
+            tried.forget_secants();
             match self.iterate_at_most(NEWTON_ITERATIONS, step, &mut tried) {
                 Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
                 Err(failed) => outcome = outcome.and(failed),
