@@ -68,12 +68,16 @@ fn balance_below_cutoff(x_c: f64, kappa: f64, q: f64) -> (f64, f64) {
     (x_c + d, d - a)
 }
 
+/// Share of a step of Halley's method at which what it leaves is rounding: the error of the next is
+/// the cube of its own.
+const LAST_STEP: f64 = 5e-6;
+
 /// Root `s = ln x` of `(e^s - 1) (1 + s^2 + kappa) = q < 0`, by Halley kept inside a bracket.
 fn balance_logarithm(kappa: f64, q: f64) -> f64 {
     // For s <= -1 the left side is below -0.63 (1 + s^2), which bounds the root.
     let mut low = -1.0 - (-q / 0.63).sqrt();
     let mut high = 0.0_f64;
-    let mut s = (q / (1.0 + kappa)).max(low);
+    let mut s = guess(q / (1.0 + kappa)).max(low);
     for _ in 0..100 {
         let closing = s.exp_m1();
         let excess = closing * (1.0 + s * s + kappa) - q;
@@ -87,12 +91,22 @@ fn balance_logarithm(kappa: f64, q: f64) -> f64 {
         let bend = x * (m + 4.0 * s) + 2.0 * closing;
         let newton = excess / slope;
         let halley = s - newton / (1.0 - 0.5 * newton * bend / slope).max(0.5);
-        let inside = halley > low && halley < high;
+        let inside = halley >= low && halley <= high;
         let next = if inside { halley } else { 0.5 * (low + high) };
-        if (next - s).abs() <= 4.0 * f64::EPSILON * s.abs() {
+        if inside && (next - s).abs() <= LAST_STEP * s.abs() {
             return next;
         }
         s = next;
     }
     s
+}
+
+/// About `ln(1 + y)`, where `y < 0` is what the law closes by without its logarithm.
+fn guess(y: f64) -> f64 {
+    const FAR: f64 = -0.8;
+    if y < FAR {
+        y
+    } else {
+        y * (6.0 + y) / (6.0 + 4.0 * y)
+    }
 }

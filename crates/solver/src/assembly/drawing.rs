@@ -15,7 +15,7 @@ const TURNED: f64 = 1e-9;
 
 /// One term of the jump of a facet point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Term {
+pub(super) struct DrawnTerm {
     pub(super) unknown: u32,
     /// `J_i`.
     pub(super) factor: DMat3,
@@ -24,9 +24,11 @@ pub(super) struct Term {
 /// A facet point with its terms, before they are numbered.
 pub(super) struct Drawn {
     pub(super) point: FacetPoint,
+    /// The walls carrying the initial stress.
+    pub(super) walls: JointState,
     /// The law of the point, if it is not that of its fracture.
     pub(super) law: Option<FractureLaw>,
-    pub(super) terms: Vec<Term>,
+    pub(super) terms: Vec<DrawnTerm>,
     /// Load case and jump (m) of prescribed displacements.
     pub(super) prescribed: Vec<(u32, DVec3)>,
 }
@@ -118,7 +120,7 @@ impl Drawing<'_> {
         };
         let own_law = problem.varying_law(facet, rule, node);
         let law = own_law.unwrap_or(problem.fractures[fracture as usize].law);
-        let mut point = FacetPoint {
+        let point = FacetPoint {
             facet: facet as u32,
             fracture,
             law: fracture,
@@ -126,11 +128,11 @@ impl Drawing<'_> {
             area,
             normal,
             spring,
-            initial: JointState::default(),
+            walls: 0,
         };
-        point.initial = initial_walls(problem, &law, &point, 0.0);
         let prescribed = (0..).zip(prescribed);
         Drawn {
+            walls: initial_walls(problem, &law, &point, 0.0),
             point,
             law: own_law,
             terms,
@@ -148,7 +150,7 @@ fn jump_terms(
     plus: u32,
     minus: u32,
     value: f64,
-) -> impl Iterator<Item = Term> {
+) -> impl Iterator<Item = DrawnTerm> {
     let (plus_sector, sectors) = points.sector(plus as usize);
     let (minus_sector, _) = points.sector(minus as usize);
     let free = |wall: u32| {
@@ -158,7 +160,7 @@ fn jump_terms(
     };
     let (free_plus, free_minus) = (free(plus), free(minus));
     (0..sectors)
-        .map(move |k| Term {
+        .map(move |k| DrawnTerm {
             unknown: plus - plus_sector + k,
             factor: value
                 * (coefficient(sectors, plus_sector, k) * free_plus

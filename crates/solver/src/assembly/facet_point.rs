@@ -1,7 +1,7 @@
 //! A point of a facet, where a law is integrated.
 
 use glam::DVec3;
-use lie_core::{JointState, RockStiffness};
+use lie_core::RockStiffness;
 
 /// Stiffness of the rock along a facet, as a share of that across.
 const SHEAR_SHARE: f64 = 0.3;
@@ -25,8 +25,9 @@ pub struct FacetPoint {
     /// Upper bound of the stiffness of the rock next to it, about `E/h` (Pa/m): constrained modulus
     /// over the height of the cells on both sides, in series.
     pub spring: f64,
-    /// The walls carrying the initial stress. The law always sees the jump beyond that.
-    pub initial: JointState,
+    /// Place of its walls among those that carry the initial stress, see
+    /// [`Interface::initial_walls`](super::interface::Interface::initial_walls).
+    pub(crate) walls: u32,
 }
 
 impl FacetPoint {
@@ -36,10 +37,5 @@ impl FacetPoint {
             normal: self.spring,
             shear: SHEAR_SHARE * self.spring,
         }
-    }
-
-    /// Jump (m) at which the law carries the initial stress.
-    pub fn initial_jump(&self) -> DVec3 {
-        self.initial.separation.opening * self.normal + self.initial.slip
     }
 }

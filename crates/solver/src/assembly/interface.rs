@@ -10,12 +10,13 @@
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{InterfaceBlocks, InterfacePattern, Lists, add_at};
-use lie_core::{FacetQuadrature, FractureLaw};
+use lie_core::{FacetQuadrature, FractureLaw, JointState};
 use rayon::prelude::*;
 
-use crate::assembly::drawing::{Drawn, Term, draw, initial_walls};
+use crate::assembly::drawing::{Drawn, draw, initial_walls};
 use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::shared_walls;
+use crate::assembly::terms::{Term, Terms};
 use crate::problem::{Load, Problem};
 use crate::space::sector_nodes::SectorNodes;
 use crate::space::supports::Supports;
@@ -40,11 +41,9 @@ pub struct Interface {
     laws: Vec<FractureLaw>,
     /// Rule that each fracture is integrated by.
     rules: Vec<FacetQuadrature>,
-    /// Start of the terms of each facet point.
-    term_offset: Vec<usize>,
-    terms: Vec<Term>,
-    /// Facet point of each term.
-    point_of_term: Vec<u32>,
+    /// Walls carrying the initial stress; facet points that share theirs refer to the same.
+    walls: Vec<JointState>,
+    terms: Terms,
     /// Jumps of prescribed displacements, where there are any, points ascending.
     prescribed: Vec<PrescribedJump>,
     /// Unknowns that move facet points, ascending.
@@ -65,16 +64,14 @@ impl Interface {
         let (nodal, middle): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
         let fractures = problem.fractures.iter();
         let all = || nodal.iter().chain(&middle).flatten();
-        let (points_count, terms) = (all().count(), all().map(|drawn| drawn.terms.len()).sum());
         let mut interface = Self {
-            points: Vec::with_capacity(points_count),
+            points: Vec::with_capacity(all().count()),
             laws: fractures.map(|fracture| fracture.law).collect(),
             rules: (0..problem.fractures.len() as u32)
                 .map(|fracture| problem.rule_of(fracture))
                 .collect(),
-            term_offset: vec![0],
-            terms: Vec::with_capacity(terms),
-            point_of_term: Vec::with_capacity(terms),
+            walls: Vec::new(),
+            terms: Terms::of(all().map(|drawn| &drawn.terms[..])),
             prescribed: Vec::new(),
             unknowns: Vec::new(),
             terms_of_unknown: Lists::default(),
@@ -82,9 +79,6 @@ impl Interface {
         };
         for drawn in nodal.into_iter().chain(middle).flatten() {
             let number = interface.points.len() as u32;
-            interface
-                .point_of_term
-                .extend(drawn.terms.iter().map(|_| number));
             let prescribed = drawn.prescribed.into_iter();
             let prescribed = prescribed.map(|(case, jump)| PrescribedJump {
                 point: number,
@@ -93,12 +87,11 @@ impl Interface {
             });
             interface.prescribed.extend(prescribed);
             interface.points.push(drawn.point);
+            interface.set_walls(number as usize, drawn.walls);
             if let Some(law) = drawn.law {
                 interface.points[number as usize].law = interface.laws.len() as u32;
                 interface.laws.push(law);
             }
-            interface.terms.extend(drawn.terms);
-            interface.term_offset.push(interface.terms.len());
         }
         if problem.facet_quadrature != FacetQuadrature::Gauss {
             shared_walls::share(problem, points, &mut interface.points);
@@ -108,17 +101,18 @@ impl Interface {
     }
 
     fn connect(&mut self) {
-        let mut unknowns: Vec<u32> = self.terms.iter().map(|term| term.unknown).collect();
+        let mut unknowns: Vec<u32> = self.terms.all().iter().map(|term| term.unknown).collect();
         unknowns.sort_unstable();
         unknowns.dedup();
         let row = |term: &Term| unknowns.partition_point(|other| *other < term.unknown) as u32;
-        let rows: Vec<u32> = self.terms.iter().map(row).collect();
+        let rows: Vec<u32> = self.terms.all().iter().map(row).collect();
         self.terms_of_unknown = Lists::group(rows.into_iter(), unknowns.len());
         let columns: Vec<Vec<u32>> = (0..unknowns.len())
             .into_par_iter()
             .map(|row| {
                 let terms = self.terms_of_unknown.of(row).iter();
-                let around = terms.flat_map(|&term| self.terms_beside(term));
+                let points = terms.map(|&term| self.terms.point(term));
+                let around = points.flat_map(|point| self.terms.of_point(point));
                 let mut columns: Vec<u32> = around.map(|other| other.unknown).collect();
                 columns.sort_unstable();
                 columns.dedup();
@@ -132,10 +126,13 @@ impl Interface {
     /// Gives the fractures other laws, one each, the same all over a fracture, which carry the
     /// initial stress from now on. The facet points stay.
     pub(crate) fn set_laws(&mut self, problem: &Problem, laws: Vec<FractureLaw>) {
-        for point in &mut self.points {
+        self.walls.clear();
+        for number in 0..self.points.len() {
+            let point = &mut self.points[number];
             let law = &laws[point.fracture as usize];
             point.law = point.fracture;
-            point.initial = initial_walls(problem, law, point, 0.0);
+            let walls = initial_walls(problem, law, point, 0.0);
+            self.set_walls(number, walls);
         }
         self.laws = laws;
     }
@@ -204,12 +201,38 @@ impl Interface {
     /// Lets the walls carry the initial stress, which is total, beside a fluid whose pressure at
     /// each facet point is given (Pa).
     pub(crate) fn set_initial_pressures(&mut self, problem: &Problem, pressures: &[f64]) {
-        for (point, pressure) in self.points.iter_mut().zip(pressures) {
+        for (number, pressure) in pressures.iter().enumerate() {
             if *pressure != 0.0 {
+                let point = &self.points[number];
                 let law = &self.laws[point.law as usize];
-                point.initial = initial_walls(problem, law, point, *pressure);
+                let walls = initial_walls(problem, law, point, *pressure);
+                self.set_walls(number, walls);
             }
         }
+    }
+
+    /// The walls of a facet point carrying the initial stress. The law always sees the jump beyond
+    /// that.
+    pub fn initial_walls(&self, point: &FacetPoint) -> &JointState {
+        &self.walls[point.walls as usize]
+    }
+
+    /// Those of all facet points.
+    pub(crate) fn all_initial_walls(&self) -> impl Iterator<Item = JointState> + '_ {
+        self.points.iter().map(|point| *self.initial_walls(point))
+    }
+
+    /// Jump (m) at which the law of a facet point carries the initial stress.
+    pub fn initial_jump(&self, point: &FacetPoint) -> DVec3 {
+        let walls = self.initial_walls(point);
+        walls.separation.opening * point.normal + walls.slip
+    }
+
+    fn set_walls(&mut self, point: usize, walls: JointState) {
+        if self.walls.last() != Some(&walls) {
+            self.walls.push(walls);
+        }
+        self.points[point].walls = self.walls.len() as u32 - 1;
     }
 
     /// Where the fractures add to the stiffness of the rock.
@@ -218,15 +241,6 @@ impl Interface {
             rows: &self.unknowns,
             columns: &self.columns,
         }
-    }
-
-    fn terms_of(&self, point: usize) -> &[Term] {
-        &self.terms[self.term_offset[point]..self.term_offset[point + 1]]
-    }
-
-    /// Terms of the facet point that `term` belongs to.
-    fn terms_beside(&self, term: u32) -> &[Term] {
-        self.terms_of(self.point_of_term[term as usize] as usize)
     }
 
     /// Jumps `u(plus) - u(minus)` (m) under a load.
@@ -251,8 +265,9 @@ impl Interface {
 
     /// What the unknowns make of the jump at a facet point.
     fn jump(&self, point: usize, unknowns: &[DVec3]) -> DVec3 {
-        let terms = self.terms_of(point).iter();
-        terms.map(|t| t.factor * unknowns[t.unknown as usize]).sum()
+        let terms = self.terms.of_point(point).iter();
+        let moved = |term: &Term| *self.terms.factor(term) * unknowns[term.unknown as usize];
+        terms.map(moved).sum()
     }
 
     /// By how much the prescribed displacements change the jumps from one load to another (m).
@@ -271,9 +286,8 @@ impl Interface {
         let sum = |row: usize| {
             let terms = self.terms_of_unknown.of(row).iter();
             let force = |&term: &u32| {
-                let point = self.point_of_term[term as usize] as usize;
-                let factor = self.terms[term as usize].factor.transpose();
-                self.points[point].area * (factor * tractions[point])
+                let point = self.terms.point(term);
+                self.points[point].area * (self.terms.transposed(term) * tractions[point])
             };
             sign * terms.map(force).sum::<DVec3>()
         };
@@ -293,10 +307,12 @@ impl Interface {
     pub(crate) fn pushes(&self, row: usize) -> impl Iterator<Item = (usize, DVec3)> + '_ {
         let terms = self.terms_of_unknown.of(row).iter();
         terms.map(|&term| {
-            let number = self.point_of_term[term as usize] as usize;
+            let number = self.terms.point(term);
             let point = &self.points[number];
-            let factor = self.terms[term as usize].factor.transpose();
-            (number, point.area * (factor * point.normal))
+            (
+                number,
+                point.area * (self.terms.transposed(term) * point.normal),
+            )
         })
     }
 
@@ -328,11 +344,11 @@ impl Interface {
         let columns = self.columns.of(row);
         let mut blocks = vec![DMat3::ZERO; columns.len()];
         for &term in self.terms_of_unknown.of(row) {
-            let point = self.point_of_term[term as usize] as usize;
-            let left = self.terms[term as usize].factor.transpose() * tangents[point];
-            for other in self.terms_of(point) {
+            let point = self.terms.point(term);
+            let left = self.terms.transposed(term) * tangents[point];
+            for other in self.terms.of_point(point) {
                 let place = columns.partition_point(|column| *column < other.unknown);
-                blocks[place] += self.points[point].area * (left * other.factor);
+                blocks[place] += self.points[point].area * (left * *self.terms.factor(other));
             }
         }
         blocks

@@ -10,4 +10,5 @@ pub(crate) mod rock;
 pub(crate) mod rock_spring;
 pub(crate) mod shared_walls;
 pub(crate) mod springs;
+mod terms;
 pub(crate) mod tetrahedra;

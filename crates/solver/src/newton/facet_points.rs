@@ -2,9 +2,10 @@
 //! solves.
 
 use glam::{DMat3, DVec3};
-use lie_core::{FractureLaw, JointState, RockStiffness, Separation, Tangent, TrialState};
+use lie_core::{FractureLaw, JointState, RockStiffness, Tangent, TrialState};
 use rayon::prelude::*;
 
+use super::last_trial::LastTrial;
 use crate::assembly::facet_point::FacetPoint;
 use crate::assembly::interface::Interface;
 use crate::linear::Tangents;
@@ -20,77 +21,6 @@ const LEAST_SHARE: f64 = 0.1;
 
 pub(super) fn interface<'a>(system: &'a System<'_>) -> &'a Interface {
     &system.discretisation.interface
-}
-
-/// Where the last linear solve of an increment put a facet point.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct LastTrial {
-    /// Where the walls are; none before the first solve.
-    walls: Option<Walls>,
-    /// The trial state that the rock beside it is told by, if there is one.
-    returned: Option<Returned>,
-}
-
-/// Where the walls of a facet point are.
-#[derive(Debug, Clone, Copy)]
-struct Walls {
-    separation: Separation,
-    /// Tangential jump (m), since the walls last stuck without shear.
-    slip: DVec3,
-}
-
-/// What a trial state that was mapped back to the law tells of the rock.
-#[derive(Debug, Clone, Copy)]
-struct Returned {
-    separation: Separation,
-    /// Normal traction on the tangent plane (Pa).
-    traction: f64,
-}
-
-impl LastTrial {
-    /// Stiffness of the surrounding rock (Pa/m) as two linear solves tell it, `-dt/dw`; 0 where
-    /// they tell nothing.
-    fn secant_to(&self, trial: &TrialState) -> f64 {
-        let secant = self.returned.map(|before| {
-            let moved = trial.separation.beyond(before.separation);
-            (before.traction - trial.normal_traction) / moved
-        });
-        secant.filter(|secant| secant.is_finite()).unwrap_or(0.0)
-    }
-
-    /// Where the walls are, of what is told by solves of another kind.
-    pub(super) fn of_other_kind(&self) -> Self {
-        Self {
-            returned: None,
-            ..*self
-        }
-    }
-
-    /// Where the walls are at a state. A law that is near closure, and whose tangent is large, can
-    /// be thrown so far apart that what its walls are beyond it tells no longer where they are.
-    fn walls(&self, point: &FacetPoint, state: &FacetPointState) -> Walls {
-        let joint = &state.joint;
-        let across = state.jump_residual.dot(point.normal);
-        let along = state.jump_residual - across * point.normal;
-        let of_state = Walls {
-            separation: joint.separation.moved(across),
-            slip: joint.slip + along,
-        };
-        let Some(own) = self.walls else {
-            return of_state;
-        };
-        let size = own.separation.opening.abs() + own.separation.aperture.abs();
-        let is_far = joint.separation.opening.abs() > size;
-        let slips_far = joint.slip.length() > own.slip.length();
-        Walls {
-            separation: if is_far {
-                own.separation
-            } else {
-                of_state.separation
-            },
-            slip: if slips_far { own.slip } else { of_state.slip },
-        }
-    }
 }
 
 /// Takes the state to another load: prescribed displacements move walls that are held.
@@ -238,58 +168,27 @@ pub(super) fn follow(
         .zip(state.facet_points.par_iter_mut().zip(last))
         .map(|(((point, change), tangent), (state, last))| {
             let law = system.law(point);
-            let trial = trial(point, (state, last), *tangent, *change);
+            let before = *last;
+            let trial = last.moved(point, state, *tangent, *change);
             match planes.by {
                 Linearisation::Springs if !law.is_linear() => split(law, point, trial, state),
                 Linearisation::Tangents if follows(law, &trial, state) => {
                     at_jump(law, point, &trial, state)
                 }
-                _ => follow_point(law, point, &trial, state, last),
+                _ => follow_point(law, point, &trial, state, &before),
             }
         })
         .collect()
 }
 
-/// Where a change of the jump (m) takes a facet point on the tangent plane of its law.
-fn trial(
-    point: &FacetPoint,
-    (state, last): (&FacetPointState, &mut LastTrial),
-    tangent: DMat3,
-    change: DVec3,
-) -> TrialState {
-    let walls = last.walls(point, state);
-    let opening = change.dot(point.normal);
-    let slip = walls.slip + change - opening * point.normal;
-    // Rounding leaves a part of the slip across the walls. Added up over a path it is more than
-    // what walls without load open by.
-    let rounded = slip.dot(point.normal);
-    let traction = state.joint.traction(point.normal) + tangent * (state.jump_residual + change);
-    let across = traction.dot(point.normal);
-    let walls = Walls {
-        separation: walls.separation.moved(opening + rounded),
-        slip: slip - rounded * point.normal,
-    };
-    last.walls = Some(walls);
-    TrialState {
-        separation: walls.separation,
-        slip: walls.slip,
-        normal_traction: across,
-        shear: traction - across * point.normal,
-    }
-}
-
-fn follow_point(
+pub(super) fn follow_point(
     law: &FractureLaw,
     point: &FacetPoint,
     trial: &TrialState,
     state: &mut FacetPointState,
-    last: &mut LastTrial,
+    before: &LastTrial,
 ) -> f64 {
-    let secant = last.secant_to(trial).clamp(0.0, point.spring);
-    last.returned = Some(Returned {
-        separation: trial.separation,
-        traction: trial.normal_traction,
-    });
+    let secant = before.secant_to(trial).clamp(0.0, point.spring);
     let rock = rock_stiffness(law, point, trial, secant);
     update_state(law, point, trial, rock, state)
 }
@@ -384,65 +283,5 @@ fn rock_stiffness(
     RockStiffness {
         normal: if kinked { bound.normal } else { secant },
         ..bound
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use lie_core::{Closure, ClosureKind, JointHistory};
-
-    use super::*;
-
-    /// Nearly closed walls, of which an inexact solve makes so much tension that the law balances
-    /// it kilometres away, are where the solves have put them.
-    #[test]
-    fn walls_are_found_again_where_solves_have_put_them() {
-        let aperture = 1e-5;
-        let kind = ClosureKind::Hyperbolic {
-            max_closure: aperture,
-        };
-        let law = FractureLaw::elastic(Closure::new(aperture, 1e9, kind), 1e9);
-        let point = FacetPoint {
-            facet: 0,
-            fracture: 0,
-            law: 0,
-            position: DVec3::ZERO,
-            area: 1.0,
-            normal: DVec3::Z,
-            spring: 1e11,
-            initial: JointState::default(),
-        };
-        let still = TrialState {
-            separation: law.closure.opened(0.0),
-            slip: DVec3::ZERO,
-            normal_traction: -1e20,
-            shear: DVec3::ZERO,
-        };
-        let history = JointHistory::default();
-        let joint = law.return_map(&still, point.rock_stiffness(), &history);
-        let start = joint.separation;
-        let mut state = FacetPointState {
-            joint,
-            jump_residual: DVec3::ZERO,
-            history,
-        };
-        let mut last = LastTrial::default();
-        let mut farthest: f64 = 0.0;
-        for change in [2e-6, -1e-6, -0.5e-6] {
-            let exact = tangent(&law, &point, &state).exact;
-            let trial = trial(
-                &point,
-                (&state, &mut last),
-                exact,
-                DVec3::new(0.0, 1e-6, change),
-            );
-            follow_point(&law, &point, &trial, &mut state, &mut last);
-            farthest = farthest.max(state.joint.separation.opening);
-        }
-        assert!(farthest > 1e3, "{farthest} m");
-        let walls = last.walls(&point, &state);
-        let moved = walls.separation.beyond(start);
-        assert!((moved - 0.5e-6).abs() < 1e-20, "{moved:e} m");
-        assert!((walls.slip - DVec3::new(0.0, 3e-6, 0.0)).length() < 1e-20);
     }
 }

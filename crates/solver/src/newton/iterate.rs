@@ -5,8 +5,9 @@ use kluft_algebra::largest;
 
 use super::acceleration::Acceleration;
 use super::damping::Damping;
-use super::facet_points::{LastTrial, Linearisation, Linearised};
+use super::facet_points::{Linearisation, Linearised};
 use super::fluid::FlowIterate;
+use super::last_trial::LastTrial;
 use crate::problem::Load;
 use crate::system::{State, StateScales, System};
 

@@ -32,6 +32,7 @@ mod forcing_term;
 mod free_blocks;
 mod iterate;
 mod iteration;
+mod last_trial;
 mod line_search;
 mod load_step;
 mod mean_strain;

@@ -138,7 +138,7 @@ impl<'a> System<'a> {
         let interface = &mut self.discretisation.interface;
         let pressures = initial_pressures(&self.problem.mesh, flow, interface);
         interface.set_initial_pressures(self.problem, &pressures);
-        let apertures = apertures(interface.points.iter().map(|point| point.initial));
+        let apertures = apertures(interface.all_initial_walls());
         self.coupling = Some(Coupling::of(self.problem, flow, interface, &apertures)?);
         Ok(())
     }
@@ -186,9 +186,9 @@ impl<'a> System<'a> {
     /// The state before any load: no displacement, apertures and shear as the initial stress
     /// leaves them, or as the stage before does.
     pub fn initial_state(&self) -> State {
-        let points = self.discretisation.interface.points.iter();
-        let facet_points = points.map(|point| FacetPointState {
-            joint: point.initial,
+        let interface = &self.discretisation.interface;
+        let facet_points = interface.all_initial_walls().map(|joint| FacetPointState {
+            joint,
             jump_residual: DVec3::ZERO,
             history: JointHistory::default(),
         });
@@ -197,10 +197,10 @@ impl<'a> System<'a> {
             None => facet_points.collect(),
         };
         let load = self.problem.schedule.start();
-        let fluid = self.coupling.as_ref().map(|coupling| {
-            let walls = self.discretisation.interface.points.iter();
-            coupling.start(&load, &apertures(walls.map(|point| point.initial)))
-        });
+        let fluid = self
+            .coupling
+            .as_ref()
+            .map(|coupling| coupling.start(&load, &apertures(interface.all_initial_walls())));
         State {
             fluid,
             load,
@@ -304,7 +304,7 @@ impl<'a> System<'a> {
         let seen = jumps.zip(&interface.points).enumerate();
         seen.map(|(index, (jump, point))| {
             let before = carried.map(|carried| carried.seen[index]);
-            before.unwrap_or_else(|| point.initial_jump()) + jump
+            before.unwrap_or_else(|| interface.initial_jump(point)) + jump
         })
         .collect()
     }

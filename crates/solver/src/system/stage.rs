@@ -154,12 +154,12 @@ impl System<'_> {
             taken[facet] += 1;
             let left = former.unwrap_or(LeftPoint {
                 state: FacetPointState {
-                    joint: point.initial,
+                    joint: *interface.initial_walls(point),
                     jump_residual: DVec3::ZERO,
                     history: JointHistory::default(),
                 },
                 jump: DVec3::ZERO,
-                seen: point.initial_jump(),
+                seen: interface.initial_jump(point),
             });
             carried.jumps.push(left.jump - begin);
             carried.seen.push(left.seen - begin);

@@ -92,7 +92,7 @@ pub fn responses(system: &System<'_>, unknowns: &[DVec3], load: &Load) -> Vec<Re
     let points = interface.points().iter().zip(jumps);
     points
         .map(|(point, jump)| {
-            let seen = point.initial_jump() + jump;
+            let seen = interface.initial_jump(point) + jump;
             response(system.law(point), seen, point.normal)
         })
         .collect()

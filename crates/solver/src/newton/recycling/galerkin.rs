@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use super::space::{MOST_DIRECTIONS, RecycledSpace};
 use crate::newton::dense;
-use crate::newton::facet_points::{self, LastTrial, interface};
+use crate::newton::facet_points::{self, interface};
 use crate::newton::iterate::LastCorrection;
+use crate::newton::last_trial::LastTrial;
 use crate::problem::Load;
 use crate::system::{State, System};
 
