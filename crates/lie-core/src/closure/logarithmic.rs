@@ -68,8 +68,8 @@ fn balance_below_cutoff(x_c: f64, kappa: f64, q: f64) -> (f64, f64) {
     (x_c + d, d - a)
 }
 
-/// Share of a step of Halley's method at which what it leaves is rounding: the error of the next is
-/// the cube of its own.
+/// Step of Halley's method, against the root, that leaves nothing but rounding: the error after a
+/// step is as its cube.
 const LAST_STEP: f64 = 5e-6;
 
 /// Root `s = ln x` of `(e^s - 1) (1 + s^2 + kappa) = q < 0`, by Halley kept inside a bracket.

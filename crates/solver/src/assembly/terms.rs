@@ -57,8 +57,8 @@ impl Terms {
 
     /// Place of a factor; `rare` has those of the ones that are not common.
     fn place(&mut self, factor: &DMat3, rare: &mut HashMap<[u64; 9], u32>) -> u32 {
-        let common = self.factors.iter().take(COMMON);
-        if let Some(place) = common.into_iter().position(|known| known == factor) {
+        let mut common = self.factors.iter().take(COMMON);
+        if let Some(place) = common.position(|known| known == factor) {
             return place as u32;
         }
         let next = self.factors.len() as u32;
