@@ -8,6 +8,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 
 use kluft_mesh::Defect;
+use kluft_run::memory;
 use nix::sys::prctl;
 use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
 use nix::sys::signal::Signal;
@@ -18,9 +19,6 @@ use crate::invocation::Invocation;
 
 /// Names the process that the work is done for, to the worker and to those that it starts.
 const WORKS_FOR: &str = "KLUFT_WORKS_FOR";
-
-/// Where Linux tells how it promises memory, and the word for promising no more than there is.
-const PROMISES: (&str, &str) = ("/proc/sys/vm/overcommit_memory", "2");
 
 /// Lets a process of its own do the work of this one if the system may refuse it memory, and
 /// returns its exit code; none if this one shall do it.
@@ -45,9 +43,8 @@ fn refusing() -> Option<(&'static str, &'static str)> {
     if limit != RLIM_INFINITY {
         return Some(("the limit of its address space", "ulimit -v"));
     }
-    let told = std::fs::read_to_string(PROMISES.0).ok()?;
     let strict = "the system, which promises no more memory than it has,";
-    (told.trim() == PROMISES.1).then_some((strict, "vm.overcommit_memory"))
+    memory::is_promised_strictly().then_some((strict, "vm.overcommit_memory"))
 }
 
 fn of_status(status: ExitStatus, refusing: (&str, &str)) -> u8 {

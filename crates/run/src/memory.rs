@@ -28,6 +28,12 @@ pub fn address_space_left() -> Option<usize> {
     System::this().left_of_address_space()
 }
 
+/// Whether the system promises no more memory than it has (`vm.overcommit_memory = 2`), and so may
+/// refuse any.
+pub fn is_promised_strictly() -> bool {
+    System::this().is_strict()
+}
+
 /// Memory of the machine (bytes).
 pub fn total_bytes() -> Option<usize> {
     System::this().entry("proc/meminfo", "MemTotal:")
@@ -88,10 +94,14 @@ impl System {
         Some(limit.saturating_sub(used))
     }
 
+    fn is_strict(&self) -> bool {
+        const STRICT: usize = 2;
+        self.number("proc/sys/vm/overcommit_memory") == Some(STRICT)
+    }
+
     /// What a system that promises no more memory than it has still promises.
     fn left_of_promises(&self) -> Option<usize> {
-        const STRICT: usize = 2;
-        (self.number("proc/sys/vm/overcommit_memory")? == STRICT).then_some(())?;
+        self.is_strict().then_some(())?;
         let promised = self.entry("proc/meminfo", "Committed_AS:")?;
         let limit = self.entry("proc/meminfo", "CommitLimit:")?;
         Some(limit.saturating_sub(promised))

@@ -65,8 +65,9 @@ pub(super) struct Update<'a> {
 impl Iterate {
     /// Lets only solves to come tell of the rock beside facet points.
     pub(super) fn forget_secants(&mut self) {
-        let trials = self.last_trials.iter_mut();
-        trials.for_each(|last| *last = last.of_other_kind());
+        self.last_trials
+            .iter_mut()
+            .for_each(LastTrial::forget_secant);
     }
 }
 

@@ -43,12 +43,9 @@ impl LastTrial {
         secant.filter(|secant| secant.is_finite()).unwrap_or(0.0)
     }
 
-    /// Where the walls are, of what is told by solves of another kind.
-    pub(super) fn of_other_kind(&self) -> Self {
-        Self {
-            traction: f64::NAN,
-            ..*self
-        }
+    /// Tells no longer of the rock: the next linear solve is of another kind.
+    pub(super) fn forget_secant(&mut self) {
+        self.traction = f64::NAN;
     }
 
     /// Where the walls are at a state. A law that is near closure, and whose tangent is large, can
