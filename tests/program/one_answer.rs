@@ -402,6 +402,32 @@ fn walls_that_slide_until_others_do_have_slid_in_one_step_as_in_ten_or_the_run_s
     assert!(apart.fold(0.0, f64::max) < 1e-3 * largest_jump, "{slips:?}");
 }
 
+/// One load step ends where ten do, to a `share` of what `of` reads of `summary.json`.
+fn assert_one_step_is_ten(scene: &str, share: f64, of: fn(&Value) -> f64) {
+    let end = "[boundary.bottom]";
+    let [once, often] = [1, 10].map(|number| {
+        let edits = [(end, &*in_steps(number, end))];
+        of(&solved_by(&SOLVERS[..1], scene, &edits)[0])
+    });
+    assert!((once - often).abs() < share * often, "{once:e}, {often:e}");
+}
+
+/// A joint slides from the beginning and sticks at one place from five eighths of the load on, soon
+/// after the middle: all increments that begin there have it stick from there on.
+#[test]
+fn walls_that_stop_early_in_an_increment_have_slid_on() {
+    assert_one_step_is_ten("stops_early.toml", 5e-4, |said| {
+        said["fractures"]["g"]["slip_max"].as_f64().expect("a slip")
+    });
+}
+
+/// A joint with cohesion slides in one direction in the first sixteenth of the load, and across it
+/// from then on: an increment and its halves make the same of the beginning.
+#[test]
+fn walls_that_turn_early_in_an_increment_have_slid_in_both_directions() {
+    assert_one_step_is_ten("turns_early.toml", 1e-3, |said| apertures(said, "g")[1]);
+}
+
 /// The iterations of a run, as they come.
 #[derive(Default)]
 struct Iterations(Vec<Iteration>);

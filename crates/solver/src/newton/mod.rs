@@ -47,6 +47,7 @@ mod settings;
 mod solver;
 mod splitting;
 mod step;
+mod stopped;
 mod substepping;
 mod way;
 

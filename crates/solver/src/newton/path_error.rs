@@ -8,7 +8,9 @@
 //! more.
 //!
 //! It tells nothing, too, of walls that are stopped in the second half, as long as the whole
-//! increment and the second half do the same. Then the second half is compared with its own halves.
+//! increment and the second half do the same. Then the second half is compared with its own halves;
+//! the first is where walls slide another way in it than in the second. By how much walls slide on
+//! that stop early in the first, their tractions tell (`stopped`).
 
 use glam::DVec3;
 use kluft_algebra::largest;
@@ -18,6 +20,7 @@ use super::Step;
 use super::convergence::ratio;
 use super::determinacy::{self, Determinacy};
 use super::facet_points::interface;
+use super::stopped;
 use crate::FacetPointState;
 use crate::assembly::facet_point::FacetPoint;
 use crate::problem::Load;
@@ -26,6 +29,8 @@ use crate::system::{State, System};
 /// Share of the largest jump by which an increment that is nearly straight moves walls at most
 /// otherwise than its first linear solve.
 const BENT: f64 = 0.1;
+/// Share of the largest jump by which walls slide another way in one half than in the other.
+const TURNED: f64 = 0.02;
 
 /// An increment from one state to another.
 pub(super) struct Increment<'a> {
@@ -71,7 +76,11 @@ impl Apart {
         let stays = |i: usize| !end.facet_points[i].joint.sliding;
         let lengths = (0..differences.len()).map(|i| {
             let before = if stays(i) { first[i] } else { 0.0 };
-            differences[i].length().max(before.max(second[i]))
+            let stopped = stopped::slip(system, halves, i);
+            differences[i]
+                .length()
+                .max(before.max(second[i]))
+                .max(stopped)
         });
         let mut apart = Self {
             lengths: lengths.collect(),
@@ -153,6 +162,29 @@ pub(super) fn is_bent(system: &System<'_>, increment: &Increment<'_>, size: f64)
         })
 }
 
+/// Whether walls slide another way in the first of two increments than in the second, by a share of
+/// `size` (m) that tells of what happens early in the first: both increments and their whole make
+/// the same of that.
+pub(super) fn turns(system: &System<'_>, halves: [&Increment<'_>; 2], size: f64) -> bool {
+    let [first, second] = halves.map(|half| differences(system, half.to, half.from));
+    let points = interface(system).points.iter();
+    points
+        .zip(first.iter().zip(&second))
+        .enumerate()
+        .any(|(i, (point, (first, second)))| {
+            let slides = halves.map(|half| half.to.facet_points[i].joint.sliding);
+            let [first, second] =
+                [first, second].map(|jump| *jump - jump.dot(point.normal) * point.normal);
+            slides == [true, true] && across(first, second).length() > TURNED * size
+        })
+}
+
+/// What of a vector is not along another.
+fn across(vector: DVec3, way: DVec3) -> DVec3 {
+    let share = ratio(vector.dot(way), way.length_squared());
+    vector - share.max(0.0) * way
+}
+
 /// How far off the walls are that stick at the end of an increment, by what they have slipped in it
 /// until they met, at each facet point (m).
 pub(super) fn slips_until_met(system: &System<'_>, increment: &Increment<'_>) -> Vec<f64> {
@@ -226,6 +258,14 @@ mod tests {
             jump_residual: DVec3::ZERO,
             history: Default::default(),
         }
+    }
+
+    #[test]
+    fn what_is_not_along_a_way_is_across_it_or_back() {
+        let way = DVec3::new(2.0, 0.0, 0.0);
+        assert_eq!(across(DVec3::new(3.0, 4.0, 0.0), way), 4.0 * DVec3::Y);
+        assert_eq!(across(DVec3::new(-3.0, 4.0, 0.0), way).length(), 5.0);
+        assert_eq!(across(DVec3::ZERO, DVec3::ZERO), DVec3::ZERO);
     }
 
     /// Walls 0.3 mm apart that approach by 1 mm meet after three tenths of the way.

@@ -276,9 +276,13 @@ impl Newton {
         let [first, second] = both.increments();
         let is_long = 2.0 * (both.end.share - both.half.share) >= SMALLEST_SUBSTEP;
         let may_hide = both.slides && is_long && error <= 1.0 && step.lost == 0.0;
-        if may_hide && relieved::any_slid(step.system, &first, tolerance * size) {
-            let start = (both.from, both.start.clone());
-            self.solve_half(step, start, both.half.clone(), is_smallest)?;
+        let hides = || {
+            relieved::any_slid(step.system, &first, tolerance * size)
+                || path_error::turns(step.system, [&first, &second], size)
+        };
+        if may_hide && hides() {
+            let apart = compared.apart.as_ref().map_or(0.0, Apart::length);
+            self.compare_first_half(step, &both, tolerance * size - apart)?;
         }
         let accepted = match may_hide && path_error::is_bent(step.system, &second, size) {
             true => {
@@ -298,6 +302,35 @@ impl Newton {
             may_grow: is_small && accepted.may_grow,
             ..accepted
         })
+    }
+
+    /// Solves the first half of a substep in two increments, which tell what it hides.
+    ///
+    /// # Errors
+    /// If it is too long, or leads off the path by more than `allowed` (m), and may be divided; with
+    /// what a shorter increment from its start came to, if one was tried. Then no error of it is
+    /// recorded.
+    fn compare_first_half(
+        &mut self,
+        step: &mut Step<'_>,
+        both: &Both<'_>,
+        allowed: f64,
+    ) -> Result<(), Option<Half>> {
+        let record = &step.record;
+        let before = [record.path_error, record.path_error_at_one_place];
+        let lengths = step.path_errors.clone();
+        let start = (both.from, both.start.clone());
+        let solved = self.solve_half(step, start, both.half.clone(), both.is_smallest);
+        let is_off = step.record.path_error - before[0] > allowed && !both.is_smallest;
+        let refused = match solved {
+            Ok(_) if is_off => None,
+            Ok(_) => return Ok(()),
+            Err(shorter) => shorter,
+        };
+        let record = &mut step.record;
+        [record.path_error, record.path_error_at_one_place] = before;
+        step.path_errors = lengths;
+        Err(refused)
     }
 
     /// Solves a half of a substep, whose end in one increment is known, in two increments, and a
