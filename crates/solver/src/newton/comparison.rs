@@ -20,6 +20,8 @@ pub(super) struct Both<'a> {
     pub(super) slides: bool,
     /// Whether the substep is not divided any more.
     pub(super) is_smallest: bool,
+    /// Whether it is a half of another.
+    pub(super) is_half: bool,
 }
 
 /// A place on the way of the loads.

@@ -73,10 +73,11 @@ impl Apart {
             true => vec![0.0; differences.len()],
             false => slips_until_met(system, half),
         });
+        let states = [halves[0].from, halves[0].to, end];
         let stays = |i: usize| !end.facet_points[i].joint.sliding;
         let lengths = (0..differences.len()).map(|i| {
             let before = if stays(i) { first[i] } else { 0.0 };
-            let stopped = stopped::slip(system, halves, i);
+            let stopped = stopped::slip(system, states, i);
             differences[i]
                 .length()
                 .max(before.max(second[i]))

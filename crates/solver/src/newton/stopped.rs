@@ -3,8 +3,8 @@
 //! At its end they stick, and the laws take walls that stick there to have stuck all along; so do
 //! its halves, if they stop early in the first. What friction bears beyond their shear traction
 //! tells: 0 at the start, `m_1` in the middle and `m_2` at the end. If it rises so fast that a
-//! parabola through the three falls below 0 first, to `-d`, the walls would carry `d` more than they
-//! can, had they not slid on:
+//! parabola through the three falls below 0 first, to `-d`, the walls would carry `d` more than
+//! they can, had they not slid on:
 //!
 //! ```text
 //! m(t) = b t^2 - a t,   a = (m_2 - 4 m_1) / 2,   b = (m_2 - 2 m_1) / 2,   d = a^2 / (4 b)
@@ -13,13 +13,12 @@
 //! with `t = 1` in the middle. The rock beside them then takes the slip `d / k` to carry it.
 
 use super::facet_points::interface;
-use super::path_error::Increment;
-use crate::system::System;
+use crate::system::{State, System};
 
-/// How far the walls of a facet point slide on (m) in two increments of equal length.
-pub(super) fn slip(system: &System<'_>, halves: [&Increment<'_>; 2], i: usize) -> f64 {
-    let [first, second] = halves;
-    let states = [first.from, first.to, second.to].map(|state| &state.facet_points[i]);
+/// How far the walls of a facet point slide on (m) in an increment, whose start, middle and end are
+/// known.
+pub(super) fn slip(system: &System<'_>, states: [&State; 3], i: usize) -> f64 {
+    let states = states.map(|state| &state.facet_points[i]);
     if states.map(|state| state.joint.sliding) != [true, false, false] {
         return 0.0;
     }

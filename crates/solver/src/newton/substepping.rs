@@ -185,14 +185,11 @@ impl Newton {
     fn solve_substep(&mut self, step: &mut Step<'_>, from: &State, substep: Substep) -> Solved {
         let known = substep.whole;
         let solved = known.unwrap_or_else(|| self.solve_counted(step, from, &substep.end));
-        let mut found = TooLong::default();
         let whole = match solved {
             Ok(whole) => whole,
-            Err(outcome) => {
-                found.why = Some(outcome);
-                return Solved::TooLong(found);
-            }
+            Err(outcome) => return Solved::TooLong(TooLong::because(outcome)),
         };
+        let mut found = TooLong::default();
         if step.system.is_path_dependent() && substep.end.share == 1.0 {
             let size = path_error::largest_jump(step.system, &whole.state);
             step.end_size.get_or_insert(size);
@@ -224,6 +221,7 @@ impl Newton {
                     end,
                     slides,
                     is_smallest: substep.is_smallest,
+                    is_half: substep.is_half,
                 };
                 self.accept(step, both)
             }
@@ -276,13 +274,12 @@ impl Newton {
         let [first, second] = both.increments();
         let is_long = 2.0 * (both.end.share - both.half.share) >= SMALLEST_SUBSTEP;
         let may_hide = both.slides && is_long && error <= 1.0 && step.lost == 0.0;
-        let hides = || {
-            relieved::any_slid(step.system, &first, tolerance * size)
-                || path_error::turns(step.system, [&first, &second], size)
-        };
-        if may_hide && hides() {
+        let slid = may_hide && relieved::any_slid(step.system, &first, tolerance * size);
+        // What is over in an instant, no half of a half tells more of.
+        let may_turn = may_hide && !is_smallest && !(both.is_half && error <= GROWTH_SHARE);
+        if slid || (may_turn && path_error::turns(step.system, [&first, &second], size)) {
             let apart = compared.apart.as_ref().map_or(0.0, Apart::length);
-            self.compare_first_half(step, &both, tolerance * size - apart)?;
+            self.compare_first_half(step, &both, tolerance * size - apart, slid)?;
         }
         let accepted = match may_hide && path_error::is_bent(step.system, &second, size) {
             true => {
@@ -304,17 +301,19 @@ impl Newton {
         })
     }
 
-    /// Solves the first half of a substep in two increments, which tell what it hides.
+    /// Solves the first half of a substep in two increments, which tell what it hides; if they do
+    /// not converge, nothing, unless they `must`.
     ///
     /// # Errors
-    /// If it is too long, or leads off the path by more than `allowed` (m), and may be divided; with
-    /// what a shorter increment from its start came to, if one was tried. Then no error of it is
-    /// recorded.
+    /// If it is too long, or leads off the path by more than `allowed` (m), and may be divided;
+    /// with what a shorter increment from its start came to, if one was tried. Then no error of it
+    /// is recorded.
     fn compare_first_half(
         &mut self,
         step: &mut Step<'_>,
         both: &Both<'_>,
         allowed: f64,
+        must: bool,
     ) -> Result<(), Option<Half>> {
         let record = &step.record;
         let before = [record.path_error, record.path_error_at_one_place];
@@ -323,14 +322,15 @@ impl Newton {
         let solved = self.solve_half(step, start, both.half.clone(), both.is_smallest);
         let is_off = step.record.path_error - before[0] > allowed && !both.is_smallest;
         let refused = match solved {
-            Ok(_) if is_off => None,
+            Ok(_) if is_off => Err(None),
             Ok(_) => return Ok(()),
-            Err(shorter) => shorter,
+            Err(found) if found.why.is_some() && !must && step.go_on().is_ok() => Ok(()),
+            Err(found) => Err(found.half),
         };
         let record = &mut step.record;
         [record.path_error, record.path_error_at_one_place] = before;
         step.path_errors = lengths;
-        Err(refused)
+        refused
     }
 
     /// Solves a half of a substep, whose end in one increment is known, in two increments, and a
@@ -338,14 +338,14 @@ impl Newton {
     /// two may tell nothing.
     ///
     /// # Errors
-    /// If it is too long and may be divided; with what a shorter increment from its start came to.
+    /// If it is too long and may be divided.
     fn solve_half(
         &mut self,
         step: &mut Step<'_>,
         (from, start): (&State, End),
         end: Ended,
         is_smallest: bool,
-    ) -> Result<Accepted, Option<Half>> {
+    ) -> Result<Accepted, TooLong> {
         let to = end.place();
         let middle = End {
             load: Load::between(&start.load, &to.load, 0.5),
@@ -361,12 +361,12 @@ impl Newton {
         };
         match self.solve_substep(step, from, substep) {
             Solved::Accepted(accepted) => Ok(accepted),
-            Solved::TooLong(found) if is_smallest && step.go_on().is_ok() => {
+            Solved::TooLong(mut found) if is_smallest && step.go_on().is_ok() => {
                 step.leave_torn();
-                let end = found.whole.ok_or(None)?;
+                let end = found.whole.take().ok_or(found)?;
                 Ok(Accepted::at(*end))
             }
-            Solved::TooLong(found) => Err(found.half),
+            Solved::TooLong(found) => Err(found),
         }
     }
 

@@ -25,6 +25,16 @@ pub(super) struct TooLong {
     pub(super) half: Option<Half>,
 }
 
+impl TooLong {
+    /// Where one increment to its end failed.
+    pub(super) fn because(outcome: StepOutcome) -> Self {
+        Self {
+            why: Some(outcome),
+            ..Self::default()
+        }
+    }
+}
+
 /// What one increment to the middle of a substep, or of its first half, came to.
 pub(super) struct Half {
     /// The share of the load step up to it.
