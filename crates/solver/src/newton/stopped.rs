@@ -28,8 +28,10 @@ pub(super) fn slip(system: &System<'_>, states: [&State; 3], i: usize) -> f64 {
     depth(middle, end) / point.rock_stiffness().shear
 }
 
-/// How far a parabola from 0 falls below it before it passes `middle` and then `end`.
+/// How far a parabola from 0 falls below it before it passes `middle`, which is below 0 by rounding
+/// only, and then `end`.
 fn depth(middle: f64, end: f64) -> f64 {
+    let middle = middle.max(0.0);
     let a = 0.5 * (end - 4.0 * middle);
     let b = 0.5 * (end - 2.0 * middle);
     if a > 0.0 { a * a / (4.0 * b) } else { 0.0 }
@@ -46,5 +48,6 @@ mod tests {
         assert_eq!(depth(1.0, 4.0), 0.0);
         assert_eq!(depth(1.0, 1.0), 0.0);
         assert_eq!(depth(0.0, 0.0), 0.0);
+        assert_eq!(depth(-1e-12, -2e-12), 0.0);
     }
 }
