@@ -157,8 +157,7 @@ pub(super) fn is_bent(system: &System<'_>, increment: &Increment<'_>, size: f64)
         .enumerate()
         .any(|(i, (point, (predicted, (change, moved))))| {
             let slides = [from, to].map(|state| state.facet_points[i].joint.sliding);
-            let beyond = *predicted - *change - *moved;
-            let along = beyond - beyond.dot(point.normal) * point.normal;
+            let along = in_facet(*predicted - *change - *moved, point.normal);
             slides.contains(&true) && along.length() > BENT * size
         })
 }
@@ -174,10 +173,14 @@ pub(super) fn turns(system: &System<'_>, halves: [&Increment<'_>; 2], size: f64)
         .enumerate()
         .any(|(i, (point, (first, second)))| {
             let slides = halves.map(|half| half.to.facet_points[i].joint.sliding);
-            let [first, second] =
-                [first, second].map(|jump| *jump - jump.dot(point.normal) * point.normal);
+            let [first, second] = [first, second].map(|jump| in_facet(*jump, point.normal));
             slides == [true, true] && across(first, second).length() > TURNED * size
         })
+}
+
+/// What of a vector is in a facet with a unit `normal`.
+fn in_facet(vector: DVec3, normal: DVec3) -> DVec3 {
+    vector - vector.dot(normal) * normal
 }
 
 /// What of a vector is not along another.
@@ -204,7 +207,7 @@ pub(super) fn slips_until_met(system: &System<'_>, increment: &Increment<'_>) ->
 /// How far walls slip that a linear solve has `moved` (m), until they meet and stick.
 fn slip_until_met(law: &FractureLaw, from: &FacetPointState, moved: DVec3, normal: DVec3) -> f64 {
     let across = moved.dot(normal);
-    let along = moved - across * normal;
+    let along = in_facet(moved, normal);
     share_until_met(law, from, across).map_or(0.0, |share| share * along.length())
 }
 

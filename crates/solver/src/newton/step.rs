@@ -123,8 +123,6 @@ impl<'a> Step<'a> {
         for (sum, length) in self.path_errors.iter_mut().zip(lengths) {
             *sum += length;
         }
-        let worst = self.path_errors.iter().copied().fold(0.0, f64::max);
-        self.record.path_error_at_one_place = worst;
     }
 
     /// Records how far the flow of a part of the step is from resolved in time, if that is the
@@ -192,6 +190,7 @@ impl<'a> Step<'a> {
     /// The record after `seconds` altogether.
     pub(super) fn finished(mut self, outcome: StepOutcome, seconds: f64) -> StepRecord {
         self.record.outcome = outcome;
+        self.record.path_error_at_one_place = self.path_errors.iter().copied().fold(0.0, f64::max);
         self.record.solve_seconds = seconds - self.record.factorise_seconds;
         self.record
     }

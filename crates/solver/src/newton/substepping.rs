@@ -276,7 +276,7 @@ impl Newton {
         let may_hide = both.slides && is_long && error <= 1.0 && step.lost == 0.0;
         let slid = may_hide && relieved::any_slid(step.system, &first, tolerance * size);
         // What is over in an instant, no half of a half tells more of.
-        let may_turn = may_hide && !is_smallest && !(both.is_half && error <= GROWTH_SHARE);
+        let may_turn = may_hide && !is_smallest && !(both.is_half && is_small);
         if slid || (may_turn && path_error::turns(step.system, [&first, &second], size)) {
             let apart = compared.apart.as_ref().map_or(0.0, Apart::length);
             self.compare_first_half(step, &both, tolerance * size - apart, slid)?;
@@ -315,21 +315,17 @@ impl Newton {
         allowed: f64,
         must: bool,
     ) -> Result<(), Option<Half>> {
-        let record = &step.record;
-        let before = [record.path_error, record.path_error_at_one_place];
-        let lengths = step.path_errors.clone();
+        let before = (step.record.path_error, step.path_errors.clone());
         let start = (both.from, both.start.clone());
         let solved = self.solve_half(step, start, both.half.clone(), both.is_smallest);
-        let is_off = step.record.path_error - before[0] > allowed && !both.is_smallest;
+        let is_off = step.record.path_error - before.0 > allowed && !both.is_smallest;
         let refused = match solved {
             Ok(_) if is_off => Err(None),
             Ok(_) => return Ok(()),
             Err(found) if found.why.is_some() && !must && step.go_on().is_ok() => Ok(()),
             Err(found) => Err(found.half),
         };
-        let record = &mut step.record;
-        [record.path_error, record.path_error_at_one_place] = before;
-        step.path_errors = lengths;
+        (step.record.path_error, step.path_errors) = before;
         refused
     }
 
