@@ -86,7 +86,7 @@ fn walls_rub_on_facets_of_second_order() {
 /// A disc in a box a hundred times as wide carries little of the loads. Everything slides from the
 /// start, so the second half of the way is the first once more and the first correction of an exact
 /// linear solver leads there. One that is exact only against what the disc carries, not against the
-/// loads, takes as many iterations.
+/// loads, takes no more iterations.
 #[test]
 fn a_fracture_that_carries_little_of_the_loads_slides_on() {
     let (half, size) = (100.0, [("h", 0.1), ("h_disc", 0.2), ("grow", 0.8)]);
@@ -119,7 +119,8 @@ fn a_fracture_that_carries_little_of_the_loads_slides_on() {
     let error = direct[1].0.iterations[0].closure_error;
     assert!(error < 1e-3, "{error:e}");
     for (direct, iterative) in direct.iter().zip(&iterative) {
-        assert_eq!(direct.0.iterations.len(), iterative.0.iterations.len());
+        let [direct, iterative] = [direct, iterative].map(|step| step.0.iterations.len());
+        assert!(iterative <= direct, "{iterative} > {direct}");
     }
 }
 

@@ -10,9 +10,10 @@ impl Workload {
     /// Counts in what estimates of errors and moves of former steps take, on a mesh with this
     /// number of unknown 3-vectors.
     pub fn with_extra_memory(self, mesh: &Mesh, unknowns: usize) -> Self {
-        let recycles = self.is_smooth && self.flow.is_none() && self.steps > 1;
+        let increments = self.is_smooth.then_some(self.steps);
+        let recycles = self.flow.is_none() && increments != Some(1);
         let iterative = if recycles {
-            recycling_bytes(unknowns, self.steps)
+            recycling_bytes(unknowns, increments)
         } else {
             0
         };

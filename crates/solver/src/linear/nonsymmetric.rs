@@ -4,8 +4,9 @@ use std::cell::RefCell;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::{
-    ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, ScalarCholesky, gmres,
+    ConjugateGradientOutcome, ConjugateGradientSettings, LinearFailure, ScalarCholesky, gmres, norm,
 };
+use rayon::prelude::*;
 
 use crate::flow::LinearisedFlow;
 use crate::linear::choice::Plan;
@@ -18,6 +19,8 @@ const MAX_ITERATIONS: usize = 240;
 /// Iterations of one solve after which a direct solver goes on: twenty times those that the choice
 /// between them counts on.
 const SLOW: usize = 400;
+/// Share of what a guess leaves that a solve which begins with it may leave.
+const LARGEST_TOLERANCE: f64 = 0.1;
 /// Residual, as a share of the right-hand side, that an iteration which gains nothing more may
 /// leave.
 const ROUNDED: f64 = 1e-3;
@@ -29,7 +32,7 @@ pub struct NonsymmetricSolver {
     inner: Box<dyn TangentSolver>,
     /// Exact stiffness of the fractures, where it differs from what `inner` has.
     exact: Option<Vec<DMat3>>,
-    /// What `inner` has, where a flow is solved with it or a direct solver may go on.
+    /// What `inner` has.
     positive: Vec<DMat3>,
     /// Factor of the pressures, where there are any.
     pressures: Option<ScalarCholesky>,
@@ -103,11 +106,9 @@ impl NonsymmetricSolver {
             .is_some()
             .then(|| interface.stiffness(&tangents.exact));
         let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
-        let stiffness = interface.stiffness(positive);
-        if system.coupling().is_some() || self.fallback_memory.is_some() {
-            self.positive.clone_from(&stiffness);
-        }
-        self.inner.update(system.fixed_part(), stiffness)
+        self.positive = interface.stiffness(positive);
+        self.inner
+            .update(system.fixed_part(), self.positive.clone())
     }
 
     /// Solves for forces and for what is missing in a flow, together.
@@ -235,6 +236,48 @@ impl NonsymmetricSolver {
         self.improving(system, |own| own.attempt(system, rhs, tolerance))
     }
 
+    /// The same, beginning with `guess` (m) if that leaves less of the forces than there is. What it
+    /// leaves may be small and all of it on a fracture: it is reduced unless it is far below what
+    /// is asked.
+    ///
+    /// # Errors
+    /// If the iteration fails.
+    pub(crate) fn solve_from(
+        &mut self,
+        system: &System<'_>,
+        guess: Vec<DVec3>,
+        rhs: &[DVec3],
+        tolerance: f64,
+    ) -> Result<LinearSolution, LinearFailure> {
+        let rest = self.remaining(system, &guess, rhs);
+        let [size, left] = [rhs, &rest].map(norm);
+        if left.is_nan() || left >= size {
+            return self.solve(system, rhs, tolerance);
+        }
+        let tolerance = tolerance * size / left;
+        if LARGEST_TOLERANCE * tolerance >= 1.0 {
+            return Ok(LinearSolution {
+                unknowns: guess,
+                iterations: 0,
+            });
+        }
+        let mut solution = self.solve(system, &rest, tolerance.min(LARGEST_TOLERANCE))?;
+        let pairs = solution.unknowns.par_iter_mut().zip(guess);
+        pairs.for_each(|(change, guess)| *change += guess);
+        Ok(solution)
+    }
+
+    /// What `unknowns` (m) leave of the forces `rhs` (N) on the exact tangents.
+    fn remaining(&self, system: &System<'_>, unknowns: &[DVec3], rhs: &[DVec3]) -> Vec<DVec3> {
+        let stiffness = self.exact.as_ref().unwrap_or(&self.positive);
+        let mut rest = vec![DVec3::ZERO; rhs.len()];
+        self.inner
+            .multiply(system.fixed_part(), stiffness, unknowns, &mut rest);
+        let pairs = rest.par_iter_mut().zip(rhs);
+        pairs.for_each(|(image, force)| *image = *force - *image);
+        rest
+    }
+
     /// Solves with `inner` as it stands.
     fn attempt(
         &mut self,
@@ -296,6 +339,7 @@ mod tests {
 
     use super::*;
     use crate::linear::fractured_tests::{problem, remaining, system};
+    use crate::linear::iterative::Iterative;
 
     /// An iterative solver that never comes to an end.
     struct Stalling;
@@ -313,6 +357,46 @@ mod tests {
         ) -> Result<LinearSolution, LinearFailure> {
             Err(LinearFailure::Stalled(7))
         }
+    }
+
+    /// A guess that is far better than asked is the solution, one that is worse than nothing is
+    /// forgotten, and what another leaves is reduced tenfold at least.
+    #[test]
+    fn a_solve_begins_with_a_guess_that_helps() {
+        let problem = problem(|z| z);
+        let system = system(&problem);
+        let interface = &system.discretisation.interface;
+        let tangents: Tangents = vec![DMat3::IDENTITY; interface.points.len()].into();
+        let stiffness = interface.stiffness(&tangents.exact);
+        let mut rhs = vec![DVec3::ZERO; system.discretisation.points.len()];
+        rhs[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
+        let inner = Iterative::new(&system).expect("definite");
+        let mut solver = NonsymmetricSolver::new(Box::new(inner));
+        solver.update(&system, &tangents).expect("definite");
+        let exact = solver.solve(&system, &rhs, 1e-10).expect("solved").unknowns;
+        let alone = solver.solve(&system, &rhs, 1e-3).expect("solved");
+        let mut from = |share: f64| {
+            let guess = exact.iter().map(|entry| share * *entry).collect();
+            let solved = solver.solve_from(&system, guess, &rhs, 1e-3);
+            let LinearSolution {
+                unknowns,
+                iterations,
+            } = solved.expect("solved");
+            (
+                remaining(&system, &stiffness, &unknowns, &rhs),
+                iterations,
+                unknowns,
+            )
+        };
+        let (left, iterations, _) = from(1.0 + 1e-5);
+        assert!(
+            iterations == 0 && (left / 1e-5 - 1.0).abs() < 1e-3,
+            "{left:e}"
+        );
+        let (left, iterations, _) = from(1.0 + 9e-4);
+        assert!(iterations > 0 && left < 0.1 * 9e-4, "{left:e}");
+        let (_, iterations, unknowns) = from(2.5);
+        assert_eq!((iterations, unknowns), (alone.iterations, alone.unknowns));
     }
 
     #[test]

@@ -1,31 +1,30 @@
 //! Small dense algebra of directions: of a recycled space, of an acceleration.
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use kluft_algebra::dense_kernels::apart;
 
-/// Eigenvalue, against the largest, below which directions are not told from each other.
+/// Singular value, against the largest, below which directions are not told from each other.
 const DEPENDENT: f64 = 1e-12;
 
-/// Solves a small symmetric system of directions with energies on the diagonal, leaving out what
-/// they do not tell apart; none if the eigenvalues are not found.
+/// Solves a small system of directions with energies on the diagonal, which need not be symmetric,
+/// leaving out what they do not tell apart; none if the singular values are not found.
 pub(super) fn solve(mut matrix: Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
     let count = right.len();
     let scale: Vec<f64> = (0..count)
-        .map(|i| matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt().recip())
+        .map(|i| matrix[(i, i)].abs().max(f64::MIN_POSITIVE).sqrt().recip())
         .collect();
     for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (i, j))) {
         matrix[(i, j)] *= scale[i] * scale[j];
     }
-    let eigen = apart(|| matrix.self_adjoint_eigen(Side::Lower)).ok()?;
-    let (vectors, values) = (eigen.U(), eigen.S());
-    let most = (0..count).map(|k| values[k]).fold(0.0, f64::max);
+    let parts = apart(|| matrix.thin_svd()).ok()?;
+    let (left, values, axes) = (parts.U(), parts.S(), parts.V());
     let mut solution = vec![0.0; count];
-    for k in (0..count).filter(|&k| values[k] > DEPENDENT * most) {
+    for k in (0..count).filter(|&k| values[k] > DEPENDENT * values[0]) {
         let entries = 0..count;
-        let part: f64 = entries.map(|i| vectors[(i, k)] * scale[i] * right[i]).sum();
+        let part: f64 = entries.map(|i| left[(i, k)] * scale[i] * right[i]).sum();
         for (i, entry) in solution.iter_mut().enumerate() {
-            *entry += part / values[k] * vectors[(i, k)] * scale[i];
+            *entry += part / values[k] * axes[(i, k)] * scale[i];
         }
     }
     Some(solution)

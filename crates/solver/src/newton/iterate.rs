@@ -1,5 +1,7 @@
 //! What the iterations of an increment work on, and what they add to it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use kluft_algebra::largest;
 
@@ -39,7 +41,7 @@ pub(super) struct Iterate {
     /// The guess that it began with, if it was made in the recycled space.
     pub(super) guess: Option<LastCorrection>,
     /// Its corrections, if they are to be recycled.
-    pub(super) corrections: Vec<Correction>,
+    pub(super) corrections: Vec<Arc<Correction>>,
 }
 
 /// What a linear solve does to the unknowns.

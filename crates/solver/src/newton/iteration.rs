@@ -1,5 +1,6 @@
 //! One iteration: linearise, solve, correct, measure; and iterations until the tests hold.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -12,6 +13,7 @@ use super::fluid;
 use super::forcing_term;
 use super::iterate::{Correction, Iterate, Update};
 use super::line_search;
+use super::recycling::KEPT_AT_KINKS;
 use super::rigid_motion::RigidBodyMotion;
 use super::{Iteration, Newton, Step, StepOutcome};
 use crate::linear::{CoupledRhs, Tangents};
@@ -222,7 +224,6 @@ impl Newton {
         let system = step.system;
         let planes = facet_points::linearised(system, &iterate.state, iterate.linearisation);
         self.update_tangent(step, &planes.tangents, iterate.damping.share)?;
-        let is_recycled = self.recycled.is_some() && system.is_smooth();
         let solved = self.solve_linearised(system, iterate, &planes.tangents);
         let (correction, spent) = solved.map_err(|failure| match failure {
             LinearFailure::NotFinite => StepOutcome::NotFinite(None),
@@ -240,8 +241,8 @@ impl Newton {
             Linearisation::Springs => iterate.correct(step, update)?,
         };
         iteration.linear_iterations = spent;
-        if is_recycled {
-            iterate.corrections.push(correction);
+        if correction.rock_forces.is_some() {
+            iterate.corrections.push(Arc::new(correction));
         }
         iterate.forcing_term = forcing_term::after(iteration.increment);
         Ok(self.conserve(step, iterate, iteration))
@@ -288,10 +289,14 @@ impl Newton {
         let residual = system.residual(&iterate.rock_forces, &tractions, &state.load);
         let parts = (system.coupling(), &state.fluid, &iterate.flow);
         let (Some(coupling), Some(fluid), Some(flow)) = parts else {
-            let is_recycled = self.recycled.is_some() && system.is_smooth();
             let size = norm(&residual);
             let tolerance = forcing_term::tolerance(system, &self.settings, iterate, size);
-            let solution = self.linear.solve(system, &residual, tolerance)?;
+            let guess = self.guess(system, iterate, tangents, &residual);
+            let solution = match guess {
+                Some(guess) => self.linear.solve_from(system, guess, &residual, tolerance),
+                None => self.linear.solve(system, &residual, tolerance),
+            }?;
+            let is_recycled = self.is_recycled(system, iterate);
             let correction = Correction::of(system, solution.unknowns, is_recycled);
             return Ok((correction, solution.iterations));
         };
@@ -315,6 +320,28 @@ impl Newton {
         let correction = Correction::of(system, solution.unknowns, false);
         let correction = correction.with_potentials(solution.potentials);
         Ok((correction, solution.iterations))
+    }
+
+    /// The unknowns (m) that a linear solve for `forces` (N) begins with, from the space of former
+    /// corrections like it; none for smooth laws, whose increments begin there.
+    fn guess(
+        &self,
+        system: &System<'_>,
+        iterate: &Iterate,
+        tangents: &Tangents,
+        forces: &[DVec3],
+    ) -> Option<Vec<DVec3>> {
+        let begins = !system.is_smooth() && self.is_recycled(system, iterate);
+        let space = self.recycled.as_ref().filter(|_| begins)?;
+        let damped = facet_points::damped(system, tangents, iterate.damping.share);
+        space.answer(system, &damped, forces)
+    }
+
+    /// Whether the correction at hand is to be recycled.
+    fn is_recycled(&self, system: &System<'_>, iterate: &Iterate) -> bool {
+        let is_of_tangents = iterate.linearisation == Linearisation::Tangents;
+        let is_kept = system.is_smooth() || iterate.corrections.len() < KEPT_AT_KINKS;
+        self.recycled.is_some() && is_of_tangents && is_kept
     }
 }
 

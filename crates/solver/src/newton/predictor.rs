@@ -21,7 +21,10 @@ impl Newton {
     /// The iterate that an increment from `state` to `load` begins with.
     pub(super) fn predict(&mut self, system: &System<'_>, state: &State, load: &Load) -> Iterate {
         let from = system.restated(state);
-        let recycled = self.recycled.as_mut();
+        if let Some(space) = &mut self.recycled {
+            space.condense(system, &from);
+        }
+        let recycled = self.recycled.as_ref();
         let guess = recycled.and_then(|space| space.solve(system, &from, load));
         let (mut state, last_trials, guess) = match guess {
             Some(GalerkinGuess {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use kluft_algebra::largest;
 use rayon::prelude::*;
 
-use super::space::{PRINCIPAL_DIRECTIONS, RecycledSpace};
+use super::space::{MOST_DIRECTIONS, PRINCIPAL_DIRECTIONS, RecycledSpace};
 use crate::newton::dense;
 use crate::newton::facet_points;
 use crate::problem::Load;
@@ -14,8 +14,12 @@ use crate::system::{State, System};
 const FADING: f64 = 0.95;
 
 impl RecycledSpace {
-    /// Replaces the directions by the principal ones of the last corrections, by energy.
-    pub(super) fn condense(&mut self, system: &System<'_>, state: &State) {
+    /// Replaces the directions, once there are too many, by the principal ones of the last
+    /// corrections, by their energy on the tangent at a state.
+    pub(in crate::newton) fn condense(&mut self, system: &System<'_>, state: &State) {
+        if self.directions.len() <= MOST_DIRECTIONS {
+            return;
+        }
         let scale = self.energy_norms(system, state);
         let scaled = |correction: &Vec<f64>| -> Vec<f64> {
             let pairs = correction.iter().zip(&scale);

@@ -7,7 +7,7 @@ use faer::Mat;
 use kluft_algebra::dot;
 use rayon::prelude::*;
 
-use super::space::{MOST_DIRECTIONS, RecycledSpace};
+use super::space::RecycledSpace;
 use crate::newton::dense;
 use crate::newton::facet_points::{self, interface};
 use crate::newton::iterate::LastCorrection;
@@ -53,9 +53,10 @@ struct Measures {
 }
 
 impl RecycledSpace {
-    /// Solves for the load in the space around a state; none if that leads nowhere.
+    /// Solves for the load in the space around a state, if laws are smooth; none if that leads
+    /// nowhere.
     pub(in crate::newton) fn solve(
-        &mut self,
+        &self,
         system: &System<'_>,
         from: &State,
         load: &Load,
@@ -65,9 +66,6 @@ impl RecycledSpace {
         }
         let mut state = from.clone();
         facet_points::move_supports(system, &mut state, load);
-        if self.directions.len() > MOST_DIRECTIONS {
-            self.condense(system, &state);
-        }
         let mut iterate = self.start(system, state);
         let last = self.iterate_to_convergence(system, &mut iterate)?;
         Some(self.guess(iterate, &last))

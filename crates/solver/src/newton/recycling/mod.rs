@@ -10,12 +10,18 @@
 //! energy, is the correction that removes it: the next direction (Erhel and Guyomarc'h 2000 start
 //! conjugate gradients alike). Directions beyond a number are condensed to the principal ones
 //! (proper orthogonal decomposition).
+//!
+//! Laws with kinks may have several equilibria, and the one that the loads lead to is not
+//! recognised by its energy. There only the linear solves begin in the space: whatever they begin
+//! with, they have one solution.
 
 mod condensation;
 mod galerkin;
+mod linear_guess;
 mod projection;
 mod space;
 
 pub(super) use galerkin::GalerkinGuess;
+pub(super) use linear_guess::KEPT_AT_KINKS;
 pub(super) use space::RecycledSpace;
 pub(crate) use space::bytes;

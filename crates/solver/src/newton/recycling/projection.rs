@@ -25,8 +25,10 @@ impl RecycledSpace {
             .collect()
     }
 
-    /// The tangent in the space, `V^T (K + fractures) V` (J).
+    /// The tangent in the space, `V^T (K + fractures) V` (J); symmetric if those of the facet points
+    /// are.
     pub(super) fn tangent(&self, system: &System<'_>, tangents: &Tangents) -> Mat<f64> {
+        let is_symmetric = tangents.positive.is_none();
         let interface = interface(system);
         let stiffness: Vec<DMat3> = interface.stiffness(&tangents.exact);
         let jumps: Vec<Vec<DVec3>> = self
@@ -34,15 +36,21 @@ impl RecycledSpace {
             .par_iter()
             .map(|v| of_fractures(interface, v))
             .collect();
-        let rows = self.directions.par_iter().enumerate();
-        let images: Vec<Vec<f64>> = rows
-            .map(|(i, v)| {
+        let columns = self.directions.par_iter().enumerate();
+        let images: Vec<Vec<f64>> = columns
+            .map(|(j, v)| {
                 let image = interface.resistance(&stiffness, v);
-                jumps[..=i].iter().map(|own| dot(own, &image)).collect()
+                let count = if is_symmetric { j + 1 } else { jumps.len() };
+                jumps[..count].iter().map(|own| dot(own, &image)).collect()
             })
             .collect();
         Mat::from_fn(jumps.len(), jumps.len(), |i, j| {
-            self.energy(i, j) + images[i.max(j)][i.min(j)]
+            let (row, column) = if is_symmetric {
+                (i.min(j), i.max(j))
+            } else {
+                (i, j)
+            };
+            self.energy(i, j) + images[column][row]
         })
     }
 

@@ -1,5 +1,7 @@
 //! The recycled space: its directions, and the corrections in it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use kluft_algebra::dot;
 use rayon::prelude::*;
@@ -36,9 +38,12 @@ pub(super) struct Known {
     pub(super) size: f64,
 }
 
-/// Memory that it takes in a run at most, while the principal directions are made (bytes).
-pub(crate) fn bytes(unknowns: usize, steps: usize) -> usize {
-    let directions = (DIRECTIONS_OF_FIRST_STEP + steps).min(MOST_DIRECTIONS + PRINCIPAL_DIRECTIONS);
+/// Memory that it takes in a run at most, while the principal directions are made (bytes); of so
+/// many `increments`, if they are known.
+pub(crate) fn bytes(unknowns: usize, increments: Option<usize>) -> usize {
+    let most = MOST_DIRECTIONS + PRINCIPAL_DIRECTIONS;
+    let added = increments.map(|count| DIRECTIONS_OF_FIRST_STEP + count);
+    let directions = added.map_or(most, |added| added.min(most));
     directions * unknowns * size_of::<DVec3>()
 }
 
@@ -59,12 +64,13 @@ impl RecycledSpace {
     pub(in crate::newton) fn add(
         &mut self,
         guess: Option<LastCorrection>,
-        corrections: Vec<Correction>,
+        corrections: Vec<Arc<Correction>>,
     ) {
         if let Some(guess) = guess {
             self.corrections.insert(0, guess.coefficients);
         }
         for correction in corrections {
+            let correction = Arc::unwrap_or_clone(correction);
             let Some(rock_forces) = correction.rock_forces else {
                 continue;
             };
