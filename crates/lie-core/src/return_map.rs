@@ -100,7 +100,7 @@ impl FractureLaw {
     }
 
     /// Separation as the closure law sees it: without what dilation opened.
-    pub(crate) fn undilated(&self, state: &JointState, history: &JointHistory) -> Separation {
+    pub fn undilated(&self, state: &JointState, history: &JointHistory) -> Separation {
         let dilation = self.friction.map_or(0.0, |friction| friction.dilation);
         let opened = history.dilation + dilation * state.plastic_slip;
         state.separation.moved(-opened)

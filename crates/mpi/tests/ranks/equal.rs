@@ -87,7 +87,7 @@ fn share(found: &Cells, (step, least): (&StepResult, f64), name: &str) -> f64 {
     largest(&mut differences) / scale.max(f64::MIN_POSITIVE)
 }
 
-/// Largest difference between two serial runs of a scene whose stresses count at least `least` (Pa).
+/// Largest difference between two serial runs of a scene, stresses against at least `least` (Pa).
 fn between(one: &Outcome, other: &Outcome, least: f64) -> f64 {
     let steps = one.steps.iter().zip(&other.steps);
     let of_step = |(one, other): (&StepResult, &StepResult)| {

@@ -236,9 +236,9 @@ impl NonsymmetricSolver {
         self.improving(system, |own| own.attempt(system, rhs, tolerance))
     }
 
-    /// The same, beginning with `guess` (m) if that leaves less of the forces than there is. What it
-    /// leaves may be small and all of it on a fracture: it is reduced unless it is far below what
-    /// is asked.
+    /// The same, beginning with `guess` (m) if that leaves less of the forces than there is. What
+    /// it leaves may be small and all of it on a fracture: it is reduced unless it is far below
+    /// what is asked.
     ///
     /// # Errors
     /// If the iteration fails.

@@ -18,6 +18,7 @@
 //! rock are solved in turn ([`splitting`]) until it finds its way.
 
 mod acceleration;
+mod acceptance;
 mod comparison;
 mod conservation;
 mod convergence;
@@ -48,6 +49,7 @@ mod solver;
 mod splitting;
 mod step;
 mod stopped;
+mod substep;
 mod substepping;
 mod way;
 

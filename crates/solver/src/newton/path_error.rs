@@ -228,7 +228,7 @@ fn held(law: &FractureLaw, point: &FacetPoint) -> f64 {
 
 /// By how much walls are apart that carry nothing (m), else 0.
 fn open_by(law: &FractureLaw, state: &FacetPointState) -> f64 {
-    let undilated = state.joint.separation.moved(-state.history.dilation);
+    let undilated = law.undilated(&state.joint, &state.history);
     match state.joint.normal_traction >= 0.0 {
         true => law.closure.gap(undilated).max(0.0),
         false => 0.0,

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::comparison::{End, Ended};
+use super::substep::{Half, TooLong};
 use super::{Step, StepOutcome};
 use crate::problem::Load;
 use crate::system::{State, System};
@@ -12,44 +12,6 @@ use crate::system::{State, System};
 pub(super) const SMALLEST_SUBSTEP: f64 = 1.0 / 64.0;
 /// Smallest substep that is tried where none has converged.
 pub(super) const SMALLEST_TRIED: f64 = 1.0 / 256.0;
-
-/// What is known of a substep that is to be divided.
-#[derive(Default)]
-pub(super) struct TooLong {
-    /// Why, if it is not for accuracy.
-    pub(super) why: Option<StepOutcome>,
-    /// Its end in one increment, if it was found.
-    pub(super) whole: Option<Box<State>>,
-    /// What one increment to its middle came to, or to a place before that if that is known to be
-    /// too far, if it was tried.
-    pub(super) half: Option<Half>,
-}
-
-impl TooLong {
-    /// Where one increment to its end failed.
-    pub(super) fn because(outcome: StepOutcome) -> Self {
-        Self {
-            why: Some(outcome),
-            ..Self::default()
-        }
-    }
-}
-
-/// What one increment to the middle of a substep, or of its first half, came to.
-pub(super) struct Half {
-    /// The share of the load step up to it.
-    pub(super) share: f64,
-    pub(super) end: Result<Box<Ended>, StepOutcome>,
-}
-
-impl Half {
-    pub(super) fn of(to: &End, end: Result<Ended, StepOutcome>) -> Self {
-        Self {
-            share: to.share,
-            end: end.map(Box::new),
-        }
-    }
-}
 
 /// A state on the way, and the share of the step that leads to it.
 pub(super) struct Reached {

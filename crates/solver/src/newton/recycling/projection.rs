@@ -25,8 +25,8 @@ impl RecycledSpace {
             .collect()
     }
 
-    /// The tangent in the space, `V^T (K + fractures) V` (J); symmetric if those of the facet points
-    /// are.
+    /// The tangent in the space, `V^T (K + fractures) V` (J); symmetric if those of the facet
+    /// points are.
     pub(super) fn tangent(&self, system: &System<'_>, tangents: &Tangents) -> Mat<f64> {
         let is_symmetric = tangents.positive.is_none();
         let interface = interface(system);
