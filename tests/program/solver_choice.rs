@@ -20,7 +20,7 @@ fn beds(solver: &str) -> Workshop {
         factors.join(", ")
     );
     let bedded = "poisson_ratio = 0.25\nnormal_young_modulus = 25e5\nnormal_poisson_ratio = 0.0\n\
-                  normal_shear_modulus = 1e5\ndip = 30\ndip_direction = 40";
+                  normal_shear_modulus = 1e4\ndip = 30\ndip_direction = 40";
     let friction = "closure = \"logarithmic\"\nfriction_angle = 40";
     let edits = [
         ("poisson_ratio = 0.25", bedded),
