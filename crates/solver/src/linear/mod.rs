@@ -27,6 +27,7 @@ pub(crate) use coupled::CoupledRhs;
 pub use direct::Direct;
 pub use iterative::{Iterative, first_coarsening, first_guess, serves};
 pub use method::LinearMethod;
+pub(crate) use nonsymmetric::LARGEST_TOLERANCE;
 pub use nonsymmetric::NonsymmetricSolver;
 pub(crate) use released::Released;
 pub use tangent_solver::{LinearSolution, SolverHistory, TangentSolver, Tangents};

@@ -19,8 +19,8 @@ const MAX_ITERATIONS: usize = 240;
 /// Iterations of one solve after which a direct solver goes on: twenty times those that the choice
 /// between them counts on.
 const SLOW: usize = 400;
-/// Share of what a guess leaves that a solve which begins with it may leave.
-const LARGEST_TOLERANCE: f64 = 0.1;
+/// Largest error of a linear solve that is done at all, against what it begins with.
+pub(crate) const LARGEST_TOLERANCE: f64 = 0.1;
 /// Residual, as a share of the right-hand side, that an iteration which gains nothing more may
 /// leave.
 const ROUNDED: f64 = 1e-3;

@@ -7,6 +7,7 @@ use kluft_algebra::norm;
 use super::NewtonSettings;
 use super::facet_points::interface;
 use super::iterate::Iterate;
+use crate::linear::LARGEST_TOLERANCE;
 use crate::system::{State, System};
 
 /// Largest error of a linear solve against its right-hand side while the state still changes.
@@ -19,8 +20,6 @@ const LINEAR_SHARE: f64 = 0.1;
 const ROUNDING_SHARE: f64 = 1e-3;
 /// What nodes of a flow may miss, summed up, against what moves, for `conservation` to mend.
 const CONSERVED: f64 = 1e-7;
-/// Largest error of a linear solve that is done at all.
-const LARGEST_TOLERANCE: f64 = 0.1;
 
 /// The forcing term of the first linear solve of an increment.
 pub(super) fn first(system: &System<'_>, settings: &NewtonSettings) -> f64 {
