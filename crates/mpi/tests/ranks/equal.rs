@@ -49,8 +49,8 @@ fn compared(scene: &Path, ranks: usize, reference: &mut Option<Outcome>) -> f64 
 /// of a fluid and the rock next to nothing, that pressure.
 fn least_stress(scene: &Path) -> f64 {
     let least = [("curved-fault", 25e9 * 1e-2), ("filling-joint", 0.9e6)];
-    let mut named = least.iter().filter(|(name, _)| scene == geometry(name));
-    named.next().map_or(0.0, |&(_, stress)| stress)
+    let named = least.iter().find(|(name, _)| scene == geometry(name));
+    named.map_or(0.0, |&(_, stress)| stress)
 }
 
 /// Difference of one field, against its largest value.

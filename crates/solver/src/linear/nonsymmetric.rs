@@ -106,9 +106,19 @@ impl NonsymmetricSolver {
             .is_some()
             .then(|| interface.stiffness(&tangents.exact));
         let positive = tangents.positive.as_ref().unwrap_or(&tangents.exact);
-        self.positive = interface.stiffness(positive);
-        self.inner
-            .update(system.fixed_part(), self.positive.clone())
+        let stiffness = interface.stiffness(positive);
+        self.positive.clone_from(&stiffness);
+        self.inner.update(system.fixed_part(), stiffness)
+    }
+
+    /// Blocks of the exact tangent of the fractures, one for each of the interface's columns.
+    pub(crate) fn stiffness(&self) -> &[DMat3] {
+        self.exact.as_ref().unwrap_or(&self.positive)
+    }
+
+    /// Whether that tangent is symmetric.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        self.exact.is_none()
     }
 
     /// Solves for forces and for what is missing in a flow, together.
@@ -269,10 +279,9 @@ impl NonsymmetricSolver {
 
     /// What `unknowns` (m) leave of the forces `rhs` (N) on the exact tangents.
     fn remaining(&self, system: &System<'_>, unknowns: &[DVec3], rhs: &[DVec3]) -> Vec<DVec3> {
-        let stiffness = self.exact.as_ref().unwrap_or(&self.positive);
+        let (fixed, stiffness) = (system.fixed_part(), self.stiffness());
         let mut rest = vec![DVec3::ZERO; rhs.len()];
-        self.inner
-            .multiply(system.fixed_part(), stiffness, unknowns, &mut rest);
+        self.inner.multiply(fixed, stiffness, unknowns, &mut rest);
         let pairs = rest.par_iter_mut().zip(rhs);
         pairs.for_each(|(image, force)| *image = *force - *image);
         rest

@@ -291,7 +291,7 @@ impl Newton {
         let (Some(coupling), Some(fluid), Some(flow)) = parts else {
             let size = norm(&residual);
             let tolerance = forcing_term::tolerance(system, &self.settings, iterate, size);
-            let guess = self.guess(system, iterate, tangents, &residual);
+            let guess = self.guess(system, iterate, &residual);
             let solution = match guess {
                 Some(guess) => self.linear.solve_from(system, guess, &residual, tolerance),
                 None => self.linear.solve(system, &residual, tolerance),
@@ -328,13 +328,11 @@ impl Newton {
         &self,
         system: &System<'_>,
         iterate: &Iterate,
-        tangents: &Tangents,
         forces: &[DVec3],
     ) -> Option<Vec<DVec3>> {
         let begins = !system.is_smooth() && self.is_recycled(system, iterate);
         let space = self.recycled.as_ref().filter(|_| begins)?;
-        let damped = facet_points::damped(system, tangents, iterate.damping.share);
-        space.answer(system, &damped, forces)
+        space.answer(system, &self.linear, forces)
     }
 
     /// Whether the correction at hand is to be recycled.

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use kluft_algebra::largest;
-use rayon::prelude::*;
 
 use super::space::{MOST_DIRECTIONS, PRINCIPAL_DIRECTIONS, RecycledSpace};
 use crate::newton::dense;
@@ -29,11 +28,9 @@ impl RecycledSpace {
         };
         let corrections: Vec<Vec<f64>> = self.corrections.iter().map(scaled).collect();
         let axes = dense::principal_axes(&corrections, FADING, PRINCIPAL_DIRECTIONS);
-        let entries = 0..state.unknowns.len();
         let direction = |axis: &Vec<f64>| -> Vec<DVec3> {
             let weights: Vec<f64> = axis.iter().zip(&scale).map(|(a, s)| a / s).collect();
-            let entries = entries.clone().into_par_iter();
-            entries.map(|i| self.combined(&weights, i)).collect()
+            self.combination(&weights, state.unknowns.len())
         };
         let directions: Vec<Vec<DVec3>> = axes.iter().map(direction).collect();
         let along = |correction: &Vec<f64>| -> Vec<f64> {
@@ -48,7 +45,8 @@ impl RecycledSpace {
     /// Norms of the directions by the energy of the tangent at a state.
     fn energy_norms(&self, system: &System<'_>, state: &State) -> Vec<f64> {
         let tangents = facet_points::tangents(system, state);
-        let matrix = self.tangent(system, &tangents);
+        let stiffness = facet_points::interface(system).stiffness(&tangents.exact);
+        let matrix = self.tangent(system, &stiffness, true);
         let norm = |i: usize| matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt();
         (0..self.directions.len()).map(norm).collect()
     }

@@ -4,7 +4,6 @@
 //! where the former one leads too slowly.
 
 use faer::Mat;
-use kluft_algebra::dot;
 use rayon::prelude::*;
 
 use super::space::RecycledSpace;
@@ -76,9 +75,8 @@ impl RecycledSpace {
         let mut forces = system.load_forces(&state.load);
         let pairs = forces.par_iter_mut().zip(rock);
         pairs.for_each(|(force, rock)| *force -= rock);
-        let directions = self.directions.par_iter();
         ReducedIterate {
-            projected_residual: directions.map(|v| dot(v, &forces)).collect(),
+            projected_residual: self.projected(&forces),
             last_trials: vec![LastTrial::default(); state.facet_points.len()],
             coefficients: vec![0.0; self.directions.len()],
             errors: Vec::new(),
@@ -124,7 +122,10 @@ impl RecycledSpace {
             facet_points::Linearisation::Tangents,
         );
         let matrix = iterate.matrix.take();
-        let matrix = matrix.unwrap_or_else(|| self.tangent(system, &planes.tangents));
+        let matrix = matrix.unwrap_or_else(|| {
+            let stiffness = interface(system).stiffness(&planes.tangents.exact);
+            self.tangent(system, &stiffness, true)
+        });
         let rock = self.rock_forces(&iterate.coefficients);
         let fractures = self.fracture_forces(system, &iterate.state, &planes.tangents);
         let residual: Vec<f64> = (0..rock.len())

@@ -1,11 +1,9 @@
 //! The first guess of a linear solve, in the recycled space.
 
 use glam::DVec3;
-use kluft_algebra::dot;
-use rayon::prelude::*;
 
 use super::space::RecycledSpace;
-use crate::linear::Tangents;
+use crate::linear::NonsymmetricSolver;
 use crate::newton::dense;
 use crate::system::System;
 
@@ -14,23 +12,21 @@ use crate::system::System;
 pub(in crate::newton) const KEPT_AT_KINKS: usize = 4;
 
 impl RecycledSpace {
-    /// The unknowns (m) in the space whose answer to `forces` (N) on these tangents leaves nothing
-    /// out of balance in it (Galerkin): `V c` with `V^T (K + fractures) V c = V^T forces`. None if
-    /// there are no directions.
+    /// The unknowns (m) in the space that leave nothing of `forces` (N) in it out of balance, on
+    /// the tangent that `linear` has (Galerkin): `V c` with `V^T (K + fractures) V c = V^T forces`.
+    /// None if there are no directions.
     pub(in crate::newton) fn answer(
         &self,
         system: &System<'_>,
-        tangents: &Tangents,
+        linear: &NonsymmetricSolver,
         forces: &[DVec3],
     ) -> Option<Vec<DVec3>> {
         if self.directions.is_empty() {
             return None;
         }
-        let directions = self.directions.par_iter();
-        let projected: Vec<f64> = directions.map(|v| dot(v, forces)).collect();
-        let coefficients = dense::solve(self.tangent(system, tangents), &projected)?;
-        let entries = (0..forces.len()).into_par_iter();
-        Some(entries.map(|i| self.combined(&coefficients, i)).collect())
+        let matrix = self.tangent(system, linear.stiffness(), linear.is_symmetric());
+        let coefficients = dense::solve(matrix, &self.projected(forces))?;
+        Some(self.combination(&coefficients, forces.len()))
     }
 }
 
@@ -41,6 +37,7 @@ mod tests {
 
     use super::*;
     use crate::linear::fractured_tests::{problem, system};
+    use crate::linear::{Iterative, Tangents};
 
     /// Forces that directions of the space answer are answered by those directions, on tangents
     /// that are not symmetric.
@@ -79,9 +76,10 @@ mod tests {
         system
             .fixed_part()
             .multiply(&stiffness, &expected, &mut forces);
-        let mut answer = space
-            .answer(&system, &tangents, &forces)
-            .expect("directions");
+        let inner = Iterative::new(&system).expect("definite");
+        let mut linear = NonsymmetricSolver::new(Box::new(inner));
+        linear.update(&system, &tangents).expect("definite");
+        let mut answer = space.answer(&system, &linear, &forces).expect("directions");
         for (entry, expected) in answer.iter_mut().zip(&expected) {
             *entry -= *expected;
         }
@@ -90,7 +88,7 @@ mod tests {
             "{:e}",
             norm(&answer)
         );
-        let none = RecycledSpace::default().answer(&system, &tangents, &forces);
+        let none = RecycledSpace::default().answer(&system, &linear, &forces);
         assert!(none.is_none());
     }
 }

@@ -25,12 +25,15 @@ impl RecycledSpace {
             .collect()
     }
 
-    /// The tangent in the space, `V^T (K + fractures) V` (J); symmetric if those of the facet
-    /// points are.
-    pub(super) fn tangent(&self, system: &System<'_>, tangents: &Tangents) -> Mat<f64> {
-        let is_symmetric = tangents.positive.is_none();
+    /// The tangent in the space, `V^T (K + fractures) V` (J), with these blocks of the fractures;
+    /// they may be said to be symmetric, which halves the work.
+    pub(super) fn tangent(
+        &self,
+        system: &System<'_>,
+        stiffness: &[DMat3],
+        is_symmetric: bool,
+    ) -> Mat<f64> {
         let interface = interface(system);
-        let stiffness: Vec<DMat3> = interface.stiffness(&tangents.exact);
         let jumps: Vec<Vec<DVec3>> = self
             .directions
             .par_iter()
@@ -39,7 +42,7 @@ impl RecycledSpace {
         let columns = self.directions.par_iter().enumerate();
         let images: Vec<Vec<f64>> = columns
             .map(|(j, v)| {
-                let image = interface.resistance(&stiffness, v);
+                let image = interface.resistance(stiffness, v);
                 let count = if is_symmetric { j + 1 } else { jumps.len() };
                 jumps[..count].iter().map(|own| dot(own, &image)).collect()
             })
@@ -87,6 +90,18 @@ impl RecycledSpace {
             combined[unknown as usize] = self.combined(coefficients, unknown as usize);
         }
         combined
+    }
+
+    /// `V^T f` for forces `f` (N): the work that they do (J).
+    pub(super) fn projected(&self, forces: &[DVec3]) -> Vec<f64> {
+        let directions = self.directions.par_iter();
+        directions.map(|v| dot(v, forces)).collect()
+    }
+
+    /// `V c`, on all unknowns (m), of which there are so many.
+    pub(super) fn combination(&self, coefficients: &[f64], unknowns: usize) -> Vec<DVec3> {
+        let entries = (0..unknowns).into_par_iter();
+        entries.map(|i| self.combined(coefficients, i)).collect()
     }
 
     /// Entry of `V c` (m).
