@@ -23,6 +23,11 @@ pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
              ones to none"
                 .to_owned()
         }
+        UnresolvedCause::Snaps => {
+            "no increment, however short, leads to an equilibrium: walls snap \
+                                   to another place, which they were relaxed to"
+                .to_owned()
+        }
         UnresolvedCause::Falls => "blocks fall through open gaps, and only friction on the walls \
                                    that stop them tells where they come to rest"
             .to_owned(),

@@ -104,7 +104,8 @@ pub(super) fn measure(
     if let Some(broken) = tractions.iter().position(|traction| !traction.is_finite()) {
         return Err(StepOutcome::NotFinite(Some(broken)));
     }
-    let total = fluid::total_tractions(system, state, tractions.clone());
+    let mut total = fluid::total_tractions(system, state, tractions.clone());
+    iterate.dashpots.add_to(system, &mut total);
     let residual = norm(&system.residual(&iterate.rock_forces, &total, &state.load));
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].total_cmp(&errors[b]));
     step.record.worst_facet_point = worst;

@@ -56,15 +56,21 @@ pub(super) struct Linearised {
     pub(super) tangents: Tangents,
     /// Where they come from.
     pub(super) by: Linearisation,
+    /// Stiffness of dashpots beside the laws, against that of the rock beside them.
+    pub(super) dashpots: f64,
 }
 
-/// The planes of the laws at the state.
+/// The planes of the laws at the state, without dashpots.
 pub(super) fn linearised(system: &System<'_>, state: &State, by: Linearisation) -> Linearised {
     let tangents = match by {
         Linearisation::Tangents => tangents(system, state),
         Linearisation::Springs => springs(system, state),
     };
-    Linearised { tangents, by }
+    Linearised {
+        tangents,
+        by,
+        dashpots: 0.0,
+    }
 }
 
 /// Tangents of the laws at the state (Pa/m).
@@ -175,10 +181,21 @@ pub(super) fn follow(
                 Linearisation::Tangents if follows(law, &trial, state) => {
                     at_jump(law, point, &trial, state)
                 }
-                _ => follow_point(law, point, &trial, state, &before),
+                _ => {
+                    let beside = beside_dashpots(point, planes.dashpots);
+                    follow_point(law, &beside, &trial, state, &before)
+                }
             }
         })
         .collect()
+}
+
+/// A facet point beside which dashpots stiffen the rock by a share.
+fn beside_dashpots(point: &FacetPoint, share: f64) -> FacetPoint {
+    FacetPoint {
+        spring: (1.0 + share) * point.spring,
+        ..*point
+    }
 }
 
 pub(super) fn follow_point(

@@ -7,6 +7,7 @@ use kluft_algebra::largest;
 
 use super::acceleration::Acceleration;
 use super::damping::Damping;
+use super::dashpots::Dashpots;
 use super::facet_points::{Linearisation, Linearised};
 use super::fluid::FlowIterate;
 use super::last_trial::LastTrial;
@@ -28,6 +29,8 @@ pub(super) struct Iterate {
     pub(super) first_force: f64,
     /// Springs on the facet points, see `damping`.
     pub(super) damping: Damping,
+    /// Dashpots on the facet points, see `relaxation`.
+    pub(super) dashpots: Dashpots,
     /// What stands for the laws in the next linear solve.
     pub(super) linearisation: Linearisation,
     /// Former iterates of the splitting.

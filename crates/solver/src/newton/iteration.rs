@@ -8,7 +8,7 @@ use kluft_algebra::{LinearFailure, norm};
 use rayon::prelude::*;
 
 use super::convergence;
-use super::facet_points::{self, Linearisation, interface};
+use super::facet_points::{self, Linearisation, Linearised, interface};
 use super::fluid;
 use super::forcing_term;
 use super::iterate::{Correction, Iterate, Update};
@@ -58,6 +58,7 @@ impl Iterate {
             let advance = self.acceleration.advance(system, &self.state, &changes);
             facet_points::pull(system, &mut self.state, &advance);
         }
+        self.dashpots.follow(&changes);
         let errors = facet_points::follow(
             system,
             &mut self.state,
@@ -161,8 +162,8 @@ impl Newton {
             }
             is_near = line_search::merit(&iteration) < NEARLY_CONVERGED;
             step.go_on()?;
-            // Springs hold every block.
-            if iterate.linearisation == Linearisation::Tangents {
+            // Springs and dashpots hold every block.
+            if iterate.linearisation == Linearisation::Tangents && !iterate.dashpots.hold() {
                 rigid_body_motion.test(step, iterate, &iteration, count)?;
                 if stall.has_come_with(&iteration) && !step.system.is_smooth() {
                     break;
@@ -222,8 +223,12 @@ impl Newton {
         count: usize,
     ) -> Result<Iteration, StepOutcome> {
         let system = step.system;
-        let planes = facet_points::linearised(system, &iterate.state, iterate.linearisation);
-        self.update_tangent(step, &planes.tangents, iterate.damping.share)?;
+        let planes = Linearised {
+            dashpots: iterate.dashpots.share,
+            ..facet_points::linearised(system, &iterate.state, iterate.linearisation)
+        };
+        let share = iterate.damping.share + planes.dashpots;
+        self.update_tangent(step, &planes.tangents, share)?;
         let solved = self.solve_linearised(system, iterate, &planes.tangents);
         let (correction, spent) = solved.map_err(|failure| match failure {
             LinearFailure::NotFinite => StepOutcome::NotFinite(None),
@@ -285,7 +290,8 @@ impl Newton {
     ) -> Result<(Correction, usize), LinearFailure> {
         let state = &iterate.state;
         let tractions = facet_points::linearised_tractions(system, state, tangents);
-        let tractions = fluid::total_tractions(system, state, tractions);
+        let mut tractions = fluid::total_tractions(system, state, tractions);
+        iterate.dashpots.add_to(system, &mut tractions);
         let residual = system.residual(&iterate.rock_forces, &tractions, &state.load);
         let parts = (system.coupling(), &state.fluid, &iterate.flow);
         let (Some(coupling), Some(fluid), Some(flow)) = parts else {

@@ -54,7 +54,6 @@ impl Newton {
         let start = Instant::now();
         let load = state.load.clone();
         let mut step = Step::new(system, &load, &mut observe);
-        step.keeps_end = true;
         let most = self.settings.max_iterations;
         self.settings.max_iterations = SETTLING * most;
         let outcome = match self.solve_increment(&mut step, state, &load) {
@@ -84,20 +83,21 @@ impl Newton {
     ) -> Result<State, StepOutcome> {
         step.go_on()?;
         step.record.rigid_motions.clear();
+        step.end = None;
         step.predicted.clear();
         step.predicts = step.system.is_path_dependent();
         let mut iterate = self.predict(step.system, from, load);
         let converged = self.iterate_to_convergence(step, &mut iterate);
         if let Err(outcome) = converged {
             step.explain(&outcome, &iterate);
-            step.end = step.keeps_end.then_some(iterate.state);
+            step.end = Some(iterate.state);
             return Err(outcome);
         }
         Ok(self.commit(step.system, iterate))
     }
 
     /// Makes a converged iterate the state that the next increment starts from.
-    fn commit(&mut self, system: &System<'_>, iterate: Iterate) -> State {
+    pub(super) fn commit(&mut self, system: &System<'_>, iterate: Iterate) -> State {
         if let Some(recycled) = self.recycled.as_mut() {
             recycled.add(iterate.guess, iterate.corrections);
         }

@@ -182,7 +182,7 @@ fn along_modes(system: &System<'_>, centre: DVec3, forces: &[DVec3]) -> [f64; MO
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use kluft_mesh::structured::{Patch, tetrahedra};
     use kluft_mesh::{Mesh, SurfaceRole};
     use lie_core::{Closure, ClosureKind, FractureLaw};
@@ -193,10 +193,10 @@ mod tests {
 
     const YOUNG: f64 = 3e10;
     const RATIO: f64 = 0.2;
-    const PRESSURE: f64 = 5e6;
+    pub(in crate::newton) const PRESSURE: f64 = 5e6;
 
     /// A cube on rollers under a pressure from above, cut through level.
-    fn problem(kind: ClosureKind) -> Problem {
+    pub(in crate::newton) fn problem(kind: ClosureKind) -> Problem {
         let patches = [
             Patch {
                 name: "joint",

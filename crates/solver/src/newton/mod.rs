@@ -15,7 +15,9 @@
 //! A load step is solved in one increment or in several ([`substepping`]). An increment is
 //! predicted ([`predictor`]), iterated ([`iteration`]) until the tests hold ([`convergence`]), and
 //! committed. Where contact and friction lead Newton's method around in circles, the laws and the
-//! rock are solved in turn ([`splitting`]) until it finds its way.
+//! rock are solved in turn ([`splitting`]) until it finds its way. Where neither comes to an end,
+//! however short the increment, walls snap, and dashpots lead them to an equilibrium
+//! ([`relaxation`]).
 
 mod acceleration;
 mod acceptance;
@@ -23,6 +25,7 @@ mod comparison;
 mod conservation;
 mod convergence;
 mod damping;
+mod dashpots;
 mod dense;
 mod determinacy;
 mod drained;
@@ -41,6 +44,7 @@ mod path_error;
 mod predictor;
 mod record;
 mod recycling;
+mod relaxation;
 mod relieved;
 mod restart;
 mod rigid_motion;

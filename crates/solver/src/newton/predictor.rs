@@ -1,9 +1,12 @@
 //! The first guess for an increment: solved for in the space of former corrections where there is
 //! one, else the path of the last states continued.
 
+use glam::DVec3;
+
 use super::acceleration::Acceleration;
 use super::convergence::{self, SHARE_OF_FORMER_SIZES};
 use super::damping::Damping;
+use super::dashpots::Dashpots;
 use super::drained;
 use super::facet_points::{self, Linearisation};
 use super::fluid;
@@ -39,22 +42,39 @@ impl Newton {
             }
         };
         let flow = fluid::begin(system, &from, &mut state);
-        let reached = state.reached;
         let rock_forces = system.rock_forces(&state.unknowns);
         if guess.is_none() && self.path.len() == 0 {
             mean_strain::close(system, &from.load, &rock_forces, &mut state);
         }
-        let tractions = system.law_tractions(&state);
-        let force = system.force_scale(&rock_forces, &tractions, load);
-        let force = force.max(SHARE_OF_FORMER_SIZES * reached.force);
         Iterate {
             last_trials,
             guess,
             flow,
+            ..self.iterate_at(system, state, rock_forces)
+        }
+    }
+
+    /// The iterate at a state, under its load, which its rock resists with forces (N), before any
+    /// iteration.
+    pub(super) fn iterate_at(
+        &self,
+        system: &System<'_>,
+        state: State,
+        rock_forces: Vec<DVec3>,
+    ) -> Iterate {
+        let reached = state.reached;
+        let tractions = system.law_tractions(&state);
+        let force = system.force_scale(&rock_forces, &tractions, &state.load);
+        let force = force.max(SHARE_OF_FORMER_SIZES * reached.force);
+        Iterate {
+            last_trials: vec![LastTrial::default(); state.facet_points.len()],
+            guess: None,
+            flow: None,
             corrections: Vec::new(),
             sizes: StateScales { force, ..reached },
             first_force: force,
             damping: Damping::FIRST,
+            dashpots: Dashpots::default(),
             linearisation: Linearisation::Tangents,
             conserves: system.coupling().is_some_and(Coupling::is_transient),
             acceleration: Acceleration::default(),

@@ -80,6 +80,8 @@ pub enum UnresolvedCause {
     Differs(f64),
     /// One increment leads to an equilibrium, and two shorter ones to none.
     HalvesDoNotEnd,
+    /// No increment, however short, leads to an equilibrium; walls relaxed to one.
+    Snaps,
     /// Blocks fall through open gaps, and only friction on the walls that stop them tells where
     /// they come to rest.
     Falls,

@@ -42,9 +42,7 @@ pub(super) struct Step<'a> {
     pub(super) predicts: bool,
     /// How far the first linear solve of the last increment moves walls (m).
     pub(super) predicted: Vec<DVec3>,
-    /// Whether the state is kept in which an increment failed.
-    pub(super) keeps_end: bool,
-    /// The state in which the last increment failed, if it is kept.
+    /// The state in which the last increment failed, if it did.
     pub(super) end: Option<State>,
     asked_for_collapse: bool,
     observe: &'a mut Observe<'a>,
@@ -65,7 +63,6 @@ impl<'a> Step<'a> {
             pushed: Vec::new(),
             predicts: false,
             predicted: Vec::new(),
-            keeps_end: false,
             end: None,
             asked_for_collapse: false,
             observe,

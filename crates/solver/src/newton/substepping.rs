@@ -49,10 +49,11 @@ impl Newton {
             let end = f64::min(way.share + way.increment, 1.0);
             let middle = 0.5 * (way.share + end);
             let known = way.half.take().filter(|half| half.share == end);
+            let to = End::between(&start, load, end);
             let substep = Substep {
                 start: End::between(&start, load, way.share),
                 middle: End::between(&start, load, middle),
-                end: End::between(&start, load, end),
+                end: to.clone(),
                 whole: known.map(|half| half.end.map(|end| *end)),
                 is_smallest: way.increment <= SMALLEST_SUBSTEP,
                 is_half: false,
@@ -70,7 +71,7 @@ impl Newton {
                 }
                 Solved::TooLong(found) => {
                     way.ask_for_collapse(step, &found, &start)?;
-                    self.divide(step, &mut way, found, end)?
+                    self.divide(step, &mut way, found, &to)?
                 }
             };
             if let Some(next) = next {
@@ -85,7 +86,7 @@ impl Newton {
         Ok(way.here.into_owned())
     }
 
-    /// Goes on after a substep to `end` that is too long: by a shorter one, or by the direct
+    /// Goes on after a substep `to` an end that is too long: by a shorter one, or by the direct
     /// solver; where neither is left, from the end that stands for it.
     ///
     /// # Errors
@@ -95,7 +96,7 @@ impl Newton {
         step: &mut Step<'_>,
         way: &mut Way<'_>,
         found: TooLong,
-        end: f64,
+        to: &End,
     ) -> Result<Option<Reached>, StepOutcome> {
         let is_torn = step.is_torn && found.whole.is_some();
         let reached = |share: f64| {
@@ -104,7 +105,7 @@ impl Newton {
                 share,
             }
         };
-        way.coarse = found.whole.map(reached(end)).or(way.coarse.take());
+        way.coarse = found.whole.map(reached(to.share)).or(way.coarse.take());
         let is_final = |why: &StepOutcome| is_torn || way.is_final(step.system, why);
         let ends = found.why.as_ref().is_some_and(is_final);
         let why = match (way.failed.take(), found.why) {
@@ -126,11 +127,40 @@ impl Newton {
             }
             Some(outcome) if self.may_fall_back(step, &outcome) => Ok(None),
             Some(outcome) => {
-                let end = let_be(step, outcome, way.coarse.take())?;
-                way.increment = end.share - way.share;
-                Ok(Some(end))
+                let next = match way.coarse.take() {
+                    Some(next) => let_be(step, outcome, next),
+                    None => self.relaxed(step, way, outcome, to),
+                }?;
+                way.increment = next.share - way.share;
+                Ok(Some(next))
             }
         }
+    }
+
+    /// The state that walls relax to at the end of a substep that no division resolves and no
+    /// increment leads to.
+    ///
+    /// # Errors
+    /// If they do not: why. Mechanisms are not relaxed: [`StepOutcome::RigidBodyMotion`] if a
+    /// longer substep pushed blocks that nothing holds.
+    fn relaxed(
+        &mut self,
+        step: &mut Step<'_>,
+        way: &Way<'_>,
+        outcome: StepOutcome,
+        to: &End,
+    ) -> Result<Reached, StepOutcome> {
+        let system = step.system;
+        let is_pushed = outcome == StepOutcome::RigidBodyMotion || !step.pushed.is_empty();
+        let is_ended = is_pushed || outcome == StepOutcome::Stopped;
+        if is_ended || system.is_smooth() || system.coupling().is_some() {
+            return Err(step.failed_by(outcome));
+        }
+        let state = self.relax(step, &way.here, to);
+        let share = to.share;
+        state
+            .map(|state| Reached { state, share })
+            .map_err(|failed| outcome.and(failed))
     }
 
     /// Whether a direct solver goes on where an increment of an iterative one fails for good; of
@@ -248,24 +278,20 @@ fn tell_falls(step: &mut Step<'_>, from: &State, load: &Load) {
     }
 }
 
-/// What stands for a substep that no division resolves: the end of a longer one that converged in
-/// one increment.
+/// What stands for a substep that no division resolves: the end of a longer one, the `next` state
+/// on the way, that converged in one increment.
 ///
 /// # Errors
-/// If there is none: [`StepOutcome::RigidBodyMotion`] if a longer one pushed blocks that nothing
-/// holds, else the outcome of the shortest.
+/// If the observer stopped it.
 fn let_be(
     step: &mut Step<'_>,
     outcome: StepOutcome,
-    coarse: Option<Reached>,
+    next: Reached,
 ) -> Result<Reached, StepOutcome> {
     if outcome == StepOutcome::Stopped {
         return Err(outcome);
     }
-    let Some(end) = coarse else {
-        return Err(step.failed_by(outcome));
-    };
     step.record.rigid_motions.clear();
     step.leave_torn();
-    Ok(end)
+    Ok(next)
 }
