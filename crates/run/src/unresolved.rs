@@ -24,8 +24,8 @@ pub fn of_step(system: &System<'_>, record: &StepRecord) -> Option<String> {
                 .to_owned()
         }
         UnresolvedCause::Snaps => {
-            "no increment, however short, leads to an equilibrium: walls snap \
-                                   to another place, which they were relaxed to"
+            "no increment, however short, leads to an equilibrium: walls snap to another place, \
+             which they were relaxed to"
                 .to_owned()
         }
         UnresolvedCause::Falls => "blocks fall through open gaps, and only friction on the walls \

@@ -34,18 +34,22 @@ impl Dashpots {
         }
     }
 
+    /// What each carries (Pa).
+    fn tractions<'a>(&'a self, system: &'a System<'_>) -> impl Iterator<Item = DVec3> + 'a {
+        let points = interface(system).points.iter().zip(&self.moved);
+        points.map(|(point, moved)| self.share * point.spring * *moved)
+    }
+
     /// The largest traction that one carries (Pa).
     pub(super) fn largest(&self, system: &System<'_>) -> f64 {
-        let points = interface(system).points.iter().zip(&self.moved);
-        let tractions = points.map(|(point, moved)| self.share * point.spring * moved.length());
-        tractions.fold(0.0, f64::max)
+        let sizes = self.tractions(system).map(|own| own.length());
+        sizes.fold(0.0, f64::max)
     }
 
     /// Adds what they carry to the tractions (Pa) of all facet points.
     pub(super) fn add_to(&self, system: &System<'_>, tractions: &mut [DVec3]) {
-        let points = interface(system).points.iter().zip(&self.moved);
-        for (traction, (point, moved)) in tractions.iter_mut().zip(points) {
-            *traction += self.share * point.spring * *moved;
+        for (traction, own) in tractions.iter_mut().zip(self.tractions(system)) {
+            *traction += own;
         }
     }
 }

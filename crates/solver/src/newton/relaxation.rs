@@ -18,7 +18,7 @@ use super::comparison::End;
 use super::convergence::ratio;
 use super::damping::Damping;
 use super::dashpots::Dashpots;
-use super::facet_points::{Linearisation, interface};
+use super::facet_points::Linearisation;
 use super::free_blocks;
 use super::iterate::Iterate;
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
@@ -132,7 +132,7 @@ impl Newton {
         step: &mut Step<'_>,
         mut iterate: Iterate,
     ) -> Result<Iterate, StepOutcome> {
-        let (mut pace, mut carried) = (Pace::FIRST, CARRIED / LESS);
+        let (mut pace, mut most) = (Pace::FIRST, CARRIED);
         let (mut moves, mut pushes) = (false, 0);
         for _ in 0..STEPS {
             match self.with_dashpots(step, &iterate, pace.share) {
@@ -154,14 +154,12 @@ impl Newton {
             if pushes == MOST_PUSHES {
                 return Err(StepOutcome::RigidBodyMotion);
             }
-            let own = ratio(
-                iterate.dashpots.largest(step.system),
-                iterate.sizes.traction,
-            );
-            if own > LESS * carried {
+            let largest = iterate.dashpots.largest(step.system);
+            let carried = ratio(largest, iterate.sizes.traction);
+            if carried > most {
                 continue;
             }
-            carried = own;
+            most = LESS * carried;
             match self.with_dashpots(step, &iterate, 0.0) {
                 Ok(end) => return Ok(end),
                 Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
@@ -182,12 +180,8 @@ impl Newton {
         start: &Iterate,
         share: f64,
     ) -> Result<Iterate, StepOutcome> {
-        let dashpots = match share > 0.0 {
-            true => Dashpots::at_rest(share, interface(step.system).points.len()),
-            false => Dashpots::default(),
-        };
         let mut iterate = Iterate {
-            dashpots,
+            dashpots: Dashpots::at_rest(share, start.state.facet_points.len()),
             linearisation: Linearisation::Tangents,
             damping: Damping::FIRST,
             merit: None,
@@ -204,6 +198,7 @@ mod tests {
     use lie_core::{ClosureKind, Tension};
 
     use super::*;
+    use crate::newton::facet_points::interface;
     use crate::newton::mean_strain::tests::{PRESSURE, problem};
     use crate::newton::{NewtonSettings, unobserved};
     use crate::{Discretisation, System};
