@@ -438,6 +438,18 @@ fn walls_that_stop_early_in_an_increment_have_slid_on() {
     });
 }
 
+/// A joint slides from the beginning until, at 7 % of the load, gaps of another close and stop it.
+/// It sticks at the end of an increment and of its halves, and its own tractions do not tell that
+/// it has slid.
+#[test]
+fn walls_that_slide_until_others_meet_early_in_an_increment_have_slid() {
+    assert_one_step_is_ten("meets_early.toml", 2e-4, |said| {
+        said["fractures"]["east"]["slip_max"]
+            .as_f64()
+            .expect("a slip")
+    });
+}
+
 /// A joint with cohesion slides in one direction in the first sixteenth of the load, and across it
 /// from then on: an increment and its halves make the same of the beginning.
 #[test]

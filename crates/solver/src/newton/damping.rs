@@ -11,6 +11,8 @@ const LEAST: f64 = 1e-6;
 /// The same in late iterations: where fractures a millionth as stiff as the rock beside them hold a
 /// block, springs as stiff as they are would make Newton's method converge linearly.
 const LEAST_LATE: f64 = 1e-10;
+/// The most beside dashpots, against their stiffness.
+const SHARE_OF_DASHPOTS: f64 = 1e-2;
 /// Iterations of an increment after which they are late.
 const EARLY: usize = 8;
 /// Share that holds walls like rock.
@@ -23,6 +25,8 @@ const FACTOR: f64 = 100.0;
 pub(super) struct Damping {
     /// Their stiffness, against that of the rock beside them.
     pub(super) share: f64,
+    /// The least in early iterations.
+    least_early: f64,
     /// The least that linear solvers bear in late iterations.
     least_late: f64,
 }
@@ -31,8 +35,20 @@ impl Damping {
     /// That of the first iteration.
     pub(super) const FIRST: Self = Self {
         share: LEAST,
+        least_early: LEAST,
         least_late: LEAST_LATE,
     };
+
+    /// That of the first iteration beside dashpots of a `share` of the stiffness of the rock:
+    /// springs stiffer than they are would hold walls back that nothing else holds.
+    pub(super) fn beside_dashpots(share: f64) -> Self {
+        let least = f64::min(SHARE_OF_DASHPOTS * share, LEAST);
+        Self {
+            share: least,
+            least_early: least,
+            least_late: f64::min(least, LEAST_LATE),
+        }
+    }
 
     /// That to take after an iterate that overshoots; none if this is the largest.
     pub(super) fn stronger(self) -> Option<Self> {
@@ -45,7 +61,7 @@ impl Damping {
         let least = if count > EARLY {
             self.least_late
         } else {
-            LEAST
+            self.least_early
         };
         let share = (self.share / FACTOR).max(least);
         Self { share, ..self }
@@ -55,6 +71,7 @@ impl Damping {
     pub(super) fn as_at_first(self) -> Option<Self> {
         let first = Self {
             share: LEAST,
+            least_early: LEAST,
             least_late: LEAST,
         };
         (self.share < LEAST).then_some(first)
@@ -78,5 +95,16 @@ mod tests {
         assert!(borne.as_at_first().is_none());
         let strong = borne.stronger().expect("stronger");
         assert!(strong.share > borne.share);
+    }
+
+    #[test]
+    fn springs_beside_dashpots_stay_softer_than_they_are() {
+        for share in [1e4, 1.0, 1e-3, 1e-9] {
+            let mut damping = Damping::beside_dashpots(share);
+            for count in 1..30 {
+                assert!(damping.share <= SHARE_OF_DASHPOTS * share);
+                damping = damping.weaker(count);
+            }
+        }
     }
 }

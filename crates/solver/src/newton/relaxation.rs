@@ -12,7 +12,10 @@
 //!
 //! Each step is an increment of its own, the better conditioned the larger `c`. It becomes smaller
 //! from one step that converges to the next and larger after one that does not. The relaxation ends
-//! where Newton's method converges without dashpots, whose equilibrium is one of the laws alone.
+//! where Newton's method converges without dashpots, whose equilibrium is one of the laws alone, or
+//! they carry no more than forces may be out of balance.
+
+use kluft_algebra::norm;
 
 use super::comparison::End;
 use super::convergence::ratio;
@@ -22,7 +25,7 @@ use super::facet_points::Linearisation;
 use super::free_blocks;
 use super::iterate::Iterate;
 use super::{Newton, Step, StepOutcome, UnresolvedCause, UnresolvedPath};
-use crate::system::State;
+use crate::system::{State, System};
 
 /// Share of the stiffness of the rock beyond which stiffer dashpots help no more.
 const LARGEST: f64 = 1e4;
@@ -32,7 +35,7 @@ const CARRIED: f64 = 1e-2;
 /// What they carry at most where it is tried again, against what they did the last time.
 const LESS: f64 = 0.1;
 /// Most steps.
-const STEPS: usize = 100;
+const STEPS: usize = 400;
 /// Steps in a row after which blocks have been pushed that nothing holds: a mechanism.
 const MOST_PUSHES: usize = 3;
 /// Most iterations of a step.
@@ -74,6 +77,14 @@ impl Pace {
     }
 }
 
+/// Where a relaxation may begin.
+struct Starts {
+    /// Where the increment that failed has come to, if laws answer there.
+    failed: Option<Iterate>,
+    /// The state before it, under its load.
+    before: Iterate,
+}
+
 impl Newton {
     /// The state to which walls relax from a state under the load of an `end`, or from where the
     /// last increment to it has failed; recorded as a path that is not resolved there.
@@ -92,8 +103,8 @@ impl Newton {
         let before = step.record.iterations.len();
         step.share = end.share;
         step.predicts = false;
-        let start = self.before_relaxation(step, from, end);
-        let relaxed = self.relax_from(step, start);
+        let starts = self.before_relaxation(step, from, end);
+        let relaxed = self.relax_from(step, starts);
         step.pushed.clear();
         step.record.worst_facet_point = place;
         let iterate = relaxed?;
@@ -107,19 +118,21 @@ impl Newton {
         Ok(self.commit(step.system, iterate))
     }
 
-    /// Where a relaxation begins: as near to an equilibrium as the increment that failed has come.
-    fn before_relaxation(&mut self, step: &mut Step<'_>, from: &State, end: &End) -> Iterate {
+    /// Where a relaxation begins: where the increment that failed has come to, as near to an
+    /// equilibrium as that may be; and the state before it, for where that went astray.
+    fn before_relaxation(&mut self, step: &mut Step<'_>, from: &State, end: &End) -> Starts {
         let system = step.system;
         let is_usable = |failed: &State| {
             let mut tractions = system.law_tractions(failed).into_iter();
             failed.load == end.load && tractions.all(|traction| traction.is_finite())
         };
-        match step.end.take().filter(is_usable) {
-            Some(failed) => {
-                let rock_forces = system.rock_forces(&failed.unknowns);
-                self.iterate_at(system, failed, rock_forces)
-            }
-            None => self.predict(system, from, &end.load),
+        let failed = step.end.take().filter(is_usable).map(|failed| {
+            let rock_forces = system.rock_forces(&failed.unknowns);
+            self.iterate_at(system, failed, rock_forces)
+        });
+        Starts {
+            failed,
+            before: self.predict(system, from, &end.load),
         }
     }
 
@@ -127,18 +140,22 @@ impl Newton {
     ///
     /// # Errors
     /// As those of [`Self::relax`].
-    fn relax_from(
-        &mut self,
-        step: &mut Step<'_>,
-        mut iterate: Iterate,
-    ) -> Result<Iterate, StepOutcome> {
+    fn relax_from(&mut self, step: &mut Step<'_>, starts: Starts) -> Result<Iterate, StepOutcome> {
+        let (mut iterate, mut other) = match starts.failed {
+            Some(failed) => (failed, Some(starts.before)),
+            None => (starts.before, None),
+        };
         let (mut pace, mut most) = (Pace::FIRST, CARRIED);
         let (mut moves, mut pushes) = (false, 0);
         for _ in 0..STEPS {
             match self.with_dashpots(step, &iterate, pace.share) {
                 Ok(next) => iterate = next,
                 Err(StepOutcome::Stopped) => return Err(StepOutcome::Stopped),
-                Err(failed) if pace.share > LARGEST && !moves => return Err(failed),
+                Err(failed) if pace.share > LARGEST && !moves => {
+                    iterate = other.take().ok_or(failed)?;
+                    pace = Pace::FIRST;
+                    continue;
+                }
                 Err(_) if pace.share > LARGEST => break,
                 Err(_) => {
                     pace = pace.slower();
@@ -153,6 +170,9 @@ impl Newton {
             };
             if pushes == MOST_PUSHES {
                 return Err(StepOutcome::RigidBodyMotion);
+            }
+            if self.is_at_rest(step.system, &iterate) {
+                return Ok(iterate);
             }
             let largest = iterate.dashpots.largest(step.system);
             let carried = ratio(largest, iterate.sizes.traction);
@@ -169,6 +189,14 @@ impl Newton {
         Err(StepOutcome::OutOfIterations)
     }
 
+    /// Whether an iterate beside dashpots is one of the laws alone, to the tolerance: a block that
+    /// friction all but holds creeps for long.
+    fn is_at_rest(&self, system: &System<'_>, iterate: &Iterate) -> bool {
+        let tractions = system.law_tractions(&iterate.state);
+        let residual = system.residual(&iterate.rock_forces, &tractions, &iterate.state.load);
+        ratio(norm(&residual), iterate.sizes.force) <= self.settings.force
+    }
+
     /// Where Newton's method takes an iterate beside dashpots, whose stiffness is a `share` of that
     /// of the rock beside them.
     ///
@@ -183,7 +211,10 @@ impl Newton {
         let mut iterate = Iterate {
             dashpots: Dashpots::at_rest(share, start.state.facet_points.len()),
             linearisation: Linearisation::Tangents,
-            damping: Damping::FIRST,
+            damping: match share > 0.0 {
+                true => Damping::beside_dashpots(share),
+                false => Damping::FIRST,
+            },
             merit: None,
             ..start.clone()
         };
@@ -230,6 +261,32 @@ mod tests {
                 assert!((opening / wanted - 1.0).abs() < 1e-8, "{opening} {wanted}");
             }
             before = wanted;
+        }
+    }
+
+    /// Where an increment has led to numbers that no dashpots lead out of, walls are relaxed from
+    /// the state before it, to the closed joint `w = -p / K_n`.
+    #[test]
+    fn walls_are_relaxed_from_the_state_before_where_an_increment_went_astray() {
+        let mut problem = problem(ClosureKind::Linear);
+        problem.fractures[0].law.closure.tension = Tension::CutOff;
+        let stiffness = problem.fractures[0].law.closure.normal_stiffness;
+        let system = System::assemble(&problem, Discretisation::of(&problem).expect("held"));
+        let mut newton = Newton::new(&system, NewtonSettings::default()).expect("analysis");
+        let load = &problem.schedule.steps[0].load;
+        let mut observe = unobserved;
+        let mut step = Step::new(&system, load, &mut observe);
+        let before = newton.predict(&system, &system.initial_state(), load);
+        let mut astray = before.clone();
+        astray.state.unknowns.fill(glam::DVec3::NAN);
+        let mut relaxed = |failed: Option<Iterate>| {
+            let before = before.clone();
+            newton.relax_from(&mut step, Starts { failed, before })
+        };
+        let end = relaxed(Some(astray)).expect("comes to rest");
+        for state in &end.state.facet_points {
+            let opening = state.joint.separation.opening;
+            assert!((opening * stiffness / PRESSURE + 1.0).abs() < 1e-6);
         }
     }
 

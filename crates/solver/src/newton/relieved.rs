@@ -3,7 +3,8 @@
 //! At its end they stick, and the laws take walls that stick there to have stuck all along; so do
 //! its halves, if the others slide or meet early in the first. Its first linear solve tells, which
 //! does not know yet that they will: up to there the tractions go the straight way that it finds,
-//! and exceed what friction bears.
+//! and exceed what friction bears. Where gaps close in the first half it may not tell either, and
+//! the half is compared with its own halves.
 
 use glam::DVec3;
 use kluft_algebra::largest;
@@ -43,24 +44,53 @@ pub(super) fn any_slid(system: &System<'_>, increment: &Increment<'_>, slip: f64
     })
 }
 
+/// Whether others met in an increment, which had moved by more than a `slip` (m) until then, beside
+/// walls with friction that stick at both its ends. These may have slid until then, and their own
+/// tractions do not tell: what slides beside them takes load off them as soon as it does, and the
+/// first linear solve does not know that it will.
+pub(super) fn any_may_have_slid(system: &System<'_>, increment: &Increment<'_>, slip: f64) -> bool {
+    let met = mean_share(system, |i| share_until_touching(system, increment, i));
+    let moved = largest(increment.predicted);
+    if !met.is_some_and(|share| share * moved > slip) {
+        return false;
+    }
+    let mut points = interface(system).points.iter().enumerate();
+    points.any(|(i, point)| {
+        let [from, to] = [increment.from, increment.to].map(|state| &state.facet_points[i].joint);
+        let sticks = !from.sliding && !to.sliding && to.normal_traction < 0.0;
+        sticks && system.law(point).friction.is_some()
+    })
+}
+
 /// The share of an increment after which walls that slide at its end begin to, and those that touch
 /// there meet: the mean over their area, as the first of them relieve nothing; none if there are no
 /// such walls.
 fn relief(system: &System<'_>, increment: &Increment<'_>) -> Option<f64> {
+    mean_share(system, |i| {
+        let [from, to] = [increment.from, increment.to].map(|state| &state.facet_points[i].joint);
+        match to.sliding && !from.sliding {
+            true => share_until_sliding(system, increment, i),
+            false => share_until_touching(system, increment, i),
+        }
+    })
+}
+
+/// The mean over the area of the facet points that have a share; none if none has.
+fn mean_share(system: &System<'_>, share: impl Fn(usize) -> Option<f64>) -> Option<f64> {
     let (mut sum, mut area) = (0.0, 0.0);
     for (i, point) in interface(system).points.iter().enumerate() {
-        let [from, to] = [increment.from, increment.to].map(|state| &state.facet_points[i]);
-        let share = match to.joint.sliding && !from.joint.sliding {
-            true => share_until_sliding(system, increment, i),
-            false if to.joint.normal_traction < 0.0 => increment.share_until_met(system, i),
-            false => None,
-        };
-        if let Some(share) = share {
+        if let Some(share) = share(i) {
             sum += share * point.area;
             area += point.area;
         }
     }
     (area > 0.0).then(|| sum / area)
+}
+
+/// The share of an increment after which walls meet that touch at its end.
+fn share_until_touching(system: &System<'_>, increment: &Increment<'_>, i: usize) -> Option<f64> {
+    let touches = increment.to.facet_points[i].joint.normal_traction < 0.0;
+    touches.then(|| increment.share_until_met(system, i))?
 }
 
 /// The share of its straight way after which a facet point exceeds what friction bears, if it does.

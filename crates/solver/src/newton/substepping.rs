@@ -37,14 +37,7 @@ impl Newton {
             false => state.load.clone(),
         };
         tell_falls(step, state, load);
-        let mut way = Way {
-            here: Cow::Borrowed(state),
-            share: 0.0,
-            increment: 1.0,
-            coarse: None,
-            half: None,
-            failed: None,
-        };
+        let mut way = Way::from(state);
         while way.share < 1.0 {
             let end = f64::min(way.share + way.increment, 1.0);
             let middle = 0.5 * (way.share + end);
@@ -126,14 +119,17 @@ impl Newton {
                 Ok(None)
             }
             Some(outcome) if self.may_fall_back(step, &outcome) => Ok(None),
-            Some(outcome) => {
-                let next = match way.coarse.take() {
-                    Some(next) => let_be(step, outcome, next),
-                    None => self.relaxed(step, way, outcome, to),
-                }?;
-                way.increment = next.share - way.share;
-                Ok(Some(next))
-            }
+            Some(outcome) => match way.coarse.take() {
+                Some(next) => {
+                    let next = let_be(step, outcome, next)?;
+                    way.increment = next.share - way.share;
+                    Ok(Some(next))
+                }
+                None => {
+                    let relaxed = self.relaxed(step, way, outcome, to);
+                    way.after_relaxation(relaxed)
+                }
+            },
         }
     }
 

@@ -32,6 +32,24 @@ pub(super) struct Way<'a> {
     pub(super) half: Option<Half>,
     /// Why nothing beyond here has converged in [`SMALLEST_SUBSTEP`] or less.
     pub(super) failed: Option<StepOutcome>,
+    /// Smallest substep that is tried before walls are relaxed: twice as long after each in which
+    /// they were, as shorter ones do not find the path again that was lost there.
+    pub(super) smallest: f64,
+}
+
+impl<'a> Way<'a> {
+    /// The whole of a load step, from a state.
+    pub(super) fn from(state: &'a State) -> Self {
+        Self {
+            here: Cow::Borrowed(state),
+            share: 0.0,
+            increment: 1.0,
+            coarse: None,
+            half: None,
+            failed: None,
+            smallest: SMALLEST_TRIED,
+        }
+    }
 }
 
 impl Way<'_> {
@@ -58,11 +76,37 @@ impl Way<'_> {
     pub(super) fn is_final(&self, system: &System<'_>, outcome: &StepOutcome) -> bool {
         let smallest = match (outcome, &self.coarse) {
             (StepOutcome::RigidBodyMotion, _) | (_, Some(_)) => SMALLEST_SUBSTEP,
-            (_, None) => SMALLEST_TRIED,
+            (_, None) => self.smallest,
         };
         self.increment <= smallest
             || *outcome == StepOutcome::Stopped
             || (*outcome == StepOutcome::RigidBodyMotion && !system.is_path_dependent())
+    }
+
+    /// The end of a substep to which walls were relaxed, from where the next is longer; none if
+    /// they did not come to rest in it, for which shorter ones are to be tried.
+    ///
+    /// # Errors
+    /// If none is shorter, or would change anything: why.
+    pub(super) fn after_relaxation(
+        &mut self,
+        relaxed: Result<Reached, StepOutcome>,
+    ) -> Result<Option<Reached>, StepOutcome> {
+        let is_final =
+            |why: &StepOutcome| matches!(why, StepOutcome::Stopped | StepOutcome::RigidBodyMotion);
+        match relaxed {
+            Err(why) if self.increment <= SMALLEST_TRIED || is_final(&why) => Err(why),
+            Err(_) => {
+                self.smallest = SMALLEST_TRIED;
+                self.increment *= 0.5;
+                Ok(None)
+            }
+            Ok(reached) => {
+                self.smallest = 2.0 * f64::max(self.smallest, reached.share - self.share);
+                self.increment = self.smallest;
+                Ok(Some(reached))
+            }
+        }
     }
 
     /// Whether the next substep, tried as a whole, may come to an end where the first half of the
@@ -71,5 +115,43 @@ impl Way<'_> {
     pub(super) fn may_succeed(&self, step: &Step<'_>) -> bool {
         let is_earnest = step.is_tried_briefly && self.increment <= SMALLEST_SUBSTEP;
         step.system.is_smooth() || is_earnest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lie_core::ClosureKind;
+
+    use super::*;
+    use crate::Discretisation;
+    use crate::newton::mean_strain::tests::problem;
+
+    /// After each relaxation substeps are twice as long, and the shortest again after one that does
+    /// not come to rest; only that is a failure of the shortest.
+    #[test]
+    fn substeps_grow_while_walls_are_relaxed_and_begin_anew_where_they_do_not_rest() {
+        let problem = problem(ClosureKind::Linear);
+        let system = System::assemble(&problem, Discretisation::of(&problem).expect("held"));
+        let state = system.initial_state();
+        let mut way = Way::from(&state);
+        way.increment = SMALLEST_TRIED;
+        for factor in [2.0, 4.0] {
+            let state = state.clone();
+            let share = way.share + way.increment;
+            let relaxed = way.after_relaxation(Ok(Reached { state, share }));
+            assert!(relaxed.is_ok_and(|reached| reached.is_some_and(|to| to.share == share)));
+            assert_eq!(way.increment, factor * SMALLEST_TRIED);
+            way.share = share;
+            assert!(way.is_final(&system, &StepOutcome::OutOfIterations));
+        }
+        let fails = || Err(StepOutcome::OutOfIterations);
+        assert!(
+            way.after_relaxation(fails())
+                .is_ok_and(|reached| reached.is_none())
+        );
+        assert_eq!(way.increment, 2.0 * SMALLEST_TRIED);
+        assert!(!way.is_final(&system, &StepOutcome::OutOfIterations));
+        way.increment = SMALLEST_TRIED;
+        assert!(way.after_relaxation(fails()).is_err());
     }
 }
