@@ -55,10 +55,10 @@ impl Newton {
         let slid = may_hide && relieved::any_slid(step.system, &first, tolerance * size);
         // What is over in an instant, no half of a half tells more of.
         let may_turn = may_hide && !is_smallest && !(both.is_half && is_small);
-        let may_turn = may_turn
+        let may_have_slid = may_turn
             && (path_error::turns(step.system, [&first, &second], size)
                 || relieved::any_may_have_slid(step.system, &first, tolerance * size));
-        if slid || may_turn {
+        if slid || may_have_slid {
             let apart = compared.apart.as_ref().map_or(0.0, Apart::length);
             self.compare_first_half(step, &both, tolerance * size - apart, slid)?;
         }

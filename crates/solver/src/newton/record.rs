@@ -46,6 +46,12 @@ pub enum StepOutcome {
 }
 
 impl StepOutcome {
+    /// Whether no other attempt at an increment that ends so would end otherwise: loads push blocks
+    /// whatever the linear solver, and the observer stops the step.
+    pub(super) fn is_beyond_attempts(&self) -> bool {
+        matches!(self, Self::RigidBodyMotion | Self::Stopped)
+    }
+
     /// Why an increment fails after two attempts at it. Numbers and linear solves fail where an
     /// attempt goes astray, so they are the reason only if both did.
     pub(super) fn and(self, later: Self) -> Self {

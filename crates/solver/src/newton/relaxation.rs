@@ -208,13 +208,14 @@ impl Newton {
         start: &Iterate,
         share: f64,
     ) -> Result<Iterate, StepOutcome> {
+        let dashpots = Dashpots::at_rest(share, start.state.facet_points.len());
         let mut iterate = Iterate {
-            dashpots: Dashpots::at_rest(share, start.state.facet_points.len()),
-            linearisation: Linearisation::Tangents,
-            damping: match share > 0.0 {
+            damping: match dashpots.hold() {
                 true => Damping::beside_dashpots(share),
                 false => Damping::FIRST,
             },
+            dashpots,
+            linearisation: Linearisation::Tangents,
             merit: None,
             ..start.clone()
         };
@@ -279,11 +280,11 @@ mod tests {
         let before = newton.predict(&system, &system.initial_state(), load);
         let mut astray = before.clone();
         astray.state.unknowns.fill(glam::DVec3::NAN);
-        let mut relaxed = |failed: Option<Iterate>| {
-            let before = before.clone();
-            newton.relax_from(&mut step, Starts { failed, before })
+        let starts = Starts {
+            failed: Some(astray),
+            before,
         };
-        let end = relaxed(Some(astray)).expect("comes to rest");
+        let end = newton.relax_from(&mut step, starts).expect("comes to rest");
         for state in &end.state.facet_points {
             let opening = state.joint.separation.opening;
             assert!((opening * stiffness / PRESSURE + 1.0).abs() < 1e-6);

@@ -147,8 +147,7 @@ impl Newton {
         to: &End,
     ) -> Result<Reached, StepOutcome> {
         let system = step.system;
-        let is_pushed = outcome == StepOutcome::RigidBodyMotion || !step.pushed.is_empty();
-        let is_ended = is_pushed || outcome == StepOutcome::Stopped;
+        let is_ended = outcome.is_beyond_attempts() || !step.pushed.is_empty();
         if is_ended || system.is_smooth() || system.coupling().is_some() {
             return Err(step.failed_by(outcome));
         }
@@ -162,8 +161,7 @@ impl Newton {
     /// Whether a direct solver goes on where an increment of an iterative one fails for good; of
     /// blocks that are pushed the linear solver is no cause.
     fn may_fall_back(&mut self, step: &Step<'_>, outcome: &StepOutcome) -> bool {
-        let has_other_cause = [StepOutcome::Stopped, StepOutcome::RigidBodyMotion];
-        !has_other_cause.contains(outcome) && self.linear.fall_back(step.system)
+        !outcome.is_beyond_attempts() && self.linear.fall_back(step.system)
     }
 
     /// Solves a substep in one increment and, if its end depends on the path, in two.

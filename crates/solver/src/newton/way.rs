@@ -92,10 +92,8 @@ impl Way<'_> {
         &mut self,
         relaxed: Result<Reached, StepOutcome>,
     ) -> Result<Option<Reached>, StepOutcome> {
-        let is_final =
-            |why: &StepOutcome| matches!(why, StepOutcome::Stopped | StepOutcome::RigidBodyMotion);
         match relaxed {
-            Err(why) if self.increment <= SMALLEST_TRIED || is_final(&why) => Err(why),
+            Err(why) if self.increment <= SMALLEST_TRIED || why.is_beyond_attempts() => Err(why),
             Err(_) => {
                 self.smallest = SMALLEST_TRIED;
                 self.increment *= 0.5;
