@@ -18,7 +18,8 @@ pub struct Tangent {
 
 impl FractureLaw {
     /// How the traction changes around a state of the law. `rigid` (Pa/m) takes the place of
-    /// infinite stiffness: it changes how fast an iteration converges, not to what.
+    /// larger stiffness, which matrices do not bear: it changes how fast an iteration converges,
+    /// not to what.
     pub fn tangent(
         &self,
         state: &JointState,
@@ -129,7 +130,7 @@ impl TangentPoint<'_> {
         }
     }
 
-    /// Slope of the closure law (Pa/m).
+    /// Slope of the closure law (Pa/m), no larger than `rigid`.
     fn slope(&self) -> f64 {
         let closure = &self.law.closure;
         let separation = self.law.undilated(self.state, self.history);
@@ -138,9 +139,12 @@ impl TangentPoint<'_> {
             let open = self.state.normal_traction >= 0.0 && separation.aperture > 0.0;
             return if open { 0.0 } else { self.rigid };
         }
-        closure
-            .at_after(separation, self.history.largest_opening)
-            .tangent
+        let response = closure.at_after(separation, self.history.largest_opening);
+        // Not `min`, which takes what is not a number for stiff.
+        match response.tangent > self.rigid {
+            true => self.rigid,
+            false => response.tangent,
+        }
     }
 }
 
@@ -154,6 +158,7 @@ mod tests {
     use super::*;
     use crate::closure::{Closure, ClosureKind, Tension};
     use crate::joint_state::TrialState;
+    use crate::return_map::RockStiffness;
 
     /// State of a law without friction at a jump (m).
     fn state(law: &FractureLaw, jump: DVec3, normal: DVec3) -> JointState {
@@ -187,6 +192,30 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Under five hundred times `K_n a_0` a logarithmic law is stiffer than numbers can tell, and
+    /// stays as stiff as walls in contact.
+    #[test]
+    fn walls_that_are_all_but_closed_are_rigid() {
+        let kind = ClosureKind::Logarithmic { cutoff: None };
+        let closure = Closure::new(1e-6, 1e9, kind);
+        let law = FractureLaw::elastic(closure, 1e10);
+        let normal = DVec3::Z;
+        let trial = TrialState {
+            separation: law.closure.opened(0.0),
+            slip: DVec3::ZERO,
+            normal_traction: -5e5,
+            shear: DVec3::ZERO,
+        };
+        let rock = RockStiffness {
+            normal: 1e-300,
+            shear: 1.0,
+        };
+        let closed = law.return_map(&trial, rock, &JointHistory::default());
+        let tangent = law.tangent(&closed, &JointHistory::default(), normal, 1e15);
+        assert_eq!(tangent.exact.z_axis, 1e15 * normal);
+        assert_eq!(tangent.exact.x_axis.x, 1e10);
     }
 
     /// Walls that never touched slide from the start; walls that touch do not before they have to.

@@ -137,7 +137,7 @@ mod tests {
         let still = TrialState {
             separation: law.closure.opened(0.0),
             slip: DVec3::ZERO,
-            normal_traction: -1e20,
+            normal_traction: -1e10,
             shear: DVec3::ZERO,
         };
         let history = JointHistory::default();
@@ -150,7 +150,7 @@ mod tests {
         };
         let mut last = LastTrial::default();
         let mut farthest: f64 = 0.0;
-        for change in [2e-6, -1e-6, -0.5e-6] {
+        for change in [2e-3, -1e-3, -0.5e-3] {
             let exact = tangent(&law, &point, &state).exact;
             let before = last;
             let trial = last.moved(&point, &state, exact, DVec3::new(0.0, 1e-6, change));
@@ -160,7 +160,7 @@ mod tests {
         assert!(farthest > 1e3, "{farthest} m");
         let walls = last.walls(&point, &state);
         let moved = walls.separation.beyond(start);
-        assert!((moved - 0.5e-6).abs() < 1e-20, "{moved:e} m");
+        assert!((moved - 0.5e-3).abs() < 1e-17, "{moved:e} m");
         assert!((walls.slip - DVec3::new(0.0, 3e-6, 0.0)).length() < 1e-20);
     }
 }
