@@ -164,11 +164,7 @@ impl FrictionalReturn<'_> {
                 ..stick
             };
         }
-        let lambda = if self.friction.dilation > 0.0 {
-            root(|lambda| self.excess(size, lambda).0, -missing / k)
-        } else {
-            -missing / k
-        };
+        let lambda = self.plastic_slip(size, -missing / k);
         let state = self.after(lambda);
         let limit = self.law.limit(self.friction, &state, self.history);
         let direction = pull / size;
@@ -178,6 +174,26 @@ impl FrictionalReturn<'_> {
             sliding: true,
             ..state
         }
+    }
+
+    /// The plastic slip `lambda` (m) that balances a `pull` (Pa), at `undilated` (m) if the limit
+    /// stays what it is before.
+    fn plastic_slip(&self, pull: f64, undilated: f64) -> f64 {
+        if self.friction.dilation == 0.0 {
+            return undilated;
+        }
+        let excess = |lambda: f64| self.excess(pull, lambda).0;
+        // Dilation presses walls together, whose limit grows; but those of a bond that softens are
+        // pulled more the less they have opened, and slip further, to no limit at most.
+        let is_enough = excess(undilated) >= 0.0;
+        root(
+            excess,
+            if is_enough {
+                undilated
+            } else {
+                pull / self.rock.shear
+            },
+        )
     }
 
     /// What a plastic slip `lambda` (m) asks for beyond the `pull` (Pa) that there is, and the
@@ -203,6 +219,57 @@ impl FrictionalReturn<'_> {
             normal_traction: balance.traction,
             plastic_slip,
             ..JointState::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closure::{Closure, ClosureKind};
+
+    /// A bond that is pulled beyond its strength slips: dilation takes it back to before its
+    /// strength, whichever traction is larger.
+    #[test]
+    fn a_bond_that_softens_balances_the_rock_while_it_dilates() {
+        let kind = ClosureKind::Hyperbolic {
+            max_closure: 2.72e-3,
+        };
+        let mut closure = Closure::new(2.72e-3, 7.12e10, kind);
+        closure.tension = Tension::Cohesive {
+            strength: 1.08e6,
+            energy: 4.46e3,
+        };
+        let law = FractureLaw {
+            friction: Some(Friction {
+                coefficient: 0.577,
+                cohesion: 8.17e6,
+                dilation: 0.268,
+            }),
+            ..FractureLaw::elastic(closure, 3.22e11)
+        };
+        let trial = TrialState {
+            separation: law.closure.opened(3.975e-5),
+            slip: 1.1535e-4 * DVec3::Y,
+            normal_traction: 1.0768e6,
+            shear: 7.548e6 * DVec3::Y,
+        };
+        for stiffness in [1e11, 1e13, 1e15] {
+            let rock = RockStiffness {
+                normal: stiffness,
+                shear: 0.3 * stiffness,
+            };
+            let end = law.return_map(&trial, rock, &JointHistory::default());
+            assert!(end.sliding);
+            let across = end.normal_traction - trial.normal_traction
+                + rock.normal * end.separation.beyond(trial.separation);
+            let along = end.shear - trial.shear + rock.shear * (end.slip - trial.slip);
+            let rounding = 1e-15 * rock.normal * trial.slip.length();
+            let left = across.abs().max(along.length());
+            assert!(
+                left < rounding.max(1e-7),
+                "{left} of {rounding} Pa at {stiffness:e}"
+            );
         }
     }
 }

@@ -41,6 +41,19 @@ impl FractureLaw {
     }
 }
 
+impl FractureLaw {
+    /// Whether numbers tell how stiff the closure law is at a state: not where walls are closed to
+    /// less than the smallest. Walls in contact are rigid.
+    pub fn answers(&self, state: &JointState, history: &JointHistory) -> bool {
+        let closure = &self.closure;
+        closure.normal_stiffness.is_infinite()
+            || closure
+                .at_after(self.undilated(state, history), history.largest_opening)
+                .tangent
+                .is_finite()
+    }
+}
+
 /// A state of a law at a facet with unit `normal`.
 struct TangentPoint<'a> {
     law: &'a FractureLaw,
@@ -156,7 +169,7 @@ fn isotropic(across: f64, along: f64, normal: DVec3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::closure::{Closure, ClosureKind, Tension};
+    use crate::closure::{Closure, ClosureKind, Separation, Tension};
     use crate::joint_state::TrialState;
     use crate::return_map::RockStiffness;
 
@@ -194,8 +207,8 @@ mod tests {
         }
     }
 
-    /// Under five hundred times `K_n a_0` a logarithmic law is stiffer than numbers can tell, and
-    /// stays as stiff as walls in contact.
+    /// Under five hundred times `K_n b_0` a logarithmic law is far stiffer than rock, and without
+    /// aperture infinitely so; it is taken for as stiff as walls in contact.
     #[test]
     fn walls_that_are_all_but_closed_are_rigid() {
         let kind = ClosureKind::Logarithmic { cutoff: None };
@@ -216,6 +229,17 @@ mod tests {
         let tangent = law.tangent(&closed, &JointHistory::default(), normal, 1e15);
         assert_eq!(tangent.exact.z_axis, 1e15 * normal);
         assert_eq!(tangent.exact.x_axis.x, 1e10);
+        let nowhere = JointState {
+            separation: Separation {
+                opening: -1e-6,
+                aperture: 0.0,
+            },
+            ..closed
+        };
+        let tangent = law.tangent(&nowhere, &JointHistory::default(), normal, 1e15);
+        assert_eq!(tangent.exact.z_axis, 1e15 * normal);
+        let answers = [closed, nowhere].map(|state| law.answers(&state, &JointHistory::default()));
+        assert_eq!(answers, [true, false]);
     }
 
     /// Walls that never touched slide from the start; walls that touch do not before they have to.

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::facet_points;
+use super::facet_points::{self, interface};
 use super::iterate::Iterate;
 use super::{Iteration, Newton, Step, StepOutcome, StepRecord};
 use crate::problem::Load;
@@ -89,6 +89,7 @@ impl Newton {
         let mut iterate = self.predict(step.system, from, load);
         let converged = self.iterate_to_convergence(step, &mut iterate);
         if let Err(outcome) = converged {
+            let outcome = placed(step.system, &iterate.state, outcome);
             step.explain(&outcome, &iterate);
             step.end = Some(iterate.state);
             return Err(outcome);
@@ -110,4 +111,19 @@ impl Newton {
         state.reached = iterate.sizes.or_share(1.0, state.reached);
         state
     }
+}
+
+/// The outcome of an increment that failed, at the facet point whose law no longer answers if that
+/// is why.
+fn placed(system: &System<'_>, state: &State, outcome: StepOutcome) -> StepOutcome {
+    if !matches!(
+        outcome,
+        StepOutcome::NotFinite(None) | StepOutcome::OutOfIterations
+    ) {
+        return outcome;
+    }
+    let mut points = interface(system).points.iter().zip(&state.facet_points);
+    let broken =
+        points.position(|(point, own)| !system.law(point).answers(&own.joint, &own.history));
+    broken.map_or(outcome, |broken| StepOutcome::NotFinite(Some(broken)))
 }
