@@ -92,7 +92,7 @@ fn rounding(system: &System<'_>, iterate: &Iterate) -> f64 {
 /// (Pa) and the largest displacement of its last correction (m).
 ///
 /// # Errors
-/// If a traction is not finite.
+/// If a traction or an error is not finite.
 pub(super) fn measure(
     step: &mut Step<'_>,
     iterate: &mut Iterate,
@@ -115,10 +115,15 @@ pub(super) fn measure(
     let own_sizes = sizes(system, iterate, &tractions);
     let sizes = own_sizes.or_share(SHARE_OF_FORMER_SIZES, state.reached);
     iterate.sizes = sizes;
+    let force_residual = ratio(residual, sizes.force);
+    let closure_error = ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction);
+    if force_residual.is_nan() || closure_error.is_nan() {
+        return Err(StepOutcome::NotFinite(worst));
+    }
     Ok(Iteration {
-        force_residual: ratio(residual, sizes.force),
+        force_residual,
         increment: ratio(change, sizes.displacement),
-        closure_error: ratio(worst.map_or(0.0, |worst| errors[worst]), sizes.traction),
+        closure_error,
         smallest_aperture,
         pressure_increment: iterate
             .flow
