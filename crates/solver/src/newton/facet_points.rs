@@ -76,11 +76,13 @@ pub(super) fn linearised(system: &System<'_>, state: &State, by: Linearisation) 
 /// Tangents of the laws at the state (Pa/m).
 pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
     let points = interface(system).points.par_iter().zip(&state.facet_points);
-    let tangents = points.map(|(point, state)| tangent(system.law(point), point, state));
     if system.is_smooth() {
-        let exact: Vec<DMat3> = tangents.map(|tangent| tangent.exact).collect();
+        let exact: Vec<DMat3> = points
+            .map(|(point, state)| stiffness(system.law(point), point, state, f64::INFINITY).exact)
+            .collect();
         return exact.into();
     }
+    let tangents = points.map(|(point, state)| tangent(system.law(point), point, state));
     let (exact, positive): (Vec<DMat3>, Vec<DMat3>) = tangents
         .map(|tangent| (tangent.exact, tangent.positive))
         .unzip();
@@ -119,13 +121,23 @@ pub(super) fn damped(system: &System<'_>, tangents: &Tangents, damping: f64) -> 
     }
 }
 
+/// The tangent of a law (Pa/m) that a return mapping corrects: walls that are all but closed are no
+/// stiffer than those in contact, which matrices would not bear.
 pub(super) fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointState) -> Tangent {
-    law.tangent(
-        &state.joint,
-        &state.history,
-        point.normal,
-        RIGID * point.spring,
-    )
+    let rigid = match law.is_linear() {
+        true => f64::INFINITY,
+        false => RIGID * point.spring,
+    };
+    stiffness(law, point, state, rigid)
+}
+
+fn stiffness(
+    law: &FractureLaw,
+    point: &FacetPoint,
+    state: &FacetPointState,
+    rigid: f64,
+) -> Tangent {
+    law.tangent(&state.joint, &state.history, point.normal, rigid)
 }
 
 /// Tractions on the tangent planes of the laws (Pa).
