@@ -5,6 +5,7 @@ mod anisotropy;
 mod bad_input;
 mod book;
 mod boreholes;
+mod closed_joints;
 mod collapse;
 mod coupled_flow;
 mod displacements;

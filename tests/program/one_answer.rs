@@ -16,7 +16,7 @@ use crate::harness::{Run, kluft, root, scratch, summary};
 pub const SOLVERS: [&str; 3] = ["direct", "condensed", "iterative"];
 
 /// `summary.json` of a scene of this test with each solver; all must solve it.
-fn solved(scene: &str, edits: &[(&str, &str)]) -> Vec<Value> {
+pub fn solved(scene: &str, edits: &[(&str, &str)]) -> Vec<Value> {
     solved_by(&SOLVERS, scene, edits)
 }
 
@@ -64,7 +64,7 @@ fn is_unique(said: &Value) -> bool {
     !texts.any(|text| text.contains("the state is not unique"))
 }
 
-fn assert_one_answer(answers: &[Value], fractures: &[&str]) {
+pub fn assert_one_answer(answers: &[Value], fractures: &[&str]) {
     for fracture in fractures {
         let first = apertures(&answers[0], fracture);
         let size = first[2].max(1e-9);
