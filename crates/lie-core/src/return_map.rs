@@ -185,15 +185,12 @@ impl FrictionalReturn<'_> {
         let excess = |lambda: f64| self.excess(pull, lambda).0;
         // Dilation presses walls together, whose limit grows; but those of a bond that softens are
         // pulled more the less they have opened, and slip further, to no limit at most.
-        let is_enough = excess(undilated) >= 0.0;
-        root(
-            excess,
-            if is_enough {
-                undilated
-            } else {
-                pull / self.rock.shear
-            },
-        )
+        let may_soften = matches!(self.law.closure.tension, Tension::Cohesive { .. });
+        let most = match may_soften && excess(undilated) < 0.0 {
+            true => pull / self.rock.shear,
+            false => undilated,
+        };
+        root(excess, most)
     }
 
     /// What a plastic slip `lambda` (m) asks for beyond the `pull` (Pa) that there is, and the

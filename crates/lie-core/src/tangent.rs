@@ -39,18 +39,19 @@ impl FractureLaw {
             _ => point.stick(),
         }
     }
-}
 
-impl FractureLaw {
     /// Whether numbers tell how stiff the closure law is at a state: not where walls are closed to
     /// less than the smallest. Walls in contact are rigid.
     pub fn answers(&self, state: &JointState, history: &JointHistory) -> bool {
-        let closure = &self.closure;
-        closure.normal_stiffness.is_infinite()
-            || closure
-                .at_after(self.undilated(state, history), history.largest_opening)
-                .tangent
-                .is_finite()
+        self.closure.normal_stiffness.is_infinite()
+            || self.closure_slope(state, history).is_finite()
+    }
+
+    /// Slope of the closure law (Pa/m), however large.
+    fn closure_slope(&self, state: &JointState, history: &JointHistory) -> f64 {
+        let separation = self.undilated(state, history);
+        let response = self.closure.at_after(separation, history.largest_opening);
+        response.tangent
     }
 }
 
@@ -145,18 +146,17 @@ impl TangentPoint<'_> {
 
     /// Slope of the closure law (Pa/m), no larger than `rigid`.
     fn slope(&self) -> f64 {
-        let closure = &self.law.closure;
-        let separation = self.law.undilated(self.state, self.history);
-        let touching = closure.normal_stiffness.is_infinite();
+        let touching = self.law.closure.normal_stiffness.is_infinite();
         if touching {
+            let separation = self.law.undilated(self.state, self.history);
             let open = self.state.normal_traction >= 0.0 && separation.aperture > 0.0;
             return if open { 0.0 } else { self.rigid };
         }
-        let response = closure.at_after(separation, self.history.largest_opening);
+        let slope = self.law.closure_slope(self.state, self.history);
         // Not `min`, which takes what is not a number for stiff.
-        match response.tangent > self.rigid {
+        match slope > self.rigid {
             true => self.rigid,
-            false => response.tangent,
+            false => slope,
         }
     }
 }

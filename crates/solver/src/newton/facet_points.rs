@@ -77,9 +77,12 @@ pub(super) fn linearised(system: &System<'_>, state: &State, by: Linearisation) 
 pub(super) fn tangents(system: &System<'_>, state: &State) -> Tangents {
     let points = interface(system).points.par_iter().zip(&state.facet_points);
     if system.is_smooth() {
-        let exact: Vec<DMat3> = points
-            .map(|(point, state)| stiffness(system.law(point), point, state, f64::INFINITY).exact)
-            .collect();
+        let exact = points.map(|(point, state)| {
+            let law = system.law(point);
+            let tangent = law.tangent(&state.joint, &state.history, point.normal, f64::INFINITY);
+            tangent.exact
+        });
+        let exact: Vec<DMat3> = exact.collect();
         return exact.into();
     }
     let tangents = points.map(|(point, state)| tangent(system.law(point), point, state));
@@ -128,15 +131,6 @@ pub(super) fn tangent(law: &FractureLaw, point: &FacetPoint, state: &FacetPointS
         true => f64::INFINITY,
         false => RIGID * point.spring,
     };
-    stiffness(law, point, state, rigid)
-}
-
-fn stiffness(
-    law: &FractureLaw,
-    point: &FacetPoint,
-    state: &FacetPointState,
-    rigid: f64,
-) -> Tangent {
     law.tangent(&state.joint, &state.history, point.normal, rigid)
 }
 
