@@ -4,7 +4,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::closure::{Separation, Tension};
+use crate::closure::{Separation, Spring, Tension};
 use crate::fracture_law::FractureLaw;
 
 /// Where the walls are and what they carry.
@@ -46,6 +46,17 @@ pub struct TrialState {
     pub shear: DVec3,
 }
 
+impl TrialState {
+    /// The rock across the walls, `stiffness` (Pa/m) stiff.
+    pub(crate) fn spring(&self, stiffness: f64) -> Spring {
+        Spring {
+            stiffness,
+            separation: self.separation,
+            traction: self.normal_traction,
+        }
+    }
+}
+
 impl JointState {
     /// Traction (Pa) across a facet with unit `normal`.
     pub fn traction(&self, normal: DVec3) -> DVec3 {
@@ -59,7 +70,12 @@ impl FractureLaw {
     /// first step.
     pub fn under_initial_stress(&self, traction: DVec3, normal: DVec3) -> JointState {
         let across = traction.dot(normal);
-        let balance = self.closure.balanced_after(0.0, across, 0.0);
+        let load = Spring {
+            stiffness: 0.0,
+            separation: self.closure.opened(0.0),
+            traction: across,
+        };
+        let balance = self.closure.balanced_after(&load, 0.0);
         let shear = if self.shear_stiffness > 0.0 {
             traction - across * normal
         } else {

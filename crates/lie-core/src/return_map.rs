@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use crate::closure::{NormalBalance, Separation, Tension};
+use crate::closure::{NormalBalance, Separation, Spring, Tension};
 use crate::fracture_law::{FractureLaw, Friction};
 use crate::joint_state::{JointHistory, JointState, TrialState};
 use crate::root::root;
@@ -64,13 +64,13 @@ impl FractureLaw {
         rock: RockStiffness,
         history: &JointHistory,
     ) -> JointState {
-        let load = trial.normal_traction + rock.normal * trial.separation.opening;
+        let spring = trial.spring(rock.normal);
         let slip = trial.slip;
         let stiffness = self.shear_stiffness * (1.0 - self.damage(history));
         let thrust = |separation: Separation| self.thrust(separation, slip, stiffness);
         let mut balance = self
             .closure
-            .balanced_after(rock.normal, load, history.largest_opening);
+            .balanced_after(&spring, history.largest_opening);
         // Where the fracture lets go of its shear, what pushes its walls apart is part of the
         // balance.
         if thrust(balance.separation) < 0.0 {
@@ -206,11 +206,12 @@ impl FrictionalReturn<'_> {
     fn after(&self, plastic_slip: f64) -> JointState {
         let (trial, rock) = (self.trial, self.rock);
         let dilation = self.history.dilation + self.friction.dilation * plastic_slip;
-        let load = trial.normal_traction + rock.normal * (trial.separation.opening - dilation);
-        let balance =
-            self.law
-                .closure
-                .balanced_after(rock.normal, load, self.history.largest_opening);
+        let spring = Spring {
+            separation: trial.separation.moved(-dilation),
+            ..trial.spring(rock.normal)
+        };
+        let closure = &self.law.closure;
+        let balance = closure.balanced_after(&spring, self.history.largest_opening);
         JointState {
             separation: balance.separation.moved(dilation),
             normal_traction: balance.traction,
@@ -267,6 +268,44 @@ mod tests {
                 left < rounding.max(1e-7),
                 "{left} of {rounding} Pa at {stiffness:e}"
             );
+        }
+    }
+
+    /// What closed walls bear decides how far soft ones shear, to the last digit: no rounding of
+    /// the aperture that they had may be in it.
+    #[test]
+    fn soft_walls_that_touch_balance_the_rock() {
+        let law = FractureLaw {
+            friction: Some(Friction {
+                coefficient: 5.67,
+                cohesion: 0.0,
+                dilation: 0.14,
+            }),
+            ..FractureLaw::elastic(Closure::contact(8.92e-4), 1.12e6)
+        };
+        let stiffness = 4e11;
+        for (aperture, traction) in [(1.9e-12, -3e-6), (1.9e-12, -1e-6), (0.0, -1e-6)] {
+            let trial = TrialState {
+                separation: Separation {
+                    opening: aperture - 8.92e-4,
+                    aperture,
+                },
+                slip: 1.6e-11 * DVec3::Y,
+                normal_traction: traction - stiffness * aperture,
+                shear: 3e-6 * DVec3::Y,
+            };
+            let rock = RockStiffness {
+                normal: stiffness,
+                shear: 0.3 * stiffness,
+            };
+            let end = law.return_map(&trial, rock, &JointHistory::default());
+            assert!(end.sliding);
+            let across = end.normal_traction - trial.normal_traction
+                + rock.normal * end.separation.beyond(trial.separation);
+            let along = end.shear - trial.shear + rock.shear * (end.slip - trial.slip);
+            let left = across.abs().max(along.length());
+            let pull = trial.shear.length() + rock.shear * trial.slip.length();
+            assert!(left < 1e-9 * pull, "{left} of {pull} Pa at {traction:e}");
         }
     }
 }

@@ -96,6 +96,17 @@ pub struct Closure {
     pub tension: Tension,
 }
 
+/// A spring that holds the walls: it gives them `traction - stiffness (w_n - separation)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    /// Stiffness `k >= 0` (Pa/m).
+    pub stiffness: f64,
+    /// Where the walls are.
+    pub separation: Separation,
+    /// Normal traction there (Pa).
+    pub traction: f64,
+}
+
 /// Where the law balances a spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalBalance {
@@ -186,31 +197,35 @@ impl Closure {
     }
 
     /// Separation at which the law balances a spring: `sigma_n(w) + k w = load`, with
-    /// `spring` = `k >= 0` (Pa/m) and `load` (Pa), of a fracture that was never open.
+    /// `stiffness` = `k >= 0` (Pa/m) and `load` (Pa), of a fracture that was never open.
     ///
     /// The left side grows monotonically, so there is one solution for any load. Where neither law
     /// nor spring resists, the opening is 0.
-    pub fn balanced(&self, spring: f64, load: f64) -> Separation {
-        self.balanced_after(spring, load, 0.0).separation
+    pub fn balanced(&self, stiffness: f64, load: f64) -> Separation {
+        let spring = Spring {
+            stiffness,
+            separation: self.opened(0.0),
+            traction: load,
+        };
+        self.balanced_after(&spring, 0.0).separation
     }
 
-    /// [`Closure::balanced`] of a fracture whose largest opening in the past was `largest_opening`
-    /// (m). A bond that softens faster than the spring gives way breaks.
-    pub fn balanced_after(&self, spring: f64, load: f64, largest_opening: f64) -> NormalBalance {
+    /// [`Closure::balanced`] with a spring, of a fracture whose largest opening in the past was
+    /// `largest_opening` (m). A bond that softens faster than the spring gives way breaks.
+    pub fn balanced_after(&self, spring: &Spring, largest_opening: f64) -> NormalBalance {
         if self.kind == ClosureKind::Contact {
-            return self.touching(spring, load);
+            return self.touching(spring);
         }
+        let k = spring.stiffness;
+        let load = spring.traction + k * spring.separation.opening;
         let opening = |opening: f64| self.opened(opening);
         let separation = if self.normal_stiffness == 0.0 {
-            opening(if spring > 0.0 { load / spring } else { 0.0 })
+            opening(if k > 0.0 { load / k } else { 0.0 })
         } else if load > 0.0 {
             let stiffness = self.normal_stiffness;
-            opening(
-                self.tension
-                    .balanced(stiffness, spring, load, largest_opening),
-            )
+            opening(self.tension.balanced(stiffness, k, load, largest_opening))
         } else {
-            self.closing(spring, load)
+            self.closing(k, load)
         };
         NormalBalance {
             separation,
@@ -218,19 +233,27 @@ impl Closure {
         }
     }
 
-    fn touching(&self, spring: f64, load: f64) -> NormalBalance {
-        let traction = (load + spring * self.aperture).min(0.0);
-        let separation = if traction < 0.0 {
+    /// The traction of walls that touch is what they bear beyond a gap that may be tiny: friction
+    /// on soft walls shows every digit of it.
+    fn touching(&self, spring: &Spring) -> NormalBalance {
+        let k = spring.stiffness;
+        let closed = spring.traction + k * spring.separation.aperture;
+        let separation = if closed < 0.0 {
             Separation {
                 opening: -self.aperture,
                 aperture: 0.0,
             }
+        } else if k > 0.0 {
+            Separation {
+                opening: spring.separation.opening + spring.traction / k,
+                aperture: closed / k,
+            }
         } else {
-            self.opened(if spring > 0.0 { load / spring } else { 0.0 })
+            self.opened(0.0)
         };
         NormalBalance {
             separation,
-            traction,
+            traction: closed.min(0.0),
         }
     }
 

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::small::inverse_factor;
-use lie_core::{Rock, TrialState};
+use lie_core::{Rock, Spring, TrialState};
 use rayon::prelude::*;
 
 use super::facet_points::interface;
@@ -80,9 +80,13 @@ fn close_point(
     let stiffness = 3.0 * PI / 16.0 * plane / size;
     let joint = &state.joint;
     let pressed = joint.normal_traction + traction;
-    let load = pressed + stiffness * joint.separation.opening;
+    let spring = Spring {
+        stiffness,
+        separation: joint.separation,
+        traction: pressed,
+    };
     let largest = state.history.largest_opening;
-    let balance = law.closure.balanced_after(stiffness, load, largest);
+    let balance = law.closure.balanced_after(&spring, largest);
     let trial = TrialState {
         separation: balance.separation,
         slip: joint.slip,
