@@ -4,7 +4,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::closure::{Separation, Spring, Tension};
+use crate::closure::{NormalSpring, Separation, Tension};
 use crate::fracture_law::FractureLaw;
 
 /// Where the walls are and what they carry.
@@ -48,8 +48,8 @@ pub struct TrialState {
 
 impl TrialState {
     /// The rock across the walls, `stiffness` (Pa/m) stiff.
-    pub(crate) fn spring(&self, stiffness: f64) -> Spring {
-        Spring {
+    pub(crate) fn spring(&self, stiffness: f64) -> NormalSpring {
+        NormalSpring {
             stiffness,
             separation: self.separation,
             traction: self.normal_traction,
@@ -70,7 +70,7 @@ impl FractureLaw {
     /// first step.
     pub fn under_initial_stress(&self, traction: DVec3, normal: DVec3) -> JointState {
         let across = traction.dot(normal);
-        let load = Spring {
+        let load = NormalSpring {
             stiffness: 0.0,
             separation: self.closure.opened(0.0),
             traction: across,

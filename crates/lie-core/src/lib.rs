@@ -49,8 +49,8 @@ pub use anisotropy::{Anisotropy, Orthotropy};
 pub use basis::Basis;
 pub use bezier::{bezier_function, control_value};
 pub use closure::{
-    Closure, ClosureKind, NormalBalance, NormalResponse, OwnLaw, OwnResponse, Separation, Spring,
-    Tension,
+    Closure, ClosureKind, NormalBalance, NormalResponse, NormalSpring, OwnLaw, OwnResponse,
+    Separation, Tension,
 };
 pub use element::{ElementRule, RulePoint, rule};
 pub use facet::{FacetQuadrature, FacetRulePoint, facet_points, load_areas};

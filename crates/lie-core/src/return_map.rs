@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use crate::closure::{NormalBalance, Separation, Spring, Tension};
+use crate::closure::{NormalBalance, NormalSpring, Separation, Tension};
 use crate::fracture_law::{FractureLaw, Friction};
 use crate::joint_state::{JointHistory, JointState, TrialState};
 use crate::root::root;
@@ -206,7 +206,7 @@ impl FrictionalReturn<'_> {
     fn after(&self, plastic_slip: f64) -> JointState {
         let (trial, rock) = (self.trial, self.rock);
         let dilation = self.history.dilation + self.friction.dilation * plastic_slip;
-        let spring = Spring {
+        let spring = NormalSpring {
             separation: trial.separation.moved(-dilation),
             ..trial.spring(rock.normal)
         };

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use lie_core::{
-    Closure, ClosureKind, FractureLaw, Friction, JointHistory, JointState, RockStiffness, Spring,
-    Tension, TrialState,
+    Closure, ClosureKind, FractureLaw, Friction, JointHistory, JointState, NormalSpring,
+    RockStiffness, Tension, TrialState,
 };
 
 const NORMAL: DVec3 = DVec3::Z;
@@ -208,7 +208,7 @@ fn contact_touches_or_parts() {
     let contact = Closure::contact(1e-3);
     for (load, opening, traction) in [(-2e6, -1e-3, -1e6), (-5e5, -5e-4, 0.0), (2e6, 2e-3, 0.0)] {
         let found = contact.balanced_after(
-            &Spring {
+            &NormalSpring {
                 stiffness: 1e9,
                 separation: contact.opened(0.0),
                 traction: load,

@@ -98,7 +98,7 @@ pub struct Closure {
 
 /// A spring that holds the walls: it gives them `traction - stiffness (w_n - separation)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spring {
+pub struct NormalSpring {
     /// Stiffness `k >= 0` (Pa/m).
     pub stiffness: f64,
     /// Where the walls are.
@@ -202,7 +202,7 @@ impl Closure {
     /// The left side grows monotonically, so there is one solution for any load. Where neither law
     /// nor spring resists, the opening is 0.
     pub fn balanced(&self, stiffness: f64, load: f64) -> Separation {
-        let spring = Spring {
+        let spring = NormalSpring {
             stiffness,
             separation: self.opened(0.0),
             traction: load,
@@ -212,7 +212,7 @@ impl Closure {
 
     /// [`Closure::balanced`] with a spring, of a fracture whose largest opening in the past was
     /// `largest_opening` (m). A bond that softens faster than the spring gives way breaks.
-    pub fn balanced_after(&self, spring: &Spring, largest_opening: f64) -> NormalBalance {
+    pub fn balanced_after(&self, spring: &NormalSpring, largest_opening: f64) -> NormalBalance {
         if self.kind == ClosureKind::Contact {
             return self.touching(spring);
         }
@@ -235,7 +235,7 @@ impl Closure {
 
     /// The traction of walls that touch is what they bear beyond a gap that may be tiny: friction
     /// on soft walls shows every digit of it.
-    fn touching(&self, spring: &Spring) -> NormalBalance {
+    fn touching(&self, spring: &NormalSpring) -> NormalBalance {
         let k = spring.stiffness;
         let closed = spring.traction + k * spring.separation.aperture;
         let separation = if closed < 0.0 {

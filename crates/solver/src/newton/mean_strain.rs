@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 use kluft_algebra::small::inverse_factor;
-use lie_core::{Rock, Spring, TrialState};
+use lie_core::{NormalSpring, Rock, TrialState};
 use rayon::prelude::*;
 
 use super::facet_points::interface;
@@ -80,7 +80,7 @@ fn close_point(
     let stiffness = 3.0 * PI / 16.0 * plane / size;
     let joint = &state.joint;
     let pressed = joint.normal_traction + traction;
-    let spring = Spring {
+    let spring = NormalSpring {
         stiffness,
         separation: joint.separation,
         traction: pressed,
