@@ -70,11 +70,7 @@ impl FractureLaw {
     /// first step.
     pub fn under_initial_stress(&self, traction: DVec3, normal: DVec3) -> JointState {
         let across = traction.dot(normal);
-        let load = NormalSpring {
-            stiffness: 0.0,
-            separation: self.closure.opened(0.0),
-            traction: across,
-        };
+        let load = self.closure.spring(0.0, across);
         let balance = self.closure.balanced_after(&load, 0.0);
         let shear = if self.shear_stiffness > 0.0 {
             traction - across * normal

@@ -226,6 +226,24 @@ mod tests {
     use super::*;
     use crate::closure::{Closure, ClosureKind};
 
+    /// Rock that is softer along the walls.
+    fn beside(stiffness: f64) -> RockStiffness {
+        RockStiffness {
+            normal: stiffness,
+            shear: 0.3 * stiffness,
+        }
+    }
+
+    /// How far a return mapping to walls that slide leaves them out of balance with the rock (Pa).
+    fn out_of_balance(law: &FractureLaw, trial: &TrialState, rock: RockStiffness) -> f64 {
+        let end = law.return_map(trial, rock, &JointHistory::default());
+        assert!(end.sliding);
+        let across = end.normal_traction - trial.normal_traction
+            + rock.normal * end.separation.beyond(trial.separation);
+        let along = end.shear - trial.shear + rock.shear * (end.slip - trial.slip);
+        across.abs().max(along.length())
+    }
+
     /// A bond that is pulled beyond its strength slips: dilation takes it back to before its
     /// strength, whichever traction is larger.
     #[test]
@@ -253,17 +271,8 @@ mod tests {
             shear: 7.548e6 * DVec3::Y,
         };
         for stiffness in [1e11, 1e13, 1e15] {
-            let rock = RockStiffness {
-                normal: stiffness,
-                shear: 0.3 * stiffness,
-            };
-            let end = law.return_map(&trial, rock, &JointHistory::default());
-            assert!(end.sliding);
-            let across = end.normal_traction - trial.normal_traction
-                + rock.normal * end.separation.beyond(trial.separation);
-            let along = end.shear - trial.shear + rock.shear * (end.slip - trial.slip);
-            let rounding = 1e-15 * rock.normal * trial.slip.length();
-            let left = across.abs().max(along.length());
+            let rounding = 1e-15 * stiffness * trial.slip.length();
+            let left = out_of_balance(&law, &trial, beside(stiffness));
             assert!(
                 left < rounding.max(1e-7),
                 "{left} of {rounding} Pa at {stiffness:e}"
@@ -294,16 +303,8 @@ mod tests {
                 normal_traction: traction - stiffness * aperture,
                 shear: 3e-6 * DVec3::Y,
             };
-            let rock = RockStiffness {
-                normal: stiffness,
-                shear: 0.3 * stiffness,
-            };
-            let end = law.return_map(&trial, rock, &JointHistory::default());
-            assert!(end.sliding);
-            let across = end.normal_traction - trial.normal_traction
-                + rock.normal * end.separation.beyond(trial.separation);
-            let along = end.shear - trial.shear + rock.shear * (end.slip - trial.slip);
-            let left = across.abs().max(along.length());
+            let rock = beside(stiffness);
+            let left = out_of_balance(&law, &trial, rock);
             let pull = trial.shear.length() + rock.shear * trial.slip.length();
             assert!(left < 1e-9 * pull, "{left} of {pull} Pa at {traction:e}");
         }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use lie_core::{
-    Closure, ClosureKind, FractureLaw, Friction, JointHistory, JointState, NormalSpring,
-    RockStiffness, Tension, TrialState,
+    Closure, ClosureKind, FractureLaw, Friction, JointHistory, JointState, RockStiffness, Tension,
+    TrialState,
 };
 
 const NORMAL: DVec3 = DVec3::Z;
@@ -207,14 +207,7 @@ fn tangents_are_derivatives() {
 fn contact_touches_or_parts() {
     let contact = Closure::contact(1e-3);
     for (load, opening, traction) in [(-2e6, -1e-3, -1e6), (-5e5, -5e-4, 0.0), (2e6, 2e-3, 0.0)] {
-        let found = contact.balanced_after(
-            &NormalSpring {
-                stiffness: 1e9,
-                separation: contact.opened(0.0),
-                traction: load,
-            },
-            0.0,
-        );
+        let found = contact.balanced_after(&contact.spring(1e9, load), 0.0);
         close(found.separation.opening, opening, 1e-15);
         assert_eq!(found.traction, traction);
     }

@@ -202,12 +202,17 @@ impl Closure {
     /// The left side grows monotonically, so there is one solution for any load. Where neither law
     /// nor spring resists, the opening is 0.
     pub fn balanced(&self, stiffness: f64, load: f64) -> Separation {
-        let spring = NormalSpring {
+        let spring = self.spring(stiffness, load);
+        self.balanced_after(&spring, 0.0).separation
+    }
+
+    /// A spring of `stiffness` (Pa/m) that gives walls at their initial aperture `load` (Pa).
+    pub fn spring(&self, stiffness: f64, load: f64) -> NormalSpring {
+        NormalSpring {
             stiffness,
             separation: self.opened(0.0),
             traction: load,
-        };
-        self.balanced_after(&spring, 0.0).separation
+        }
     }
 
     /// [`Closure::balanced`] with a spring, of a fracture whose largest opening in the past was
