@@ -72,7 +72,8 @@ struct SoakChoice {
     #[arg(long, conflicts_with = "quick")]
     keep: bool,
     /// Add to the cases of the random materials that former calls with this option have kept in
-    /// docs/verification, without running them again
+    /// docs/verification, without running them again; of a case that was stopped midway, runs that
+    /// had ended are not made again
     #[arg(long, conflicts_with_all = ["quick", "keep"])]
     add: bool,
     /// One case by its number, or the first of several

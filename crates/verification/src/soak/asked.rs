@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use super::kept_ends::KeptEnds;
 use super::records;
 use super::tally::Verdict;
 use crate::report::Effort;
@@ -94,6 +95,20 @@ impl Asked {
         kept.into_values().collect()
     }
 
+    /// The ends of runs of a case that former calls have kept; none are kept without
+    /// [`Self::records`].
+    ///
+    /// # Panics
+    /// If they cannot be read.
+    pub fn kept_ends(&self, suite: &str, case: usize) -> KeptEnds {
+        if self.records.is_none() {
+            return KeptEnds::default();
+        }
+        let folder = root().join("target/verification/soak/ends");
+        let name = format!("{suite}-{}-{case}", self.seed);
+        expected(&folder, KeptEnds::read(&folder, &name))
+    }
+
     /// Whether one case alone is asked for, to be looked at.
     pub fn is_one_case(&self) -> bool {
         self.cases.as_ref().is_some_and(|cases| cases.len() == 1)
@@ -163,6 +178,17 @@ pub fn bytes_of(file: &Path) -> Vec<u8> {
 /// What comes of a file that must be there and fit to be written to.
 fn expected<T>(file: &Path, done: io::Result<T>) -> T {
     done.unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+}
+
+/// Runs of less than this are not told one by one.
+const LONG: Duration = Duration::from_secs(60);
+
+/// Tells on standard error of a run of a case that took this time, if it is long.
+pub fn tell_if_long(time: Duration, told: impl FnOnce() -> String) {
+    if time >= LONG {
+        let line = format!("{}, {} s", told(), time.as_secs());
+        let _ = writeln!(std::io::stderr().lock(), "{line}");
+    }
 }
 
 /// Words on the progress of a suite.

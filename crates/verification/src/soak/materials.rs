@@ -1,10 +1,12 @@
 //! Random materials on six junctions: one answer, whatever the linear solver and the load steps.
 
+use std::time::Instant;
+
 use kluft_scene::counted;
 use kluft_solver::{LinearMethod, NewtonSettings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::asked::Asked;
+use super::asked::{Asked, tell_if_long};
 use super::material;
 use super::meshes::{Fineness, JUNCTIONS, Meshes};
 use super::random_stream::RandomStream;
@@ -120,7 +122,7 @@ pub fn run(asked: &Asked) -> Finding {
         }
         let pool = ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.expect("a thread");
-        let verdict = judged(&case, &ends(&case, &meshes, &pool));
+        let verdict = judged(&case, &ends(&case, &meshes, &pool, asked));
         if let Some(miss) = &verdict.miss {
             keep(asked, &case, miss);
         }
@@ -140,11 +142,21 @@ fn keep(asked: &Asked, case: &Case, words: &str) {
 }
 
 /// How the runs of a case end; the first that is out of iterations is the last.
-fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool) -> Vec<(Way, End)> {
+fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool, asked: &Asked) -> Vec<(Way, End)> {
+    let mut kept = asked.kept_ends(STUDY.name, case.number);
     let mut ends = Vec::new();
     for way in case.ways() {
-        let draft = meshes.of(case.junction, case.fineness);
-        let end = solve(&case.scene(way), draft, pool, MOST_ITERATIONS);
+        let scene = case.scene(way);
+        let run = || {
+            let begin = Instant::now();
+            let draft = meshes.of(case.junction, case.fineness);
+            let end = solve(&scene, draft, pool, MOST_ITERATIONS);
+            let told = || format!("case {}: {}: {}", case.name, words(&way), reason(&end));
+            tell_if_long(begin.elapsed(), told);
+            end
+        };
+        let end = kept.end_of(&scene, run);
+        let end = end.unwrap_or_else(|error| panic!("case {}: {error}", case.name));
         let is_last = matches!(end, End::OutOfIterations);
         ends.push((way, end));
         if is_last {
@@ -213,7 +225,9 @@ fn reason(end: &End) -> &str {
     match end {
         End::Failed(why) => why,
         End::Refused(_) => "refused",
-        _ => "solved",
+        End::Solved(_) => "solved",
+        End::OutOfIterations => "out of iterations",
+        End::Panicked(_) => "panic",
     }
 }
 

@@ -7,6 +7,7 @@ mod asked;
 mod damage;
 pub mod disks;
 mod folder;
+mod kept_ends;
 pub mod kills;
 mod material;
 pub mod materials;

@@ -11,11 +11,12 @@ use kluft_run::{Ending, MeshInput, Observer, Outcome, Request};
 use kluft_scene::Scene;
 use kluft_solver::Iteration;
 use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
 
 use super::tally::words_of;
 
 /// How a run ended.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum End {
     /// All load steps converged.
     Solved(Fields),
@@ -30,7 +31,7 @@ pub enum End {
 }
 
 /// What is compared of a solution.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
     /// Jump at each node of each facet (m).
     pub jumps: Vec<f64>,
