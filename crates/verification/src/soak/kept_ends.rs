@@ -1,12 +1,13 @@
 //! Ends of the runs of a case, kept in a file so that a case of hours can be continued.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, ErrorKind, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
 
+use super::records;
 use super::solve::End;
 
 /// The ends of runs, by their scenes.
@@ -34,10 +35,7 @@ impl KeptEnds {
         let build = std::env::current_exe()?.metadata()?.modified()?;
         let build = build.duration_since(UNIX_EPOCH).unwrap_or_default();
         let file = folder.join(format!("{case}-{}.jsonl", build.as_millis()));
-        let text = match fs::read_to_string(&file) {
-            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
-            read => read?,
-        };
+        let text = records::text_of(&file)?;
         // A line that is cut short is of a process that was killed: its run is made again.
         let ends = text.lines().map(serde_json::from_str);
         let ends = ends.filter_map(Result::ok).collect();
@@ -59,9 +57,7 @@ impl KeptEnds {
         let (scene, end) = (scene.to_owned(), run());
         let kept = KeptEnd { scene, end };
         if let Some(file) = &self.file {
-            let line = format!("\n{}\n", serde_json::to_string(&kept)?);
-            let mut file = OpenOptions::new().create(true).append(true).open(file)?;
-            file.write_all(line.as_bytes())?;
+            records::append(file, &format!("\n{}\n", serde_json::to_string(&kept)?))?;
         }
         Ok(kept.end)
     }
@@ -87,10 +83,8 @@ mod tests {
         let end = || End::Solved(solved.clone());
         kept.end_of("a", end).expect("a line");
         let cut = "{\"scene\":\"b\",\"end\":{\"Fai";
-        let mut file = OpenOptions::new();
-        let file = file.append(true).open(kept.file.expect("a file"));
-        let written = file.and_then(|mut file| file.write_all(cut.as_bytes()));
-        written.expect("half a line");
+        let file = kept.file.expect("a file");
+        records::append(&file, cut).expect("half a line");
         let why = || End::Failed("the \"tests\"\ndo not hold".to_owned());
         let made = read().end_of("b", why).expect("a line");
         let never = || -> End { panic!("it is kept") };

@@ -17,10 +17,17 @@ pub type Verdicts = BTreeMap<usize, Verdict>;
 /// # Errors
 /// If it cannot be read, or holds something else.
 pub fn read(file: &Path) -> io::Result<Verdicts> {
+    text_of(file)?.lines().map(record).collect()
+}
+
+/// The text of a file; empty if there is none.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn text_of(file: &Path) -> io::Result<String> {
     match fs::read_to_string(file) {
-        Ok(text) => text.lines().map(record).collect(),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Verdicts::new()),
-        Err(error) => Err(error),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(String::new()),
+        read => read,
     }
 }
 
@@ -29,8 +36,16 @@ pub fn read(file: &Path) -> io::Result<Verdicts> {
 /// # Errors
 /// If it cannot be written.
 pub fn add(file: &Path, case: usize, verdict: &Verdict) -> io::Result<()> {
+    append(file, &line(case, verdict))
+}
+
+/// Adds text to the end of a file, which is made if it is not there.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn append(file: &Path, text: &str) -> io::Result<()> {
     let mut file = OpenOptions::new().create(true).append(true).open(file)?;
-    file.write_all(line(case, verdict).as_bytes())
+    file.write_all(text.as_bytes())
 }
 
 /// Writes verdicts in the order of their cases.
