@@ -6,12 +6,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use super::kept_ends::KeptEnds;
 use super::records;
 use super::tally::Verdict;
+use super::workers::{cores, each_by};
 use crate::report::Effort;
 use crate::root;
 
@@ -129,7 +129,6 @@ impl Asked {
         cases: &[usize],
         run: impl Fn(usize) -> T + Sync,
     ) -> Vec<(usize, T)> {
-        let next = AtomicUsize::new(0);
         let ended = AtomicUsize::new(0);
         let is_time = || self.until.is_none_or(|until| Instant::now() < until);
         let counted = |&case: &usize| {
@@ -137,21 +136,8 @@ impl Asked {
             tell_progress(1 + ended.fetch_add(1, Ordering::Relaxed), cases.len());
             (case, result)
         };
-        let work = || {
-            let places =
-                std::iter::from_fn(|| is_time().then(|| next.fetch_add(1, Ordering::Relaxed)));
-            let own = places.map_while(|place| cases.get(place));
-            own.map(counted).collect::<Vec<_>>()
-        };
-        let threads = thread::available_parallelism().map_or(1, usize::from);
-        let mut done: Vec<(usize, T)> = thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-            let done = workers.into_iter();
-            done.flat_map(|worker| worker.join().expect("a case without a panic"))
-                .collect()
-        });
-        done.sort_by_key(|(case, _)| *case);
-        done
+        let in_time = |case: &usize| is_time().then(|| counted(case));
+        each_by(cores(), cases, in_time)
     }
 
     /// Keeps an input of a case that did not hold in `target/verification/soak`; returns its name

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,8 @@ pub struct KeptEnds {
     /// Where they are kept; none if they are not.
     file: Option<PathBuf>,
     ends: Vec<KeptEnd>,
+    /// Held while a line is written.
+    unbroken: Mutex<()>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -42,6 +45,7 @@ impl KeptEnds {
         Ok(Self {
             file: Some(file),
             ends,
+            unbroken: Mutex::default(),
         })
     }
 
@@ -49,7 +53,7 @@ impl KeptEnds {
     ///
     /// # Errors
     /// If the end cannot be written.
-    pub fn end_of(&mut self, scene: &str, run: impl FnOnce() -> End) -> io::Result<End> {
+    pub fn end_of(&self, scene: &str, run: impl FnOnce() -> End) -> io::Result<End> {
         let mut ends = self.ends.iter();
         if let Some(kept) = ends.find(|kept| kept.scene == scene) {
             return Ok(kept.end.clone());
@@ -57,7 +61,10 @@ impl KeptEnds {
         let (scene, end) = (scene.to_owned(), run());
         let kept = KeptEnd { scene, end };
         if let Some(file) = &self.file {
-            records::append(file, &format!("\n{}\n", serde_json::to_string(&kept)?))?;
+            let line = format!("\n{}\n", serde_json::to_string(&kept)?);
+            let unbroken = self.unbroken.lock();
+            records::append(file, &line)?;
+            drop(unbroken);
         }
         Ok(kept.end)
     }
@@ -79,7 +86,7 @@ mod tests {
             is_declared: true,
             warns_of_sums: false,
         };
-        let mut kept = read();
+        let kept = read();
         let end = || End::Solved(solved.clone());
         kept.end_of("a", end).expect("a line");
         let cut = "{\"scene\":\"b\",\"end\":{\"Fai";
@@ -88,11 +95,11 @@ mod tests {
         let why = || End::Failed("the \"tests\"\ndo not hold".to_owned());
         let made = read().end_of("b", why).expect("a line");
         let never = || -> End { panic!("it is kept") };
-        let mut last = read();
+        let last = read();
         let [a, b] = ["a", "b"].map(|scene| last.end_of(scene, never).expect("kept"));
         assert!(matches!(a, End::Solved(fields) if fields == solved));
         assert!(matches!([made, b], [End::Failed(x), End::Failed(y)] if x == y));
-        let mut none = KeptEnds::default();
+        let none = KeptEnds::default();
         none.end_of("a", end).expect("no file");
         assert!(matches!(none.end_of("a", why), Ok(End::Failed(_))));
     }

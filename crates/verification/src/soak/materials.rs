@@ -1,10 +1,11 @@
 //! Random materials on six junctions: one answer, whatever the linear solver and the load steps.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use kluft_scene::counted;
 use kluft_solver::{LinearMethod, NewtonSettings};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPoolBuilder;
 
 use super::asked::{Asked, tell_if_long};
 use super::material;
@@ -12,6 +13,7 @@ use super::meshes::{Fineness, JUNCTIONS, Meshes};
 use super::random_stream::RandomStream;
 use super::solve::{End, Fields, longest, solve};
 use super::tally::{Miss, Verdict, finding};
+use super::workers::{cores, each_by};
 use crate::report::{Finding, Study};
 
 /// The suite.
@@ -39,16 +41,17 @@ const TEXT: &str = "Each case draws Young's modulus (1e9 to 1e11 Pa, at times 1e
     a small block at a corner, and three planes; every fourth round has cells of order 2. Each \
     case runs with the direct, condensed and iterative solver in 1, 2 and 10 equal load steps; \
     every 25th is meshed so finely that the iterative solver is the program's own choice, and \
-    compares that choice with the direct solver in 1 and 2 steps. A run may take 100 000 iterations of \
-    Newton's method.
+    compares that choice with the direct solver in 1 and 2 steps. A run may take 100 000 \
+    iterations of Newton's method.
 
 Runs *agree* if the largest difference of a jump anywhere on the fractures between any two is at \
     most the path accuracy (1e-3, the default of `path_accuracy`, which each increment keeps) of \
     the largest jump in either, or rounding (1e-9 of the largest displacement). They *agree within \
     their estimates* if it is more, but no more than the errors of their increments, as both runs \
-    estimate them (`path_error` of all load steps), add up to. They *fail alike* if no run converges and all name \
-    the same kind of reason, at least those with the same load steps. A run *declares* that its state is not unique by a warning. Anything \
-    else is not explained, and listed below; *slightly* is below ten path accuracies.";
+    estimate them (`path_error` of all load steps), add up to. They *fail alike* if no run \
+    converges and all name the same kind of reason, at least those with the same load steps. A \
+    run *declares* that its state is not unique by a warning. Anything else is not explained, and \
+    listed below; *slightly* is below ten path accuracies.";
 
 /// How a case is run.
 #[derive(Debug, Clone, Copy)]
@@ -120,9 +123,7 @@ pub fn run(asked: &Asked) -> Finding {
         if asked.is_one_case() {
             keep(asked, &case, "asked for alone");
         }
-        let pool = ThreadPoolBuilder::new().num_threads(1).build();
-        let pool = pool.expect("a thread");
-        let verdict = judged(&case, &ends(&case, &meshes, &pool, asked));
+        let verdict = judged(&case, &ends(&case, &meshes, asked));
         if let Some(miss) = &verdict.miss {
             keep(asked, &case, miss);
         }
@@ -141,29 +142,34 @@ fn keep(asked: &Asked, case: &Case, words: &str) {
     asked.keep(&geometry, junction.geometry().as_bytes());
 }
 
-/// How the runs of a case end; the first that is out of iterations is the last.
-fn ends(case: &Case, meshes: &Meshes, pool: &ThreadPool, asked: &Asked) -> Vec<(Way, End)> {
-    let mut kept = asked.kept_ends(STUDY.name, case.number);
-    let mut ends = Vec::new();
-    for way in case.ways() {
-        let scene = case.scene(way);
-        let run = || {
-            let begin = Instant::now();
-            let draft = meshes.of(case.junction, case.fineness);
-            let end = solve(&scene, draft, pool, MOST_ITERATIONS);
-            let told = || format!("case {}: {}: {}", case.name, words(&way), reason(&end));
-            tell_if_long(begin.elapsed(), told);
-            end
-        };
-        let end = kept.end_of(&scene, run);
-        let end = end.unwrap_or_else(|error| panic!("case {}: {error}", case.name));
-        let is_last = matches!(end, End::OutOfIterations);
-        ends.push((way, end));
-        if is_last {
-            break;
+/// How the runs of a case end, each on one thread, and side by side if it is asked for alone; none
+/// is begun after one that is out of iterations.
+fn ends(case: &Case, meshes: &Meshes, asked: &Asked) -> Vec<(Way, End)> {
+    let kept = asked.kept_ends(STUDY.name, case.number);
+    let is_over = AtomicBool::new(false);
+    let threads = if asked.is_one_case() { cores() } else { 1 };
+    each_by(threads, &case.ways(), |&way| {
+        if is_over.load(Ordering::Relaxed) {
+            return None;
         }
-    }
-    ends
+        let scene = case.scene(way);
+        let end = kept.end_of(&scene, || end(case, way, &scene, meshes));
+        let end = end.unwrap_or_else(|error| panic!("case {}: {error}", case.name));
+        is_over.fetch_or(matches!(end, End::OutOfIterations), Ordering::Relaxed);
+        Some((way, end))
+    })
+}
+
+/// How a run ends; told if it is long.
+fn end(case: &Case, way: Way, scene: &str, meshes: &Meshes) -> End {
+    let begin = Instant::now();
+    let pool = ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.expect("a thread");
+    let draft = meshes.of(case.junction, case.fineness);
+    let end = solve(scene, draft, &pool, MOST_ITERATIONS);
+    let told = || format!("case {}: {}: {}", case.name, words(&way), reason(&end));
+    tell_if_long(begin.elapsed(), told);
+    end
 }
 
 fn words(&Way { linear, steps }: &Way) -> String {

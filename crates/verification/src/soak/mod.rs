@@ -21,6 +21,7 @@ mod random_stream;
 mod records;
 mod solve;
 mod tally;
+mod workers;
 
 pub use asked::Asked;
 
