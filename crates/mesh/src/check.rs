@@ -50,6 +50,10 @@ const OVERLAPPING: Kind = (
     "the cell overlaps its neighbour or stands in the file twice",
     "remove the copy; volumes must be fragmented against each other (BooleanFragments)",
 );
+const INSIDE_ANOTHER: Kind = (
+    "the cell lies in the place of cells with which it hangs together nowhere: volumes overlap",
+    "fragment the volumes against each other (BooleanFragments), or remove one of them",
+);
 const NOT_EMBEDDED: Kind = (
     "the facet is not a face of any cell: the surface is not embedded in the volume",
     "cut the volume with the surface in the .geo file: BooleanFragments (OpenCASCADE) or Surface{..} In Volume{..}",
@@ -188,16 +192,25 @@ fn relative_volume(draft: &Draft, nodes: &[DVec3], cell: usize) -> f64 {
     cell_volume(shape, corners) / longest.powi(3)
 }
 
+/// Cells in the place of cells of another part of the body.
+pub(crate) fn inside_others(draft: &Draft, cells: &[u32]) -> Vec<Defect> {
+    let mut defects = Vec::new();
+    let tags = tags_of(draft, cells);
+    report(&mut defects, &draft.source, "cell", &tags, INSIDE_ANOTHER);
+    defects
+}
+
+fn tags_of(draft: &Draft, cells: &[u32]) -> Vec<u64> {
+    let tags = cells.iter().map(|&cell| draft.cells.tags[cell as usize]);
+    tags.collect()
+}
+
 /// Defects in how the cells fit together.
 pub(crate) fn faces(draft: &Draft, adjacency: &Adjacency) -> Vec<Defect> {
     let mut defects = Vec::new();
-    let tags = |cells: &[u32]| -> Vec<u64> {
-        let tags = cells.iter().map(|&cell| draft.cells.tags[cell as usize]);
-        tags.collect()
-    };
-    let crowded = tags(&adjacency.crowded_cells);
+    let crowded = tags_of(draft, &adjacency.crowded_cells);
     report(&mut defects, &draft.source, "cell", &crowded, CROWDED);
-    let mut overlapping = tags(&adjacency.overlapping_cells);
+    let mut overlapping = tags_of(draft, &adjacency.overlapping_cells);
     overlapping.dedup();
     report(
         &mut defects,

@@ -38,6 +38,7 @@ mod mesh;
 mod orient;
 mod orientation;
 mod outside;
+mod overlap;
 mod pairing;
 mod part;
 mod placed;

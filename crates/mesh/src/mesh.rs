@@ -8,6 +8,7 @@ use crate::adjacency::Adjacency;
 use crate::doubled::{DoubledFaces, doubled_faces, doubled_surfaces};
 use crate::draft::{Curve, Draft, Elements, Group};
 use crate::facets::{self, Boundary, Facets};
+use crate::overlap;
 use crate::roles::{Faces, SurfaceRole};
 use crate::sectors::{self, Sectors};
 use crate::sides::Sides;
@@ -89,8 +90,8 @@ impl Mesh {
     ///
     /// # Errors
     /// Every defect found: cells without volume or inside out, faces that do not fit together,
-    /// outer faces that lie on one another, fractures that are not embedded, lie on the outer
-    /// boundary, hold a facet twice or have only one side.
+    /// outer faces that lie on one another, volumes that overlap, fractures that are not embedded,
+    /// lie on the outer boundary, hold a facet twice or have only one side.
     pub fn build(draft: Draft, roles: &[SurfaceRole]) -> Result<Self, Vec<Defect>> {
         let faces = Faces::of(&draft);
         Self::build_on(draft, faces, roles)
@@ -151,6 +152,9 @@ impl Mesh {
             return Err(broken);
         }
         defects.extend(one_sided);
+        let cells = (&draft.cells.elements, nodes.as_slice());
+        let inside = overlap::cells_in_others(cells, (&block, block_count), &facets);
+        defects.extend(check::inside_others(&draft, &inside));
         if !defects.is_empty() {
             return Err(defects);
         }

@@ -268,6 +268,31 @@ fn a_gap_is_no_contact_and_a_copy_is_one_on_the_same_side() {
 }
 
 #[test]
+fn volumes_that_overlap_without_sharing_faces_are_refused() {
+    // A box through another: their cells lie in one another, and no faces on one another.
+    let mut through = stacked(3, 3);
+    let above = through.nodes.len() / 2;
+    for node in &mut through.nodes[above..] {
+        *node = [
+            0.3 + 0.4 * node[0],
+            0.31 + 0.4 * node[1],
+            1.3 * node[2] - 0.7,
+        ];
+    }
+    assert_eq!(surfaces(&through), []);
+    let defects = refused(through.clone());
+    assert_eq!(defects.len(), 1, "{defects:?}");
+    assert!(
+        defects[0].problem.contains("volumes overlap"),
+        "{defects:?}"
+    );
+    for node in &mut through.nodes[above..] {
+        node[2] += 2.0;
+    }
+    assert_eq!(built(through).expect("two bodies").block_count, 2);
+}
+
+#[test]
 fn sound_meshes_have_no_doubled_faces() {
     for shape in Shape::CELLS {
         let draft = cells_of(shape, [2, 3, 2], [1.0; 3], &[Patch::new("joint", MIDDLE)]);
