@@ -5,7 +5,7 @@ use kluft_mesh::{Draft, SurfaceRole, sample};
 use kluft_solver::{SpringStiffness, Support, SurfaceLoad};
 
 use super::findings::GroupFinding;
-use kluft_scene::{BoundaryEntry, LoadEntry, Scene, repeated_name};
+use kluft_scene::{BoundaryEntry, LoadEntry, Roles, Scene, repeated_name};
 
 /// What is said of a mesh that names no volumes or no surfaces, and how names are made.
 pub fn missing(draft: &Draft) -> Option<String> {
@@ -19,12 +19,12 @@ pub fn missing(draft: &Draft) -> Option<String> {
     match (has(3), has(2)) {
         (_, true) => None,
         (true, false) => Some(format!(
-            "the mesh has no physical surfaces, so a scene can name no fracture and no boundary: \
-             add to the geometry {surfaces}"
+            "the mesh has no physical surfaces, so a scene can name no fracture, and boundaries \
+             by their place only (`where`): add to the geometry {surfaces}"
         )),
         (false, false) => Some(format!(
-            "the mesh has no physical groups, so a scene can name no rock, fracture or boundary: \
-             add to the geometry `Physical Volume(\"rock\") = {{...}};` and {surfaces}"
+            "the mesh has no physical groups, so a scene can name no rock and no fracture, and \
+             boundaries by their place only (`where`): add to the geometry `Physical Volume(\"rock\") = {{...}};` and {surfaces}"
         )),
     }
 }
@@ -52,11 +52,37 @@ pub fn repeated(draft: &Draft) -> Vec<String> {
     told
 }
 
+/// What groups are.
+#[derive(Clone, Copy)]
+pub struct GroupRoles<'a> {
+    pub of_group: &'a [SurfaceRole],
+    /// Whether all of a group belongs to a fracture that is another; empty if no group does.
+    pub on_fracture: &'a [bool],
+}
+
+impl<'a> GroupRoles<'a> {
+    /// What a scene makes of them.
+    pub fn of(roles: &'a Roles) -> Self {
+        Self {
+            of_group: &roles.of_group,
+            on_fracture: &roles.on_fracture,
+        }
+    }
+
+    /// What they are likely to be, without a scene.
+    pub fn guessed(of_group: &'a [SurfaceRole]) -> Self {
+        Self {
+            of_group,
+            on_fracture: &[],
+        }
+    }
+}
+
 /// All groups; without roles (the scene names groups that are not there) the surfaces' are unknown.
 pub fn list(
     draft: &Draft,
     inner: &[bool],
-    roles: Option<&[SurfaceRole]>,
+    roles: Option<GroupRoles<'_>>,
     scene: Option<&Scene>,
 ) -> Vec<GroupFinding> {
     let (cells, facets) = (
@@ -65,6 +91,14 @@ pub fn list(
     );
     // Lines of the plane are surfaces of its cells.
     let raised = usize::from(draft.is_extruded);
+    let place = |index: usize| {
+        let on_fracture = roles.is_some_and(|roles| roles.on_fracture.get(index) == Some(&true));
+        match (inner[index], on_fracture) {
+            (false, _) => Place::Outside,
+            (true, false) => Place::Inside,
+            (true, true) => Place::OnFracture,
+        }
+    };
     let groups = draft.groups.iter().enumerate();
     groups
         .map(|(index, group)| {
@@ -73,8 +107,8 @@ pub fn list(
                 2 => surface(
                     scene,
                     &group.name,
-                    roles.map(|roles| roles[index]),
-                    inner[index],
+                    roles.map(|roles| roles.of_group[index]),
+                    place(index),
                 ),
                 _ => ("unused", String::new()),
             };
@@ -105,16 +139,24 @@ fn rock(scene: Option<&Scene>, name: &str) -> String {
     found.map_or("no rock is given".into(), |name| section_head("rock", name))
 }
 
+/// Where a surface lies.
+#[derive(Clone, Copy)]
+enum Place {
+    Outside,
+    Inside,
+    /// Inside, and all of it on a fracture that is another group.
+    OnFracture,
+}
+
 fn surface(
     scene: Option<&Scene>,
     name: &str,
     role: Option<SurfaceRole>,
-    inside: bool,
+    place: Place,
 ) -> (&'static str, String) {
-    let side = if inside {
-        "inside the rock"
-    } else {
-        "on the outside"
+    let side = match place {
+        Place::Outside => "on the outside",
+        Place::Inside | Place::OnFracture => "inside the rock",
     };
     let guessed = |text: &str| match scene {
         None => format!("guessed: {text}"),
@@ -134,8 +176,14 @@ fn surface(
                 acts.unwrap_or_else(|| guessed("no rock behind it")),
             )
         }
-        Some(SurfaceRole::Unused) if inside => ("welded", "not named in the scene".into()),
-        Some(SurfaceRole::Unused) => ("free", "not named in the scene".into()),
+        Some(SurfaceRole::Unused) => {
+            let role = match place {
+                Place::Outside => "free",
+                Place::Inside => "welded",
+                Place::OnFracture => "on fracture",
+            };
+            (role, "not named in the scene".into())
+        }
     }
 }
 

@@ -33,6 +33,7 @@ use kluft_scene::{
 };
 
 use findings::{Inspection, MeshCounts};
+use groups::GroupRoles;
 
 /// The files that an inspection writes beside a mesh.
 const GRID: &str = "inspect.vtu";
@@ -198,12 +199,18 @@ fn mesh(
     let inner = joined.faces.inner_surfaces(&joined.draft);
     let Some(scene) = scene else {
         let roles = joined.faces.guessed_roles(&joined.draft);
-        inspection.groups = groups::list(&joined.draft, &inner, Some(&roles), None);
+        inspection.groups = groups::list(
+            &joined.draft,
+            &inner,
+            Some(GroupRoles::guessed(&roles)),
+            None,
+        );
         return Mesh::build_on(joined.draft, joined.faces, &roles);
     };
     let found = roles(scene, &joined.draft, &inner)?;
-    inspection.warnings.extend(found.warnings);
-    let list = |draft: &Draft| groups::list(draft, &inner, Some(&found.of_group), Some(scene));
+    inspection.warnings.extend(found.warnings.iter().cloned());
+    let of_scene = GroupRoles::of(&found);
+    let list = |draft: &Draft| groups::list(draft, &inner, Some(of_scene), Some(scene));
     inspection.groups = list(&joined.draft);
     if scene.has_stages() {
         return stages(scene, joined, found.of_group, inspection);
@@ -236,8 +243,9 @@ fn surfaces(draft: Draft, scene: &Scene, inspection: &mut Inspection) -> Result<
         .map(|(group, outer)| group.dimension == 2 && !outer)
         .collect();
     let SurfaceMesh { mesh, roles } = surface_mesh(scene, draft.clone())?;
-    inspection.warnings.extend(roles.warnings);
-    inspection.groups = groups::list(&draft, &inner, Some(&roles.of_group), Some(scene));
+    inspection.warnings.extend(roles.warnings.iter().cloned());
+    let of_scene = GroupRoles::of(&roles);
+    inspection.groups = groups::list(&draft, &inner, Some(of_scene), Some(scene));
     Ok(mesh)
 }
 

@@ -185,10 +185,15 @@ fn in_a_mesh_without_names_numbers_serve() {
         ("[boundary.top]", "[boundary.2]"),
         ("[boundary.bottom]", "[boundary.3]"),
     ];
-    let report = report(&format!("{head}{rest}"), "run", "summary.json", &edits);
-    let fractures = report["fractures"].as_object().expect("fractures");
-    assert_eq!(fractures.keys().collect::<Vec<_>>(), ["1"]);
-    assert_eq!(report["warnings"].as_array().map(Vec::len), Some(0));
+    // What the scene names by its place is no name of the mesh.
+    let placed = ("[boundary.bottom]", "[boundary.low]\nwhere = \"x = min\"");
+    for bottom in [edits[3], placed] {
+        let edits = [&edits[..3], &[bottom]].concat();
+        let report = report(&format!("{head}{rest}"), "run", "summary.json", &edits);
+        let fractures = report["fractures"].as_object().expect("fractures");
+        assert_eq!(fractures.keys().collect::<Vec<_>>(), ["1"]);
+        assert_eq!(report["warnings"].as_array().map(Vec::len), Some(0));
+    }
 }
 
 #[test]
@@ -197,7 +202,12 @@ fn a_second_group_on_a_fracture_is_not_called_welded() {
         ("5\n1 5", "6\n2 6 \"twin\"\n1 5"),
         ("1 0 0 0 1 1 0 1 1 0", "1 0 0 0 1 1 0 2 1 6 0"),
     ];
-    let report = report(&edited(MESH, &edits), "run", "summary.json", &[]);
+    let mesh = edited(MESH, &edits);
+    let inspected = report(&mesh, "inspect", "inspect.json", &[]);
+    let groups = inspected["groups"].as_array().expect("groups");
+    let twin = groups.iter().find(|group| group["name"] == "twin");
+    assert_eq!(twin.expect("a group")["role"], "on fracture");
+    let report = report(&mesh, "run", "summary.json", &[]);
     let decisions = report["decisions"].as_array().expect("decisions").iter();
     let told: Vec<&str> = decisions.filter_map(Value::as_str).collect();
     let of_twin: Vec<&&str> = told.iter().filter(|text| text.contains("twin")).collect();

@@ -63,6 +63,7 @@ impl Scene {
             of_group,
             decisions: unused,
             warnings,
+            ..
         } = roles(self, &joined.draft, &inner)?;
         let JoinedDraft {
             draft,

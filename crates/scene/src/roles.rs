@@ -16,6 +16,8 @@ pub(crate) const DEFAULT: &str = "default";
 pub struct Roles {
     /// One entry for each group; only those of surfaces count.
     pub of_group: Vec<SurfaceRole>,
+    /// Whether all that a group holds belongs to a fracture that is another group.
+    pub on_fracture: Vec<bool>,
     /// What becomes of surfaces that the scene does not name.
     pub decisions: Vec<String>,
     /// What of it is hardly meant.
@@ -27,7 +29,7 @@ pub struct Roles {
 /// # Errors
 /// Names of the scene that are no group of the mesh, or one of the wrong dimension.
 pub fn roles(scene: &Scene, draft: &Draft, inner: &[bool]) -> Result<Roles, Vec<Defect>> {
-    let (without_name, shared) = (unnamed_by_mistake(draft), sharing(draft));
+    let (without_name, shared) = (unnamed_by_mistake(scene, draft), sharing(draft));
     let is_taken = |group: usize| inner[group] && !without_name[group];
     let of_group = surface_roles(scene, draft, is_taken)?;
     let unused = |holds: &dyn Fn(usize) -> bool| -> Vec<&str> {
@@ -51,6 +53,7 @@ pub fn roles(scene: &Scene, draft: &Draft, inner: &[bool]) -> Result<Roles, Vec<
     let warnings = skipped_surfaces(&unused(&|group| skipped(group) && !moves(group)));
     let warnings = warnings.and_then(|text| scene.warning(Doubt::UnnamedSurfaces, &text));
     Ok(Roles {
+        on_fracture: (0..draft.groups.len()).map(moves).collect(),
         of_group,
         decisions,
         warnings: warnings.into_iter().collect(),
@@ -58,11 +61,17 @@ pub fn roles(scene: &Scene, draft: &Draft, inner: &[bool]) -> Result<Roles, Vec<
 }
 
 /// Surfaces that have no name in a file that names others: interfaces of a partition, or what lost
-/// its name to another group.
-fn unnamed_by_mistake(draft: &Draft) -> Vec<bool> {
+/// its name to another group. What the scene names itself, by its place or as what lies between
+/// volumes, says nothing of the file.
+fn unnamed_by_mistake(scene: &Scene, draft: &Draft) -> Vec<bool> {
     let is_surface = |group: &Group| group.dimension == 2;
     let has_name = |group: &Group| group.name != group.tag.to_string();
-    let names = draft.groups.iter().any(|g| is_surface(g) && has_name(g));
+    let placed = scene.boundaries.iter().filter(|e| e.value.place.is_some());
+    let between = scene.fractures.iter().filter(|e| e.value.between.is_some());
+    let named_here = placed.map(|e| &e.name).chain(between.map(|e| &e.name));
+    let named_here: Vec<&String> = named_here.collect();
+    let is_of_file = |group: &Group| has_name(group) && !named_here.contains(&&group.name);
+    let names = draft.groups.iter().any(|g| is_surface(g) && is_of_file(g));
     let groups = draft.groups.iter();
     groups
         .map(|group| names && is_surface(group) && !has_name(group))

@@ -68,6 +68,7 @@ impl Scene {
             of_group,
             decisions,
             warnings,
+            ..
         } = roles(self, &joined.draft, &inner)?;
         let mut staged = self.staged_on(joined, of_group)?;
         staged.decisions.extend(decisions);

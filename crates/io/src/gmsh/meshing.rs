@@ -15,7 +15,7 @@ use super::review::reviewed;
 use super::run::{Gmsh, Scope, path_argument};
 use super::version::version_of;
 use super::workspace::Workspace;
-use super::{ingredients, parameters, size_field};
+use super::{file_format, ingredients, parameters, size_field};
 use crate::fingerprint::Fingerprint;
 use crate::msh::bytes_of;
 
@@ -54,7 +54,7 @@ pub(super) fn mesh_with(gmsh: &Gmsh, meshing: &Meshing) -> Result<Meshed, Vec<De
         folder: None,
         reads: review.reads(meshing.geometry),
     };
-    let mut meshed = make(gmsh, meshing, attempts, scope)?;
+    let mut meshed = make(gmsh, meshing, (attempts, &scripts), scope)?;
     if let Some(kept) = kept {
         kept.keep(meshing.output, &mut meshed);
     }
@@ -97,18 +97,14 @@ impl Kept<'_> {
 fn make(
     gmsh: &Gmsh,
     meshing: &Meshing,
-    attempts: &[Attempt],
+    (attempts, scripts): (&[Attempt], &[PathBuf]),
     mut scope: Scope,
 ) -> Result<Meshed, Vec<Defect>> {
     let one = |defect| vec![defect];
     let workspace = Workspace::beside(meshing.output).map_err(one)?;
     scope.folder = Some(workspace.folder().to_owned());
-    let mut input = meshing.geometry.to_owned();
-    if let Some(sizes) = meshing.sizes {
-        input = workspace.path("sized.geo");
-        size_field::write_script(&input, meshing.geometry, sizes).map_err(one)?;
-        scope.reads.push(sizes.to_owned());
-    }
+    let inputs = inputs(meshing, scripts, &workspace).map_err(one)?;
+    scope.reads.extend(meshing.sizes.map(Path::to_owned));
     let made = workspace.path(MADE);
     let start = Instant::now();
     let mut failed = Vec::new();
@@ -117,7 +113,7 @@ fn make(
         let Some(attempt) = left.next() else {
             return Err(failed);
         };
-        let arguments = arguments(meshing, *attempt, [&input, &made]);
+        let arguments = arguments(meshing, *attempt, (&inputs, &made));
         let is_last = left.len() == 0;
         let tried = try_once(gmsh, meshing, &arguments, &scope);
         // What is wrong with the last is told by who reads it.
@@ -136,12 +132,12 @@ fn make(
                 // It must not be taken for that of the next.
                 let _ = std::fs::remove_file(&made);
             }
-            Err(defects) => return Err(beside_former(defects, &failures(&failed, attempts))),
+            Err(defects) => return Err(beside_former(defects, &failed, attempts)),
         }
     };
     workspace.publish(MADE, meshing.output).map_err(one)?;
     let number = failed.len();
-    let failed = failures(&failed, attempts).into_iter();
+    let failed = failures(&failed, attempts, None).into_iter();
     let used = (number > 0).then(|| format!("meshed in another way: {}", attempts[number].name));
     Ok(Meshed {
         warnings: failed.chain(used).chain(warnings).collect(),
@@ -151,18 +147,42 @@ fn make(
     })
 }
 
-/// Why each of the first ways failed.
-fn failures(failed: &[Defect], attempts: &[Attempt]) -> Vec<String> {
+/// What gmsh reads: the geometry, or a script that meshes it by given sizes, and the file format
+/// where a script would choose another.
+fn inputs(
+    meshing: &Meshing,
+    scripts: &[PathBuf],
+    workspace: &Workspace,
+) -> Result<Vec<PathBuf>, Defect> {
+    let mut inputs = vec![meshing.geometry.to_owned()];
+    if let Some(sizes) = meshing.sizes {
+        inputs[0] = workspace.path("sized.geo");
+        size_field::write_script(&inputs[0], meshing.geometry, sizes)?;
+    }
+    if file_format::is_chosen(scripts) {
+        inputs.push(workspace.path("format.geo"));
+        file_format::write_script(&inputs[1])?;
+    }
+    Ok(inputs)
+}
+
+/// Why each of the first ways failed, where the `last` did not for the same reason.
+fn failures(failed: &[Defect], attempts: &[Attempt], last: Option<&Defect>) -> Vec<String> {
     let failed = failed.iter().zip(attempts);
-    failed
-        .map(|(defect, way)| format!("{} failed: {}", way.name, defect.problem))
-        .collect()
+    let told = failed.map(|(defect, way)| match &defect.problem {
+        why if last.is_some_and(|last| last.problem == *why) => {
+            format!("{} failed in the same way", way.name)
+        }
+        why => format!("{} failed: {why}", way.name),
+    });
+    told.collect()
 }
 
 /// The defects of the last way, the first with why the ways before it failed.
-fn beside_former(mut defects: Vec<Defect>, failures: &[String]) -> Vec<Defect> {
-    if let Some(first) = defects.first_mut().filter(|_| !failures.is_empty()) {
-        first.problem = format!("{}; before, {}", first.problem, failures.join("; "));
+fn beside_former(mut defects: Vec<Defect>, failed: &[Defect], attempts: &[Attempt]) -> Vec<Defect> {
+    let former = failures(failed, attempts, defects.first());
+    if let Some(first) = defects.first_mut().filter(|_| !former.is_empty()) {
+        first.problem = format!("{}; before, {}", first.problem, former.join("; "));
     }
     defects
 }
@@ -202,9 +222,13 @@ fn check(meshing: &Meshing) -> Result<(), Vec<Defect>> {
     }
 }
 
-fn arguments(meshing: &Meshing, attempt: Attempt, [input, made]: [&Path; 2]) -> Vec<OsString> {
-    let mut arguments: Vec<OsString> = vec![
-        path_argument(input),
+fn arguments(
+    meshing: &Meshing,
+    attempt: Attempt,
+    (inputs, made): (&[PathBuf], &Path),
+) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = inputs.iter().map(|input| path_argument(input)).collect();
+    arguments.extend([
         match meshing.dimension {
             Dimension::Surfaces => "-2".into(),
             Dimension::Volumes => "-3".into(),
@@ -214,7 +238,7 @@ fn arguments(meshing: &Meshing, attempt: Attempt, [input, made]: [&Path; 2]) -> 
         "-bin".into(),
         "-order".into(),
         meshing.order.to_string().into(),
-    ];
+    ]);
     let given = meshing.parameters.iter();
     let given = given.map(|(name, value)| (name.as_str(), *value));
     for (name, value) in attempt.options.iter().copied().chain(given) {

@@ -7,6 +7,7 @@ mod cache;
 mod capture;
 mod commands;
 mod ending;
+mod file_format;
 mod files;
 mod ingredients;
 mod log;

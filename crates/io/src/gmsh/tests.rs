@@ -77,6 +77,16 @@ impl Drop for Scene {
 }
 
 #[test]
+fn the_file_format_that_a_geometry_chooses_is_not_taken() {
+    for option in ["MshFileVersion = 2.2", "Format = 39", "Binary = 0"] {
+        let scene = Scene::new("format", &format!("{BOX}Mesh.{option};\n"));
+        scene.mesh("gmsh", &[]).expect("a mesh");
+        let made = fs::read(scene.folder.join("out put.msh")).expect("written");
+        assert!(made.starts_with(b"$MeshFormat\n4.1 1 8\n"), "{option}");
+    }
+}
+
+#[test]
 fn a_parameter_changes_the_mesh() {
     let scene = Scene::new("parameter", BOX);
     let size = |h: f64| {
