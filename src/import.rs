@@ -16,6 +16,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use kluft_defect::ordinary_text;
 use kluft_io::import::{Imported, parse_abaqus, read_grid};
 use kluft_io::{ClaimedFolder, sync_folder, write_atomically, write_msh};
 use kluft_keys::{quoted, section_head};
@@ -124,7 +125,7 @@ fn read_mesh(file: &Path) -> Result<Imported, Vec<Defect>> {
     let ending = file.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_lowercase).as_deref() {
         Some("inp") => {
-            let text = std::fs::read_to_string(file).map_err(|error| {
+            let text = ordinary_text(file).map_err(|error| {
                 let problem = format!("cannot be read: {error}");
                 vec![Defect::new(
                     &place,
@@ -201,7 +202,7 @@ fn assumed(draft: &Draft) -> String {
 
 /// A scene that somebody wrote is not ours to replace.
 fn protect(scene: &Path) -> Result<(), Defect> {
-    match std::fs::read_to_string(scene) {
+    match ordinary_text(scene) {
         Ok(text) if !text.starts_with(MADE) => Err(Defect::new(
             scene.display().to_string(),
             "there is a scene that this command has not made, or that was protected",

@@ -4,6 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use kluft_defect::open_ordinary;
 use kluft_io::import::{Imported, read_grid};
 use kluft_mesh::Defect;
 
@@ -25,6 +26,11 @@ const REMEDY: &str = "install it with `sh scripts/setup` in Kluft's repository, 
 pub fn read_exodus(file: &Path) -> Result<Imported, Vec<Defect>> {
     let place = file.display().to_string();
     let refuse = |problem: String, remedy: &str| vec![Defect::new(&place, problem, remedy)];
+    let cannot = |why: &str| {
+        let problem = format!("cannot be read: {why}");
+        refuse(problem, "give the path of an Exodus mesh")
+    };
+    open_ordinary(file).map_err(|error| cannot(&error.to_string()))?;
     let folder = tempfile::tempdir()
         .map_err(|error| refuse(format!("no temporary folder: {error}"), "set TMPDIR"))?;
     let grid = folder.path().join("mesh.vtu");
@@ -49,8 +55,7 @@ pub fn read_exodus(file: &Path) -> Result<Imported, Vec<Defect>> {
     if !status.success() {
         let said = String::from_utf8_lossy(&stderr);
         let said = said.trim().lines().last().unwrap_or_default();
-        let problem = format!("cannot be read: {said}");
-        return Err(refuse(problem, "give the path of an Exodus mesh"));
+        return Err(cannot(said));
     }
     let mut imported = read_grid(&grid)?;
     imported.draft.source = place;

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::path::Path;
 
+use kluft_defect::ordinary_bytes;
 use kluft_mesh::Defect;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -32,7 +33,7 @@ impl Element {
             vec![Defect::new(path.display().to_string(), problem, remedy)]
         };
         let bytes =
-            std::fs::read(path).map_err(|error| defect(format!("cannot be read: {error}")))?;
+            ordinary_bytes(path).map_err(|error| defect(format!("cannot be read: {error}")))?;
         // Latin-1, which such files say they are in, has each byte as a character.
         let latin = |bytes: &[u8]| bytes.iter().map(|&byte| char::from(byte)).collect();
         let text = std::str::from_utf8(&bytes).map_or_else(|_| latin(&bytes), str::to_owned);

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kluft_defect::ordinary_text;
 use kluft_keys::Range;
 use kluft_mesh::Defect;
 use kluft_network::{Orientation, SIDES};
@@ -9,7 +10,7 @@ use kluft_scene::reader::Section;
 
 /// Reads a text file.
 pub(super) fn read_text(file: &Path, remedy: &str) -> Result<String, Vec<Defect>> {
-    std::fs::read_to_string(file).map_err(|error| {
+    ordinary_text(file).map_err(|error| {
         let problem = format!("the file cannot be read: {error}");
         vec![Defect::new(file.display().to_string(), problem, remedy)]
     })

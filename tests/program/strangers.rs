@@ -269,8 +269,7 @@ fn gmsh_does_not_outlive_the_program() {
 fn pipes_and_folders_are_refused_by_name() {
     let workshop = scene("");
     let pipe = workshop.path("pipe.msh");
-    let made = Command::new("mkfifo").arg(&pipe).status();
-    assert!(made.expect("mkfifo starts").success());
+    mkfifo(&pipe);
     let scene_of = |mesh: &str| {
         let text = fs::read_to_string(workshop.scene()).expect("the scene");
         let begin = text.find("[mesh]").expect("a mesh");
@@ -292,15 +291,38 @@ fn pipes_and_folders_are_refused_by_name() {
         (scene_of("geometry = \"pipe.msh\""), "pipe.msh"),
         (scene_of("geometry = \"folder.msh\""), "folder.msh"),
     ] {
-        let run = kluft(&["inspect".as_ref(), input.as_os_str()]);
-        assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{}", run.err);
-        assert!(run.err.contains(name), "{}", run.err);
+        for command in ["inspect", "run"] {
+            let run = kluft(&[command.as_ref(), input.as_os_str()]);
+            assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{}", run.err);
+            assert!(run.err.contains(name), "{}", run.err);
+        }
+    }
+    for (command, name) in [
+        ("network", "pipe.csv"),
+        ("network", "network.toml"),
+        ("import", "pipe.inp"),
+        ("import", "pipe.prj"),
+        ("import", "pipe.vtu"),
+        ("import", "pipe.e"),
+    ] {
+        let pipe = workshop.path(name);
+        mkfifo(&pipe);
+        let out = workshop.path("out");
+        let arguments = [command.as_ref(), pipe.as_os_str(), "-o".as_ref()];
+        let run = kluft(&[&arguments[..], &[out.as_os_str()]].concat());
+        assert_eq!(run.code, Some(2), "{name}: {}", run.err);
+        assert!(run.err.contains("no ordinary file"), "{name}: {}", run.err);
     }
     let as_scene = workshop.path("pipe.toml");
     fs::rename(&pipe, &as_scene).expect("renamed");
     let run = kluft(&["run".as_ref(), as_scene.as_os_str()]);
     assert_eq!(run.code, Some(2), "{}", run.err);
     assert!(run.err.contains("no ordinary file"), "{}", run.err);
+}
+
+fn mkfifo(path: &Path) {
+    let made = Command::new("mkfifo").arg(path).status();
+    assert!(made.expect("mkfifo starts").success());
 }
 
 #[test]

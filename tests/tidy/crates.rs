@@ -12,7 +12,7 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ("kluft-defect", &[]),
     ("kluft-algebra", &[]),
     ("kluft-chart", &[]),
-    ("kluft-field", &[]),
+    ("kluft-field", &["kluft-defect"]),
     ("kluft-keys", &["kluft-defect"]),
     ("kluft-mesh", &["kluft-defect"]),
     ("lie-core", &["kluft-mesh"]),
@@ -56,7 +56,13 @@ const ALLOWED: [(&str, &[&str]); 18] = [
     ),
     (
         "kluft-program",
-        &["kluft-io", "kluft-mesh", "kluft-run", "kluft-solver"],
+        &[
+            "kluft-defect",
+            "kluft-io",
+            "kluft-mesh",
+            "kluft-run",
+            "kluft-solver",
+        ],
     ),
     (
         "kluft-mpi",

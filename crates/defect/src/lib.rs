@@ -1,7 +1,11 @@
 //! What is wrong with an input, where, and how to mend it.
 
+mod ordinary;
+
 use std::fmt;
 use std::ops::Range;
+
+pub use ordinary::{open_ordinary, ordinary_bytes, ordinary_text};
 
 /// One defect of an input: every reader and check in the workspace reports through this type.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! Sums by which files and texts are known again.
 
-use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 
+use kluft_defect::open_ordinary;
 use kluft_mesh::Defect;
 use twox_hash::XxHash3_128;
 
@@ -13,10 +13,10 @@ pub type Fingerprint = u128;
 /// Sum of a file's bytes.
 ///
 /// # Errors
-/// If the file cannot be read.
+/// If the file cannot be read, or is no ordinary one.
 pub fn fingerprint_of(path: &Path) -> Result<Fingerprint, Defect> {
     let sum = || -> io::Result<Fingerprint> {
-        let mut file = BufReader::with_capacity(1 << 18, File::open(path)?);
+        let mut file = BufReader::with_capacity(1 << 18, open_ordinary(path)?);
         let mut out = SumWriter::new(io::sink());
         io::copy(&mut file, &mut out)?;
         Ok(out.finish())

@@ -27,7 +27,8 @@ impl Range {
             Self::Between(low, high) => low < value && value < high,
             Self::Within(low, high) => low <= value && value <= high,
         };
-        if value.is_subnormal() {
+        let takes_small = matches!(self, Self::Finite | Self::Positive | Self::NotNegative);
+        if value.is_subnormal() && (fits || takes_small) {
             return Some(format!(
                 "is too small a number: write 0, or more than {:e}",
                 f64::MIN_POSITIVE

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use kluft_defect::ordinary_text;
 use kluft_mesh::Defect;
 
 /// Bytes that tell what a file is.
@@ -30,12 +31,17 @@ const KINDS: [(&[&str], FileKind); 6] = [
         FileKind::Vtk,
     ),
     (
-        &["inp", "exo", "e", "med", "unv", "stl", "bdf", "obj", "ply"],
+        &[
+            "inp", "exo", "e", "med", "unv", "stl", "bdf", "obj", "ply", "mesh",
+        ],
         FileKind::OtherMesh,
     ),
-    (&["csv"], FileKind::List),
+    (&["csv", "dat"], FileKind::List),
     (&["json"], FileKind::Json),
 ];
+
+/// Ends of the names of meshes that `kluft import` reads.
+const IMPORTED: [&str; 7] = ["inp", "vtu", "e", "exo", "ex2", "exii", "g"];
 
 /// What a file is, where it is no scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,7 +103,7 @@ fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     let files = entries.map(|entry| entry.path());
     let is_toml = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
     let has_mesh = |file: &PathBuf| {
-        let text = std::fs::read_to_string(file).unwrap_or_default();
+        let text = ordinary_text(file).unwrap_or_default();
         text.lines()
             .any(|line| line.trim_start().starts_with("[mesh"))
             && text
@@ -151,17 +157,31 @@ fn of_content(head: &[u8]) -> Option<FileKind> {
 }
 
 fn of_name(path: &Path) -> Option<FileKind> {
-    let end = path.extension()?.to_str()?.to_lowercase();
     let kinds = KINDS.iter();
-    let mut kinds = kinds.filter(|(ends, _)| ends.contains(&end.as_str()));
+    let mut kinds = kinds.filter(|(ends, _)| has_ending(path, ends));
     kinds.next().map(|(_, kind)| *kind)
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let own = path.extension().and_then(|ending| ending.to_str());
+    own.is_some_and(|own| {
+        endings
+            .iter()
+            .any(|ending| own.eq_ignore_ascii_case(ending))
+    })
 }
 
 fn refusal(kind: FileKind, path: &Path) -> Defect {
     let shown = path.display();
     let name = path.file_name().unwrap_or_default().display();
-    let convert = "convert a mesh for gmsh first (`meshio convert FILE mesh.msh`), and name it in a \
-                   scene: `[mesh] file = \"mesh.msh\"`";
+    let convert = match has_ending(path, &IMPORTED) {
+        true => format!("`kluft import {shown} -o DIR` makes a mesh and a scene of it"),
+        false => {
+            "convert a mesh for gmsh first (`meshio convert FILE mesh.msh`), and name it in a \
+                  scene: `[mesh] file = \"mesh.msh\"`"
+                .to_owned()
+        }
+    };
     let (what, remedy) = match kind {
         FileKind::Folder => (
             "a folder without a scene",
@@ -182,9 +202,9 @@ fn refusal(kind: FileKind, path: &Path) -> Defect {
             "a file of VTK",
             format!("ParaView opens results; {convert}"),
         ),
-        FileKind::OtherMesh => ("a mesh of another program", convert.to_owned()),
+        FileKind::OtherMesh => ("a mesh of another program", convert),
         FileKind::List => (
-            "a table (CSV)",
+            "a list or a table",
             format!(
                 "`kluft network {shown} -o DIR` makes a geometry and a scene from a list of fractures"
             ),

@@ -105,21 +105,26 @@ struct Summing<W> {
 
 impl<W: Write> Write for Summing<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self.inner.write(bytes) {
-            Ok(count) => {
-                self.sum.write(&bytes[..count]);
-                Ok(count)
-            }
-            Err(error) => {
-                let kind = error.kind();
-                self.error = Some(error);
-                Err(kind.into())
-            }
-        }
+        let written = self.inner.write(bytes);
+        let count = self.known(written)?;
+        self.sum.write(&bytes[..count]);
+        Ok(count)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.inner.flush()
+        let flushed = self.inner.flush();
+        self.known(flushed)
+    }
+}
+
+impl<W> Summing<W> {
+    /// The same, its error kept.
+    fn known<T>(&mut self, done: io::Result<T>) -> io::Result<T> {
+        done.map_err(|error| {
+            let kind = error.kind();
+            self.error = Some(error);
+            kind.into()
+        })
     }
 }
 
@@ -386,18 +391,26 @@ mod tests {
 
     #[test]
     fn a_disk_that_is_full_is_said_in_its_own_words() {
-        struct Full;
+        // What fits a buffer behind is refused when that is emptied.
+        struct Full {
+            room: usize,
+        }
         impl Write for Full {
-            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
-                Err(io::ErrorKind::StorageFull.into())
+            fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+                match bytes.len() <= self.room {
+                    true => Ok(bytes.len()),
+                    false => Err(io::ErrorKind::StorageFull.into()),
+                }
             }
             fn flush(&mut self) -> io::Result<()> {
-                Ok(())
+                Err(io::ErrorKind::StorageFull.into())
             }
         }
-        let mut out = Summing::buffered(Full);
-        let error = encode(&identity(), &mut out).expect_err("full");
-        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+        for room in [0, BUFFER] {
+            let mut out = Summing::buffered(Full { room });
+            let error = encode(&identity(), &mut out).expect_err("full");
+            assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+        }
     }
 
     #[test]

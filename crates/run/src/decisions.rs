@@ -102,7 +102,7 @@ fn cost(prediction: &Prediction) -> String {
         "{} {} and {}",
         prediction.method,
         duration(prediction.seconds),
-        gigabytes(prediction.memory_bytes)
+        memory_text(prediction.memory_bytes)
     )
 }
 
@@ -146,9 +146,13 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// A memory in gigabytes.
-pub fn gigabytes(bytes: usize) -> String {
-    format!("{:.2} GB", bytes as f64 / 1e9)
+/// A memory in words.
+pub fn memory_text(bytes: usize) -> String {
+    match bytes {
+        ..10_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        10_000_000..100_000_000 => format!("{:.0} MB", bytes as f64 / 1e6),
+        _ => format!("{:.2} GB", bytes as f64 / 1e9),
+    }
 }
 
 fn nothing_acts(problem: &Problem) -> bool {

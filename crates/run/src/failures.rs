@@ -4,8 +4,9 @@ use kluft_io::NOT_WRITTEN;
 use kluft_mesh::Defect;
 use kluft_scene::SolverEntry;
 use kluft_solver::{LinearFailure, Plan, Problem, Step, StepOutcome, StepRecord, System};
+use lie_core::{ClosureKind, FractureLaw, Rock};
 
-use crate::decisions::{gigabytes, of_step};
+use crate::decisions::{memory_text, of_step};
 use crate::ranks::Ranks;
 
 /// A solver that does not fit in memory, and what would.
@@ -22,7 +23,7 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
             format!(
                 "write linear = \"{}\" under [solver] ({}), or leave the choice to the program",
                 smaller.method,
-                gigabytes(smaller.memory_bytes)
+                memory_text(smaller.memory_bytes)
             )
         },
     );
@@ -31,8 +32,8 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
         format!(
             "the {} solver needs {} with the estimate of errors, and may take {}",
             chosen.method,
-            gigabytes(chosen.memory_bytes),
-            gigabytes(limit)
+            memory_text(chosen.memory_bytes),
+            memory_text(limit)
         ),
         remedy,
     )
@@ -45,8 +46,8 @@ pub fn rank_too_large(ranks: Ranks<'_>, needed: usize, limit: usize) -> Defect {
          take {}",
         ranks.rank(),
         ranks.count(),
-        gigabytes(needed),
-        gigabytes(limit)
+        memory_text(needed),
+        memory_text(limit)
     );
     let remedy = "mesh coarser (a larger h), start fewer ranks of more threads (--threads) on each \
                   machine, or spread them over more machines";
@@ -118,19 +119,60 @@ pub fn of_outcome(system: &System<'_>, record: &StepRecord) -> String {
     match &record.outcome {
         StepOutcome::Converged => "nothing went wrong".to_owned(),
         StepOutcome::OutOfIterations => format!(
-            "the tests do not hold after {count} iterations; the closure error is largest{}",
-            at(record.worst_facet_point)
+            "the tests do not hold after {count} iterations; the closure error is largest{}{}",
+            at(record.worst_facet_point),
+            of_contrast(&problem.rocks)
         ),
         StepOutcome::RigidBodyMotion => {
             "the loads push rock that nothing holds any more".to_owned()
         }
         StepOutcome::NotFinite(point) => format!(
-            "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture and load: the logarithmic law answers up to about 1e5 K_n0 b0",
+            "in iteration {} a number is no longer finite{}; check the units of stiffness, aperture \
+             and load{}",
             count + 1,
-            at(*point)
+            at(*point),
+            of_logarithm(problem)
         ),
         StepOutcome::Linear(failure) => linear_failure(problem, system, failure),
         StepOutcome::Stopped => format!("it was stopped after {count} iterations"),
+    }
+}
+
+/// Rocks whose moduli, or whose stiffness for volume and shape, lie further apart than this leave
+/// rounding larger than what the tests ask for, see [`of_contrast`].
+const FAR_APART: f64 = 1e8;
+
+/// What may help where rocks are so unlike that the rounding of the stiffest hides the others.
+fn of_contrast(rocks: &[Rock]) -> String {
+    let moduli = || rocks.iter().map(|rock| rock.young_modulus);
+    let (least, most) = (
+        moduli().fold(f64::INFINITY, f64::min),
+        moduli().fold(0.0, f64::max),
+    );
+    // `K / G = 2 (1 + nu) / (3 (1 - 2 nu))`.
+    let firmness = |rock: &Rock| 1.0 / (1.0 - 2.0 * rock.poisson_ratio);
+    let firmest = rocks.iter().map(firmness).fold(0.0, f64::max);
+    let what = if most > FAR_APART * least {
+        format!("a rock is {:.0e} times as stiff as another", most / least)
+    } else if firmest > FAR_APART {
+        "a Poisson's ratio is all but 0.5".to_owned()
+    } else {
+        return String::new();
+    };
+    format!(
+        "; {what}, and what rounding leaves of that may be more than the tests allow: bring them \
+         closer, or try linear = \"iterative\" under [solver]"
+    )
+}
+
+/// Which loads the logarithmic law answers, if a fracture follows it.
+fn of_logarithm(problem: &Problem) -> &'static str {
+    let mut laws = problem.fractures.iter().map(|fracture| &fracture.law);
+    let is_one = |law: &FractureLaw| matches!(law.closure.kind, ClosureKind::Logarithmic { .. });
+    if laws.any(is_one) {
+        ": the logarithmic law answers up to about 1e5 K_n0 b0"
+    } else {
+        ""
     }
 }
 
@@ -153,7 +195,7 @@ pub fn flow_failure(failure: &LinearFailure) -> String {
         LinearFailure::OutOfMemory(bytes) => format!(
             "the solver of the flow asked for {} of memory more, and did not get them; mesh \
              fractures coarser (a larger h), or raise the limit (ulimit -v, container)",
-            gigabytes(*bytes)
+            memory_text(*bytes)
         ),
         LinearFailure::NotFinite => {
             "a number of the flow is not finite; check the units of apertures, viscosity, pressures \
@@ -176,7 +218,7 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
         LinearFailure::OutOfMemory(bytes) => format!(
             "the linear solver asked for {} of memory more, and did not get them; mesh coarser (a \
              larger h), run on fewer threads, or raise the limit (ulimit -v, container)",
-            gigabytes(*bytes)
+            memory_text(*bytes)
         ),
         LinearFailure::Indefinite(row) => {
             let node = system.discretisation().points().node[*row] as usize;
@@ -194,5 +236,30 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
             "the linear solver gave up after {iterations} iterations; choose another with [solver]"
         ),
         LinearFailure::Analysis(what) => format!("the linear solver failed: {what}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rocks_that_are_too_unlike_are_named_with_what_may_help() {
+        let rock = |young_modulus, poisson_ratio| Rock {
+            young_modulus,
+            poisson_ratio,
+            density: 0.0,
+            anisotropy: None,
+        };
+        for (rocks, says) in [
+            (vec![rock(50e9, 0.4999999), rock(50e3, 0.2)], ""),
+            (vec![rock(50e9, 0.2), rock(50.0, 0.2)], "1e9 times as stiff"),
+            (vec![rock(50e9, 0.499_999_999_9)], "all but 0.5"),
+        ] {
+            let told = of_contrast(&rocks);
+            assert!(told.contains(says), "{told}");
+            assert_eq!(told.is_empty(), says.is_empty());
+            assert_eq!(told.contains("\"iterative\""), !says.is_empty());
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kluft_defect::ordinary_text;
 use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
 use lie_core::FacetQuadrature;
@@ -33,7 +34,7 @@ impl Scene {
     /// # Errors
     /// If it cannot be read.
     pub fn text(path: &Path) -> Result<String, Vec<Defect>> {
-        read_ordinary(path).map_err(|error| {
+        ordinary_text(path).map_err(|error| {
             let remedy = match error.kind() {
                 std::io::ErrorKind::InvalidData => "save the file as UTF-8 text",
                 _ => "give the path of a scene file, e.g. geometries/inclined-joint/scene.toml",
@@ -474,16 +475,6 @@ fn read_facets(section: &Section<'_, '_>) -> FacetQuadrature {
         Some("gauss") => FacetQuadrature::Gauss,
         _ => FacetQuadrature::Nodal,
     }
-}
-
-/// The text of a file; a pipe, which could let one wait for ever, is none.
-fn read_ordinary(path: &Path) -> std::io::Result<String> {
-    let about = std::fs::metadata(path)?;
-    if !about.is_file() && !about.is_dir() {
-        let problem = "it is no ordinary file (a pipe or a device)";
-        return Err(std::io::Error::other(problem));
-    }
-    std::fs::read_to_string(path)
 }
 
 #[cfg(test)]

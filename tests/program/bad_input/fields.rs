@@ -77,7 +77,7 @@ pub(super) const CASES: &[Case] = &[
         defects: 4,
         says: &[
             "no.csv`: cannot be read",
-            "it is no ordinary file",
+            "there`: cannot be read: is a directory",
             "\"GPa\" is no unit of a length",
             "scan.csv`: line 3: `nan` is no finite number",
         ],

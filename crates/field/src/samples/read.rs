@@ -1,12 +1,11 @@
 //! Reads samples from CSV files.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use glam::DVec3;
+use kluft_defect::ordinary_text;
 
 use super::between::Samples;
 use super::sample::{Method, Sample};
@@ -67,14 +66,8 @@ impl SampleFile<'_> {
     }
 
     fn text(&self) -> Result<String, Found> {
-        let mut text = String::new();
-        let is_file = std::fs::metadata(self.path).map(|about| about.is_file());
-        let read = match is_file {
-            Ok(false) => Err(std::io::Error::other("it is no ordinary file")),
-            _ => File::open(self.path).and_then(|mut file| file.read_to_string(&mut text)),
-        };
-        match read {
-            Ok(_) => Ok(text.trim_start_matches('\u{feff}').to_owned()),
+        match ordinary_text(self.path) {
+            Ok(text) => Ok(text.trim_start_matches('\u{feff}').to_owned()),
             Err(error) => Err([
                 self.of_file(&format!("cannot be read: {error}")),
                 "give the path of a CSV file, relative to the folder of the scene".into(),

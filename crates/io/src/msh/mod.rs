@@ -19,6 +19,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use kluft_defect::open_ordinary;
 use kluft_mesh::{Defect, Draft, Group};
 use memchr::memmem;
 use rayon::prelude::*;
@@ -96,7 +97,7 @@ fn older(source: MshSource, version: f64) -> Defect {
     )
 }
 
-/// The bytes of an ordinary file; a pipe could let one wait for ever.
+/// The bytes of an ordinary file.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
     read_bytes(path).map_err(|error| {
         let problem = format!("cannot be read: {error}");
@@ -112,16 +113,7 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, Defect> {
 /// the parsing of a binary one.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     const PART: usize = 2 << 20;
-    let about = std::fs::metadata(path)?;
-    if about.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if !about.is_file() {
-        return Err(io::Error::other(
-            "it is no ordinary file (a pipe or a device)",
-        ));
-    }
-    let length = about.len();
+    let length = open_ordinary(path)?.metadata()?.len();
     let length = usize::try_from(length).map_err(io::Error::other)?;
     if length < 8 * PART {
         return std::fs::read(path);
