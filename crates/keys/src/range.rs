@@ -100,6 +100,11 @@ mod tests {
                 1e300,
                 Some("must be from 1 to 1e15"),
             ),
+            (
+                Range::Within(1.0, 1e15),
+                1e-310,
+                Some("must be from 1 to 1e15"),
+            ),
             (Range::Positive, 1e-310, Some("too small a number")),
             (
                 Range::Finite,

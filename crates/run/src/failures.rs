@@ -54,8 +54,12 @@ pub fn rank_too_large(ranks: Ranks<'_>, needed: usize, limit: usize) -> Defect {
     Defect::new("memory of this machine", problem, remedy)
 }
 
-/// Says of files that could not be written what is kept nevertheless.
-pub fn with_what_is_kept(mut defects: Vec<Defect>, steps: usize) -> Vec<Defect> {
+/// Says of files that could not be written what is kept nevertheless: so many load steps, after so
+/// many of which a checkpoint goes on.
+pub fn with_what_is_kept(
+    mut defects: Vec<Defect>,
+    [steps, checkpointed]: [usize; 2],
+) -> Vec<Defect> {
     for defect in defects
         .iter_mut()
         .filter(|defect| defect.code == Some(NOT_WRITTEN))
@@ -66,9 +70,11 @@ pub fn with_what_is_kept(mut defects: Vec<Defect>, steps: usize) -> Vec<Defect> 
             _ => &format!("; {steps} load steps are finished, and their results are kept"),
         };
         defect.problem.push_str(kept);
-        if steps > 0 {
-            defect.remedy.push_str(", then go on with --resume");
-        }
+        defect.remedy.push_str(&match checkpointed {
+            0 => String::new(),
+            _ if checkpointed == steps => ", then go on with --resume".to_owned(),
+            _ => format!(", then go on after load step {checkpointed} with --resume"),
+        });
     }
     defects
 }
@@ -242,6 +248,23 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_run_goes_on_only_where_a_checkpoint_does() {
+        for (kept, says) in [
+            ([0, 0], "free some space"),
+            ([1, 0], "free some space"),
+            ([4, 4], "free some space, then go on with --resume"),
+            (
+                [4, 3],
+                "free some space, then go on after load step 3 with --resume",
+            ),
+        ] {
+            let full = Defect::new("a", "no room", "free some space").with_code(NOT_WRITTEN);
+            let told = with_what_is_kept(vec![full], kept);
+            assert_eq!(told[0].remedy, says);
+        }
+    }
 
     #[test]
     fn rocks_that_are_too_unlike_are_named_with_what_may_help() {

@@ -71,6 +71,9 @@ impl Run<'_> {
         let written = self.output.write(checkpoint::NAME, write);
         let written = written.and_then(|()| self.output.sync());
         self.summary.seconds.write += start.elapsed().as_secs_f64();
+        if written.is_ok() {
+            self.checkpointed = self.output.sums().len();
+        }
         written
     }
 

@@ -58,7 +58,7 @@ fn run_here(request: Request<'_>, observer: &mut dyn Observer) -> Result<Outcome
         Err(Interruption::NotConverged(why)) => run.finish(Ending::NotConverged(why)),
         Err(Interruption::Stopped) => run.finish(Ending::Stopped),
         Err(Interruption::Defects(defects)) => {
-            let kept = run.output.sums().len();
+            let kept = [run.output.sums().len(), run.checkpointed];
             Err(failures::with_what_is_kept(defects, kept))
         }
     }

@@ -85,6 +85,8 @@ pub struct Run<'a> {
     pub doubts: Vec<String>,
     /// Closed form of each fracture that has one.
     pub oracles: Vec<Option<Oracle>>,
+    /// Number of load steps after which the checkpoint that is there goes on.
+    pub checkpointed: usize,
     /// Whether the observer wants no more.
     is_stopped: bool,
     /// Whether its mesh came from memory; no checkpoint could tell it from another.
@@ -148,6 +150,7 @@ impl<'a> Run<'a> {
             choice: Choice::default(),
             doubts: Vec::new(),
             oracles: Vec::new(),
+            checkpointed: former.map_or(0, |former| former.progress.files.len()),
             is_stopped: false,
             start,
             took: Duration::ZERO,
