@@ -92,6 +92,13 @@ pub(super) const CASES: &[Case] = &[
         ..SOUND
     },
     Case {
+        name: "an older version that gmsh cannot read",
+        mesh: &[("4.1 0 8", "2.2 0 8")],
+        defects: 2,
+        says: &["base.msh: gmsh: ", "write the mesh file again"],
+        ..SOUND
+    },
+    Case {
         name: "coordinate that is no number",
         mesh: &[("\n1 0 0\n", "\nnan 0 0\n")],
         says: &[

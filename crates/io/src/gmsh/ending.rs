@@ -13,7 +13,12 @@ use super::run::{CutShort, Ended, Gmsh};
 const LAST: usize = 3;
 
 /// gmsh's warnings, or why it failed; any error that it reports is a failure.
-pub(super) fn judge(gmsh: &Gmsh, input: &Path, ended: &Ended) -> Result<Vec<String>, Vec<Defect>> {
+/// `remedy` is what helps against errors in the input.
+pub(super) fn judge(
+    gmsh: &Gmsh,
+    (input, remedy): (&Path, &str),
+    ended: &Ended,
+) -> Result<Vec<String>, Vec<Defect>> {
     let name = input.display().to_string();
     let is_launched = gmsh.options.launcher.is_some();
     match ended.cut_short {
@@ -29,7 +34,7 @@ pub(super) fn judge(gmsh: &Gmsh, input: &Path, ended: &Ended) -> Result<Vec<Stri
         )]);
     }
     let log = Log::parse(&ended.output, &ended.errors);
-    let mut defects = log.defects(&name);
+    let mut defects = log.defects(&name, remedy);
     if !ended.status.success() {
         match missing_library(ended) {
             Some(library) => defects = vec![without_library(gmsh, library)],

@@ -5,7 +5,10 @@ use kluft_mesh::Defect;
 const SHOWN: usize = 10;
 /// Most lines that are told apart.
 const MOST: usize = 1000;
-const REMEDY: &str = "correct the geometry; `gmsh FILE` shows it";
+/// What helps against an error in a geometry.
+pub(super) const IN_A_GEOMETRY: &str = "correct the geometry; `gmsh FILE` shows it";
+/// What helps against an error in a mesh file that is only rewritten.
+pub(super) const IN_A_MESH: &str = "write the mesh file again: gmsh cannot read it";
 
 /// The lines of a run that matter, each once.
 #[derive(Debug, Default)]
@@ -40,13 +43,14 @@ impl Log {
     }
 
     /// One defect for each error, at the place that gmsh names.
-    pub(super) fn defects(&self, input: &str) -> Vec<Defect> {
+    pub(super) fn defects(&self, input: &str, remedy: &str) -> Vec<Defect> {
         let errors = self.errors.iter().take(SHOWN);
-        let mut defects: Vec<Defect> = errors.map(|error| defect_of(input, error)).collect();
+        let defects = errors.map(|error| defect_of(input, error, remedy));
+        let mut defects: Vec<Defect> = defects.collect();
         let more = self.errors.len().saturating_sub(SHOWN);
         if more > 0 {
             let problem = format!("gmsh reports {more} more errors");
-            defects.push(Defect::new(input, problem, REMEDY));
+            defects.push(Defect::new(input, problem, remedy));
         }
         defects
     }
@@ -69,14 +73,14 @@ fn is_summary(message: &str) -> bool {
 }
 
 /// `'block.geo', line 3: syntax error` names its place itself.
-fn defect_of(input: &str, error: &str) -> Defect {
+fn defect_of(input: &str, error: &str, remedy: &str) -> Defect {
     let located = error.strip_prefix('\'').and_then(|rest| {
         let (file, rest) = rest.split_once("', line ")?;
         let (line, problem) = rest.split_once(": ")?;
         Some((format!("{file}, line {line}"), problem))
     });
     let (place, problem) = located.unwrap_or_else(|| (input.to_owned(), error));
-    Defect::new(place, format!("gmsh: {problem}"), REMEDY)
+    Defect::new(place, format!("gmsh: {problem}"), remedy)
 }
 
 #[cfg(test)]
@@ -95,7 +99,7 @@ mod tests {
             Error   : No elements in volume 1 \n\
             Warning : careful: x\n";
         let log = Log::parse("Info    : Error   : no\n", stderr);
-        let defects = log.defects("in.geo");
+        let defects = log.defects("in.geo", IN_A_GEOMETRY);
         let places: Vec<&str> = defects.iter().map(|defect| defect.place.as_str()).collect();
         assert_eq!(places, ["a.geo, line 3", "in.geo"]);
         assert_eq!(defects[0].problem, "gmsh: syntax error ({)");

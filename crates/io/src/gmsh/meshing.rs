@@ -9,6 +9,7 @@ use kluft_mesh::Defect;
 use super::attempts::{Attempt, attempts, is_worth_another};
 use super::cache::{MeshCache, Record};
 use super::ending::{cannot_start, judge};
+use super::log::IN_A_GEOMETRY;
 use super::made::{check_cells, check_made};
 use super::options::{Dimension, Meshed, Meshing};
 use super::review::reviewed;
@@ -196,7 +197,7 @@ fn try_once(
 ) -> Result<Vec<String>, Vec<Defect>> {
     let ended = gmsh.run(arguments, scope);
     let ended = ended.map_err(|error| vec![cannot_start(gmsh, &error)])?;
-    let warnings = judge(gmsh, meshing.geometry, &ended)?;
+    let warnings = judge(gmsh, (meshing.geometry, IN_A_GEOMETRY), &ended)?;
     let made = scope.folder.as_deref().unwrap_or(Path::new("")).join(MADE);
     let asked = (meshing.geometry, meshing.dimension);
     check_made(&made, asked, meshing.output).map_err(|defect| vec![defect])?;

@@ -30,6 +30,7 @@ use kluft_mesh::Defect;
 use crate::msh::bytes_of;
 pub use cache::MeshCache;
 use ending::{cannot_start, judge};
+use log::IN_A_MESH;
 pub use meshing::mesh_geometry;
 use meshing::{MADE, QUIETLY};
 pub use options::{Dimension, GmshOptions, Launcher, Meshed, Meshing, NOT_MESHED, NOT_STARTED};
@@ -63,7 +64,7 @@ pub(crate) fn convert_mesh(
     let gmsh = Gmsh::from_environment(options);
     let ended = gmsh.run(&arguments, &scope);
     let ended = ended.map_err(|error| vec![cannot_start(&gmsh, &error)])?;
-    judge(&gmsh, input, &ended)?;
+    judge(&gmsh, (input, IN_A_MESH), &ended)?;
     bytes_of(&workspace.path(MADE)).map_err(one)
 }
 
