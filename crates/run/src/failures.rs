@@ -127,7 +127,7 @@ pub fn of_outcome(system: &System<'_>, record: &StepRecord) -> String {
         StepOutcome::OutOfIterations => format!(
             "the tests do not hold after {count} iterations; the closure error is largest{}{}",
             at(record.worst_facet_point),
-            of_contrast(&problem.rocks)
+            of_contrast(problem)
         ),
         StepOutcome::RigidBodyMotion => {
             "the loads push rock that nothing holds any more".to_owned()
@@ -144,31 +144,57 @@ pub fn of_outcome(system: &System<'_>, record: &StepRecord) -> String {
     }
 }
 
-/// Rocks whose moduli, or whose stiffness for volume and shape, lie further apart than this leave
-/// rounding larger than what the tests ask for, see [`of_contrast`].
+/// Stiffnesses that lie further apart than this leave rounding larger than what the tests ask for.
 const FAR_APART: f64 = 1e8;
 
-/// What may help where rocks are so unlike that the rounding of the stiffest hides the others.
-fn of_contrast(rocks: &[Rock]) -> String {
-    let moduli = || rocks.iter().map(|rock| rock.young_modulus);
-    let (least, most) = (
-        moduli().fold(f64::INFINITY, f64::min),
-        moduli().fold(0.0, f64::max),
-    );
-    // `K / G = 2 (1 + nu) / (3 (1 - 2 nu))`.
-    let firmness = |rock: &Rock| 1.0 / (1.0 - 2.0 * rock.poisson_ratio);
-    let firmest = rocks.iter().map(firmness).fold(0.0, f64::max);
-    let what = if most > FAR_APART * least {
-        format!("a rock is {:.0e} times as stiff as another", most / least)
-    } else if firmest > FAR_APART {
-        "a Poisson's ratio is all but 0.5".to_owned()
+/// What may help where stiffnesses are so unlike that the rounding of the largest hides the others.
+fn of_contrast(problem: &Problem) -> String {
+    let names = problem.mesh.fractures.iter();
+    let fractures = names.zip(problem.fractures.iter().map(|fracture| &fracture.law));
+    let (what, or) = if let Some(what) = contrast_of_rocks(&problem.rocks) {
+        (what, ", or try linear = \"iterative\" under [solver]")
+    } else if let Some(what) = contrast_in_fractures(fractures) {
+        (what, "")
     } else {
         return String::new();
     };
     format!(
         "; {what}, and what rounding leaves of that may be more than the tests allow: bring them \
-         closer, or try linear = \"iterative\" under [solver]"
+         closer{or}"
     )
+}
+
+fn contrast_of_rocks(rocks: &[Rock]) -> Option<String> {
+    let moduli = || rocks.iter().map(|rock| rock.young_modulus);
+    let least = moduli().fold(f64::INFINITY, f64::min);
+    let contrast = moduli().fold(0.0, f64::max) / least;
+    // `K / G = 2 (1 + nu) / (3 (1 - 2 nu))`.
+    let firmness = |rock: &Rock| 1.0 / (1.0 - 2.0 * rock.poisson_ratio);
+    let firmest = rocks.iter().map(firmness).fold(0.0, f64::max);
+    if contrast > FAR_APART {
+        Some(format!(
+            "a rock is {contrast:.0e} times as stiff as another"
+        ))
+    } else if firmest > FAR_APART {
+        let what = "rock is far stiffer against a change of volume than of shape (a Poisson's \
+                    ratio is all but 0.5)";
+        Some(what.to_owned())
+    } else {
+        None
+    }
+}
+
+fn contrast_in_fractures<'a>(
+    mut fractures: impl Iterator<Item = (&'a String, &'a FractureLaw)>,
+) -> Option<String> {
+    fractures.find_map(|(name, law)| {
+        let (normal, shear) = (law.closure.normal_stiffness, law.shear_stiffness);
+        let contrast = shear / normal;
+        let is_far = normal > 0.0 && contrast.is_finite() && contrast >= FAR_APART;
+        is_far.then(|| {
+            format!("the shear stiffness of `{name}` is {contrast:.0e} times its normal stiffness")
+        })
+    })
 }
 
 /// Which loads the logarithmic law answers, if a fracture follows it.
@@ -247,6 +273,8 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
 
 #[cfg(test)]
 mod tests {
+    use lie_core::Closure;
+
     use super::*;
 
     #[test]
@@ -267,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn rocks_that_are_too_unlike_are_named_with_what_may_help() {
+    fn stiffnesses_that_are_too_unlike_are_named() {
         let rock = |young_modulus, poisson_ratio| Rock {
             young_modulus,
             poisson_ratio,
@@ -279,10 +307,20 @@ mod tests {
             (vec![rock(50e9, 0.2), rock(50.0, 0.2)], "1e9 times as stiff"),
             (vec![rock(50e9, 0.499_999_999_9)], "all but 0.5"),
         ] {
-            let told = of_contrast(&rocks);
-            assert!(told.contains(says), "{told}");
-            assert_eq!(told.is_empty(), says.is_empty());
-            assert_eq!(told.contains("\"iterative\""), !says.is_empty());
+            let told = contrast_of_rocks(&rocks);
+            assert_eq!(told.is_none(), says.is_empty(), "{told:?}");
+            assert!(told.unwrap_or_default().contains(says));
+        }
+        for (normal, shear, is_told) in [
+            (1.0, 1e10, true),
+            (1e4, 1e10, false),
+            (0.0, 1e10, false),
+            (f64::INFINITY, f64::INFINITY, false),
+        ] {
+            let closure = Closure::new(1e-4, normal, ClosureKind::Linear);
+            let (name, law) = ("f".to_owned(), FractureLaw::elastic(closure, shear));
+            let told = contrast_in_fractures(std::iter::once((&name, &law)));
+            assert_eq!(told.is_some(), is_told, "{told:?}");
         }
     }
 }
