@@ -256,8 +256,13 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
             let node = system.discretisation().points().node[*row] as usize;
             let x = problem.mesh.nodes[node];
             format!(
-                "the stiffness is not positive definite at node {} ({:.4}, {:.4}, {:.4}): the rock there can move freely; hold it, or give the fractures around it stiffness",
-                problem.mesh.node_tags[node], x.x, x.y, x.z
+                "the stiffness is not positive definite at node {} ({:.4}, {:.4}, {:.4}): the rock \
+                 there can move freely; hold it, or give the fractures around it stiffness{}",
+                problem.mesh.node_tags[node],
+                x.x,
+                x.y,
+                x.z,
+                of_contrast(problem)
             )
         }
         LinearFailure::NotFinite => {
