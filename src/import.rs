@@ -23,6 +23,7 @@ use kluft_keys::{quoted, section_head};
 use kluft_mesh::{Defect, Draft, Faces, Group};
 
 use crate::failure::Failure;
+use crate::input::EXODUS;
 use crate::report::{Report, Verbosity};
 
 use project::{Project, read_project};
@@ -136,7 +137,7 @@ fn read_mesh(file: &Path) -> Result<Imported, Vec<Defect>> {
             parse_abaqus(&text, &place)
         }
         Some("vtu") => read_grid(file),
-        Some(ending) if exodus::ENDINGS.contains(&ending) => exodus::read_exodus(file),
+        Some(ending) if EXODUS.contains(&ending) => exodus::read_exodus(file),
         _ => Err(vec![Defect::new(
             place,
             "the name ends neither in .inp (Abaqus), nor in .vtu (VTK), nor in .e (Exodus), nor in \

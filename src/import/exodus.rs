@@ -8,9 +8,6 @@ use kluft_defect::open_ordinary;
 use kluft_io::import::{Imported, read_grid};
 use kluft_mesh::Defect;
 
-/// Endings of names of Exodus files.
-pub const ENDINGS: [&str; 5] = ["e", "exo", "ex2", "exii", "g"];
-
 const SCRIPT: &str = include_str!("exodus.py");
 /// Exit code of the script without VTK.
 const NO_VTK: i32 = 3;

@@ -40,8 +40,10 @@ const KINDS: [(&[&str], FileKind); 6] = [
     (&["json"], FileKind::Json),
 ];
 
-/// Ends of the names of meshes that `kluft import` reads.
-const IMPORTED: [&str; 7] = ["inp", "vtu", "e", "exo", "ex2", "exii", "g"];
+/// Ends of the names of other meshes that `kluft import` reads, beside [`EXODUS`].
+const IMPORTED: [&str; 2] = ["inp", "vtu"];
+/// Ends of the names of Exodus files.
+pub const EXODUS: [&str; 5] = ["e", "exo", "ex2", "exii", "g"];
 
 /// What a file is, where it is no scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -174,7 +176,7 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
 fn refusal(kind: FileKind, path: &Path) -> Defect {
     let shown = path.display();
     let name = path.file_name().unwrap_or_default().display();
-    let convert = match has_ending(path, &IMPORTED) {
+    let convert = match has_ending(path, &IMPORTED) || has_ending(path, &EXODUS) {
         true => format!("`kluft import {shown} -o DIR` makes a mesh and a scene of it"),
         false => {
             "convert a mesh for gmsh first (`meshio convert FILE mesh.msh`), and name it in a \

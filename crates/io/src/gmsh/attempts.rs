@@ -1,7 +1,5 @@
 //! The ways in which a mesh is tried.
 
-use std::path::PathBuf;
-
 use kluft_mesh::Defect;
 
 use super::options::{Dimension, NOT_MESHED};
@@ -59,13 +57,11 @@ const fn way(name: &'static str, options: &'static [(&'static str, f64)]) -> Att
 /// The ways to try: the forms that a network offers, or gmsh's usual way and another where that
 /// fails; one way if the geometry, a file that it opens, or a parameter chooses.
 pub(super) fn attempts(
-    scripts: &[PathBuf],
+    scripts: &[Vec<u8>],
     parameters: &[(String, f64)],
     dimension: Dimension,
 ) -> &'static [Attempt] {
     let is_given = parameters.iter().any(|(name, _)| name == ALGORITHM);
-    let scripts = scripts.iter().map(std::fs::read);
-    let scripts: Vec<Vec<u8>> = scripts.map(Result::unwrap_or_default).collect();
     let any = |holds: fn(&[u8]) -> bool| scripts.iter().any(|script| holds(script));
     if is_given || any(chooses) {
         &[AS_GIVEN]

@@ -1,7 +1,7 @@
 //! The format of the file that gmsh writes, where a geometry chooses another.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use kluft_mesh::Defect;
 
@@ -12,10 +12,9 @@ use crate::atomic::write_atomically;
 const OPTIONS: [(&str, f64); 3] = [("Format", 1.0), ("MshFileVersion", 4.1), ("Binary", 1.0)];
 
 /// Whether a script names one of the options: they count more than those of the command line.
-pub(super) fn is_chosen(scripts: &[PathBuf]) -> bool {
+pub(super) fn is_chosen(scripts: &[Vec<u8>]) -> bool {
     scripts.iter().any(|script| {
-        let script = std::fs::read(script).unwrap_or_default();
-        let mut words = Tokens::of(&script).map(|(_, token)| token);
+        let mut words = Tokens::of(script).map(|(_, token)| token);
         words.any(|word| OPTIONS.iter().any(|(name, _)| word == Token::Word(name)))
     })
 }

@@ -41,7 +41,8 @@ pub fn mesh_geometry(meshing: &Meshing) -> Result<Meshed, Vec<Defect>> {
 pub(super) fn mesh_with(gmsh: &Gmsh, meshing: &Meshing) -> Result<Meshed, Vec<Defect>> {
     check(meshing)?;
     let review = reviewed(meshing.geometry, meshing.gmsh)?;
-    let scripts: Vec<PathBuf> = review.scripts().cloned().collect();
+    let scripts = review.scripts().map(std::fs::read);
+    let scripts: Vec<Vec<u8>> = scripts.map(Result::unwrap_or_default).collect();
     let attempts = attempts(&scripts, meshing.parameters, meshing.dimension);
     let kept = meshing.gmsh.cache.as_ref().and_then(|cache| {
         let program = gmsh.find().ok()?;
@@ -98,7 +99,7 @@ impl Kept<'_> {
 fn make(
     gmsh: &Gmsh,
     meshing: &Meshing,
-    (attempts, scripts): (&[Attempt], &[PathBuf]),
+    (attempts, scripts): (&[Attempt], &[Vec<u8>]),
     mut scope: Scope,
 ) -> Result<Meshed, Vec<Defect>> {
     let one = |defect| vec![defect];
@@ -152,7 +153,7 @@ fn make(
 /// where a script would choose another.
 fn inputs(
     meshing: &Meshing,
-    scripts: &[PathBuf],
+    scripts: &[Vec<u8>],
     workspace: &Workspace,
 ) -> Result<Vec<PathBuf>, Defect> {
     let mut inputs = vec![meshing.geometry.to_owned()];
@@ -167,7 +168,7 @@ fn inputs(
     Ok(inputs)
 }
 
-/// Why each of the first ways failed, where the `last` did not for the same reason.
+/// Why each of the first ways failed; in the same way, where the `last` failed for the same reason.
 fn failures(failed: &[Defect], attempts: &[Attempt], last: Option<&Defect>) -> Vec<String> {
     let failed = failed.iter().zip(attempts);
     let told = failed.map(|(defect, way)| match &defect.problem {
