@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use kluft_io::GmshOptions;
 use kluft_run::{
-    Caller, Ending, MeshInput, Origin, Outcome, REPORT, Request, ThreadCount, folder_for, pool,
-    thread_count,
+    Caller, Ending, MeshInput, Origin, Outcome, REPORT, Request, ThreadCount, folder_for, memory,
+    pool, thread_count,
 };
 use kluft_scene::{Scene, counted};
 
@@ -125,10 +125,10 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
     for warning in &summary.warnings {
         report.entry("warning", warning);
     }
-    let megabytes = summary.peak_memory_bytes as f64 / 1e6;
     let text = format!(
-        "{:.2} s, {megabytes:.0} MB at most, {}",
+        "{:.2} s, {} at most, {}",
         summary.seconds.total,
+        memory::in_words(summary.peak_memory_bytes as usize),
         counted(summary.threads, "thread")
     );
     report.entry("took", &text);

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use kluft_run::memory;
+
 use crate::defects::SHOWN as SHOWN_DEFECTS;
 use crate::printing::{one_line, shortened, wrapped};
 
@@ -286,9 +288,9 @@ fn cost(out: &mut String, solver: &SolverFinding) {
     line(
         out,
         &format!(
-            "solver     {}{choice}, predicted: {:.2} GB, {:.2} s for the run on an ordinary machine",
+            "solver     {}{choice}, predicted: {}, {:.2} s for the run on an ordinary machine",
             solver.name,
-            solver.memory_bytes as f64 / 1e9,
+            memory::in_words(solver.memory_bytes),
             solver.seconds
         ),
     );

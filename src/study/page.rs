@@ -1,13 +1,14 @@
 //! `study.html`: everything about a study on one page that needs no other file.
 
 use kluft_report::{Page, Table};
+use kluft_run::memory;
 
 use super::answer;
 use super::assess::Assessment;
 use super::charts::{NamedChart, subject};
 use super::point::{Numbers, PointRecord};
 use super::under_way::Study;
-use super::words::{duration, memory, percent};
+use super::words::{duration, percent};
 
 /// Columns of every setting, all of numbers.
 const COLUMNS: [&str; 10] = [
@@ -155,7 +156,7 @@ fn cells(numbers: &Numbers, found: &Assessment, index: usize) -> [String; COLUMN
         numbers.linear_iterations.to_string(),
         duration(numbers.seconds),
         duration(numbers.meshing_seconds),
-        memory(numbers.peak_memory_bytes as f64),
+        memory::in_words(numbers.peak_memory_bytes as usize),
         verdict
             .value
             .map_or_else(|| "–".into(), |value| format!("{value:.6e}")),
@@ -184,7 +185,7 @@ fn failures(page: &mut Page, study: &Study) {
 fn circumstances(page: &mut Page, study: &Study) {
     let machine = &study.machine;
     let bytes = machine.memory_bytes;
-    let bytes = bytes.map_or_else(|| "unknown".into(), |bytes| memory(bytes as f64));
+    let bytes = bytes.map_or_else(|| "unknown".into(), memory::in_words);
     page.heading("Machine");
     page.text(&format!(
         "{}, {} cores, {bytes} of memory; {} threads a run. Kluft {}, gmsh {}.",

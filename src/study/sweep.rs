@@ -314,7 +314,26 @@ fn closures(section: &Section<'_, '_>, asked: &Table, scene: &Table) -> Vec<Choi
         }
     }
     let choice = |(label, keys): (String, Table)| Choice::new(&label, closure_edits(&keys, scene));
-    choices.into_iter().map(choice).collect()
+    let choices: Vec<Choice> = choices.into_iter().map(choice).collect();
+    refuse_one_law_twice(section, &choices);
+    choices
+}
+
+/// Refuses one law under two labels: the second would be missing in all tables and charts.
+fn refuse_one_law_twice(section: &Section<'_, '_>, choices: &[Choice]) {
+    for (i, choice) in choices.iter().enumerate() {
+        let is_same = |other: &&Choice| {
+            !choice.edits.is_empty() && other.edits == choice.edits && other.label != choice.label
+        };
+        if let Some(other) = choices[..i].iter().find(is_same) {
+            let problem = format!("\"{}\" and \"{}\" are one law", other.label, choice.label);
+            section.refuse(
+                "closures",
+                problem,
+                "remove one of them, or correct its keys",
+            );
+        }
+    }
 }
 
 fn label_of(keys: &Table) -> String {

@@ -39,14 +39,6 @@ pub(super) fn duration(seconds: f64) -> String {
     }
 }
 
-/// An amount of memory.
-pub(super) fn memory(bytes: f64) -> String {
-    match bytes {
-        b if b < 1e9 => format!("{:.0} MB", b / 1e6),
-        b => format!("{:.1} GB", b / 1e9),
-    }
-}
-
 /// What settings are called that differ in nothing.
 pub(super) fn or_the_scene(name: String) -> String {
     match name.is_empty() {
@@ -88,6 +80,5 @@ mod tests {
         assert_eq!(texts, wanted);
         assert_eq!(percent(0.01), "1 %");
         assert_eq!(duration(600.0), "10 min");
-        assert_eq!(memory(1.25e9), "1.2 GB");
     }
 }

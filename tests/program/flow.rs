@@ -252,7 +252,7 @@ fn an_inspection_tells_what_connects() {
         "unknown pressures, 1 network",
         "west, south, north (",
         "driven by [boundary.back], [boundary.front], [boundary.left]",
-        "solver direct, chosen, predicted: 0.00 GB",
+        "solver direct, chosen, predicted: ",
         "entries in the factor",
     ] {
         assert!(flat.contains(said), "{said}: {}", run.out);

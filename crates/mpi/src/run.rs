@@ -8,7 +8,9 @@ use kluft_program::failure::Failure;
 use kluft_program::input::{expect_scene, scene_at};
 use kluft_program::invocation::OwnProgram;
 use kluft_program::report::{Report, Verbosity};
-use kluft_run::{Caller, Ending, MeshInput, Observer, Origin, Outcome, Ranks, Request, folder_for};
+use kluft_run::{
+    Caller, Ending, MeshInput, Observer, Origin, Outcome, Ranks, Request, folder_for, memory,
+};
 use kluft_scene::{MeshSource, Scene};
 use kluft_solver::{LinearFailure, LinearMethod, System, TangentSolver};
 
@@ -154,14 +156,14 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
     }
     let ranks = summary.ranks.clone().unwrap_or_default();
     let text = format!(
-        "{:.2} s, {} with at most {:.0} MB each, {:.0} MB together",
+        "{:.2} s, {} with at most {} each, {} together",
         summary.seconds.total,
         match ranks.count {
             1 => "1 rank".to_owned(),
             count => format!("{count} ranks"),
         },
-        ranks.largest_peak_memory_bytes as f64 / 1e6,
-        ranks.sum_of_peak_memory_bytes as f64 / 1e6
+        memory::in_words(ranks.largest_peak_memory_bytes as usize),
+        memory::in_words(ranks.sum_of_peak_memory_bytes as usize)
     );
     report.entry("took", &text);
     if !summary.steps.is_empty() {

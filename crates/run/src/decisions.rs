@@ -5,6 +5,8 @@ use kluft_solver::{
     Flow, LinearMethod, Plan, Prediction, Problem, Schedule, Spring, SpringStiffness, Step, Support,
 };
 
+use crate::memory;
+
 /// That a direct solver went on in a load step.
 pub fn of_fallback(number: usize) -> String {
     format!(
@@ -102,7 +104,7 @@ fn cost(prediction: &Prediction) -> String {
         "{} {} and {}",
         prediction.method,
         duration(prediction.seconds),
-        memory_text(prediction.memory_bytes)
+        memory::in_words(prediction.memory_bytes)
     )
 }
 
@@ -143,15 +145,6 @@ fn duration(seconds: f64) -> String {
         ..0.1 => "less than 0.1 s".into(),
         ..100.0 => format!("{seconds:.1} s"),
         _ => format!("{:.0} min", seconds / 60.0),
-    }
-}
-
-/// A memory in words.
-pub fn memory_text(bytes: usize) -> String {
-    match bytes {
-        ..10_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
-        10_000_000..100_000_000 => format!("{:.0} MB", bytes as f64 / 1e6),
-        _ => format!("{:.2} GB", bytes as f64 / 1e9),
     }
 }
 

@@ -6,7 +6,8 @@ use kluft_scene::SolverEntry;
 use kluft_solver::{LinearFailure, Plan, Problem, Step, StepOutcome, StepRecord, System};
 use lie_core::{ClosureKind, FractureLaw, Rock};
 
-use crate::decisions::{memory_text, of_step};
+use crate::decisions::of_step;
+use crate::memory;
 use crate::ranks::Ranks;
 
 /// A solver that does not fit in memory, and what would.
@@ -23,7 +24,7 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
             format!(
                 "write linear = \"{}\" under [solver] ({}), or leave the choice to the program",
                 smaller.method,
-                memory_text(smaller.memory_bytes)
+                memory::in_words(smaller.memory_bytes)
             )
         },
     );
@@ -32,8 +33,8 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
         format!(
             "the {} solver needs {} with the estimate of errors, and may take {}",
             chosen.method,
-            memory_text(chosen.memory_bytes),
-            memory_text(limit)
+            memory::in_words(chosen.memory_bytes),
+            memory::in_words(limit)
         ),
         remedy,
     )
@@ -46,8 +47,8 @@ pub fn rank_too_large(ranks: Ranks<'_>, needed: usize, limit: usize) -> Defect {
          take {}",
         ranks.rank(),
         ranks.count(),
-        memory_text(needed),
-        memory_text(limit)
+        memory::in_words(needed),
+        memory::in_words(limit)
     );
     let remedy = "mesh coarser (a larger h), start fewer ranks of more threads (--threads) on each \
                   machine, or spread them over more machines";
@@ -227,7 +228,7 @@ pub fn flow_failure(failure: &LinearFailure) -> String {
         LinearFailure::OutOfMemory(bytes) => format!(
             "the solver of the flow asked for {} of memory more, and did not get them; mesh \
              fractures coarser (a larger h), or raise the limit (ulimit -v, container)",
-            memory_text(*bytes)
+            memory::in_words(*bytes)
         ),
         LinearFailure::NotFinite => {
             "a number of the flow is not finite; check the units of apertures, viscosity, pressures \
@@ -250,7 +251,7 @@ pub fn linear_failure(problem: &Problem, system: &System<'_>, failure: &LinearFa
         LinearFailure::OutOfMemory(bytes) => format!(
             "the linear solver asked for {} of memory more, and did not get them; mesh coarser (a \
              larger h), run on fewer threads, or raise the limit (ulimit -v, container)",
-            memory_text(*bytes)
+            memory::in_words(*bytes)
         ),
         LinearFailure::Indefinite(row) => {
             let node = system.discretisation().points().node[*row] as usize;

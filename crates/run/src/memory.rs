@@ -161,11 +161,26 @@ impl System {
     }
 }
 
+/// A memory in words.
+pub fn in_words(bytes: usize) -> String {
+    match bytes {
+        ..10_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        10_000_000..100_000_000 => format!("{:.0} MB", bytes as f64 / 1e6),
+        _ => format!("{:.2} GB", bytes as f64 / 1e9),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const GIB: usize = 1 << 30;
+
+    #[test]
+    fn memories_are_told_in_units_that_leave_digits() {
+        let told = [640_000, 57_600_000, 1_250_000_000].map(in_words);
+        assert_eq!(told, ["0.6 MB", "58 MB", "1.25 GB"]);
+    }
 
     /// A system that tells this, on a machine that has 8 GiB left.
     fn available(files: &[(&str, &str)]) -> Option<usize> {

@@ -89,9 +89,9 @@ fn check_memory(
         return Ok(());
     }
     let problem = format!(
-        "the mesh needs at least {:.1} MB of memory {what}, and this process may take {:.1} MB",
-        needed as f64 / 1e6,
-        available as f64 / 1e6
+        "the mesh needs at least {} of memory {what}, and this process may take {}",
+        memory::in_words(needed),
+        memory::in_words(available)
     );
     let remedy = "mesh coarser (a larger h), refine less often, or raise the limit of memory \
                   (ulimit -v, container)";

@@ -202,6 +202,17 @@ fn loads_are_values() {
     assert_eq!(pressure("b"), None);
 }
 
+/// Of the second nothing would be seen.
+#[test]
+fn one_law_under_two_labels_is_refused() {
+    let twice = "[study]\nclosures = ['linear', { label = 'other', closure = 'linear' }]\n";
+    let defects = read(twice).expect_err("one law");
+    assert!(
+        defects[0].problem.contains("\"linear\" and \"other\""),
+        "{defects:?}"
+    );
+}
+
 #[test]
 fn slips_are_found_before_anything_is_run() {
     for (study, named) in [

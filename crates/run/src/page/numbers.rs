@@ -2,6 +2,7 @@
 
 use kluft_report::{Page, Table};
 
+use crate::memory;
 use crate::permeability_summary::PermeabilitySummary;
 use crate::summary::{StepSummary, Summary};
 
@@ -178,7 +179,7 @@ pub fn add_provenance(page: &mut Page, summary: &Summary) {
     let machine = &made.machine;
     let memory = machine
         .memory_bytes
-        .map(|bytes| format!(", {:.1} GB", bytes as f64 / 1e9));
+        .map(|bytes| format!(", {}", memory::in_words(bytes)));
     terms.push((
         "machine",
         format!(
@@ -189,10 +190,12 @@ pub fn add_provenance(page: &mut Page, summary: &Summary) {
             machine.system
         ),
     ));
-    let megabytes = |bytes: u64| format!("{:.0} MB", bytes as f64 / 1e6);
     terms.push((
         "memory",
-        format!("{} at most", megabytes(summary.peak_memory_bytes)),
+        format!(
+            "{} at most",
+            memory::in_words(summary.peak_memory_bytes as usize)
+        ),
     ));
     let seconds = &summary.seconds;
     terms.push((
