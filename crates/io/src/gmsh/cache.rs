@@ -6,7 +6,7 @@
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,10 @@ const MESH: &str = "mesh.msh";
 const RECORD: &str = "record.json";
 /// Of all meshes together (bytes).
 const LARGEST: u64 = 8 << 30;
+/// Begins the name of a folder until what it keeps is whole.
+const UNFINISHED: &str = ".unfinished-";
+/// No mesh takes longer to be copied.
+const LONGEST_COPY: Duration = Duration::from_secs(24 * 3600);
 
 /// A folder of meshes that gmsh has made.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,7 +88,7 @@ impl MeshCache {
     pub(super) fn keep(&self, key: Fingerprint, mesh: &Path, about: Record) -> io::Result<()> {
         make_private(&self.folder)?;
         let unfinished = tempfile::Builder::new()
-            .prefix(".unfinished-")
+            .prefix(UNFINISHED)
             .tempdir_in(&self.folder)?;
         let copy = unfinished.path().join(MESH);
         fs::copy(mesh, &copy)?;
@@ -118,6 +122,9 @@ impl MeshCache {
         let mut all = Vec::new();
         for entry in fs::read_dir(&self.folder)? {
             let place = entry?.path();
+            if is_left_behind(&place) {
+                let _ = fs::remove_dir_all(&place);
+            }
             // Another process may remove one at any time.
             let asked = fs::metadata(place.join(RECORD)).and_then(|file| file.modified());
             let size = fs::metadata(place.join(MESH)).map(|file| file.len());
@@ -149,6 +156,14 @@ fn make_private(folder: &Path) -> io::Result<()> {
 
 fn written(sum: Fingerprint) -> String {
     format!("{sum:032x}")
+}
+
+/// Whether a process died while it kept a mesh there.
+fn is_left_behind(place: &Path) -> bool {
+    let name = place.file_name().unwrap_or_default().to_string_lossy();
+    let begun = fs::metadata(place).and_then(|folder| folder.modified());
+    let age = begun.ok().and_then(|begun| begun.elapsed().ok());
+    name.starts_with(UNFINISHED) && age.is_some_and(|age| age > LONGEST_COPY)
 }
 
 #[cfg(test)]

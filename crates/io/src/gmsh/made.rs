@@ -6,7 +6,7 @@ use std::path::Path;
 
 use kluft_mesh::{Defect, cell_defects};
 
-use super::options::{Dimension, NOT_MESHED};
+use super::options::{Dimension, NOT_MESHED, WITHOUT_VOLUMES};
 use crate::msh::{holds_elements, read_msh};
 
 /// gmsh answers with success and a file also when it has found nothing to mesh, or when the disk is
@@ -47,7 +47,11 @@ pub(super) fn check_made(
         return Ok(());
     }
     let problem = format!("the mesh that gmsh made holds no {what}");
-    Err(Defect::new(place, problem, remedy))
+    let defect = Defect::new(place, problem, remedy);
+    Err(match dimension {
+        Dimension::Volumes => defect.with_code(WITHOUT_VOLUMES),
+        Dimension::Surfaces => defect,
+    })
 }
 
 /// Whether every cell has a volume of its own.

@@ -30,10 +30,14 @@ use kluft_mesh::Defect;
 use crate::msh::bytes_of;
 pub use cache::MeshCache;
 use ending::{cannot_start, judge};
+pub use ingredients::geometry_fingerprint;
 use log::IN_A_MESH;
 pub use meshing::mesh_geometry;
 use meshing::{MADE, QUIETLY};
-pub use options::{Dimension, GmshOptions, Launcher, Meshed, Meshing, NOT_MESHED, NOT_STARTED};
+pub use options::{
+    Dimension, GmshOptions, Launcher, Meshed, Meshing, NOT_MESHED, NOT_STARTED, WITHOUT_VOLUMES,
+};
+pub use parameters::constants;
 use review::reviewed;
 use run::{Gmsh, Scope, path_argument};
 pub use size_field::write_size_field;

@@ -93,6 +93,9 @@ pub const NOT_STARTED: u8 = 125;
 /// Code of a defect that lies with the machine, not with the input: time or space ran out.
 pub const NOT_MESHED: &str = "not meshed";
 
+/// Code of a defect: volumes were asked for, and the geometry has none.
+pub const WITHOUT_VOLUMES: &str = "without volumes";
+
 impl GmshOptions {
     /// Whether gmsh can do no harm whatever the geometry says.
     pub(super) fn confines(&self) -> bool {

@@ -20,6 +20,17 @@ pub(super) fn check(place: &str, script: &str, parameters: &[(String, f64)]) -> 
     parameters.iter().filter_map(check_one).collect()
 }
 
+/// The names in `DefineConstant[...]` that a caller may set, with their defaults, as far as those
+/// are plain numbers.
+pub fn constants(script: &str) -> Vec<(String, f64)> {
+    let (_, bodies) = take_declarations(&without_comments(script));
+    let script = Script::parse(script);
+    let all = bodies.iter().flat_map(|body| declarations(body));
+    all.filter_map(with_default)
+        .filter(|(name, value)| script.objection(name, *value).is_none())
+        .collect()
+}
+
 /// A script without comments, taken apart.
 struct Script {
     /// Names in `DefineConstant[...]`.
@@ -171,20 +182,34 @@ fn bracketed(text: &str) -> usize {
     text.len()
 }
 
-/// The names before each `=` of `a = 1, b = {2, Name "b"}, c`.
-fn declared_names(body: &str) -> Vec<String> {
+/// The parts of `a = 1, b = {2, Name "b"}, c`; gmsh asks for no comma behind a brace.
+fn declarations(body: &str) -> impl Iterator<Item = &str> {
     let mut depth = 0_i32;
-    let separates = |character: char| {
+    let separates = move |character: char| {
         match character {
             '{' | '(' | '[' => depth += 1,
             '}' | ')' | ']' => depth -= 1,
             _ => {}
         }
-        character == ',' && depth == 0
+        matches!(character, ',' | '}') && depth == 0
     };
-    let items = body.split(separates);
+    body.split(separates)
+}
+
+/// The names before each `=` of declarations.
+fn declared_names(body: &str) -> Vec<String> {
     let name = |item: &str| item.split('=').next().unwrap_or_default().trim().to_owned();
-    items.map(name).filter(|name| !name.is_empty()).collect()
+    let names = declarations(body).map(name);
+    names.filter(|name| !name.is_empty()).collect()
+}
+
+/// The name and the number of `a = 1` or `b = {2, Name "b"}`.
+fn with_default(item: &str) -> Option<(String, f64)> {
+    let (name, value) = item.split_once('=')?;
+    let value = value.trim_start().trim_start_matches('{');
+    let number: f64 = value.split([',', '}']).next()?.trim().parse().ok()?;
+    let name = name.trim();
+    (number.is_finite() && !name.is_empty()).then(|| (name.to_owned(), number))
 }
 
 /// Whether `word` occurs and is not part of a longer name.
@@ -253,6 +278,17 @@ mod tests {
     }
 
     #[test]
+    fn constants_are_those_with_a_number_that_may_be_set() {
+        let script = "DefineConstant[\n h = {0.02, Name \"h, 3\"}, // size\n half = -20,\n\
+                      w = half / 2, n, Name = \"a\", inf = inf, fixed = 1\n];\nfixed = 2;\n\
+                      DefineConstant[\n a = {3, Name \"a\"}\n b = {4, Name \"b\"}\n];\n";
+        let expected = [("h", 0.02), ("half", -20.0), ("a", 3.0), ("b", 4.0)];
+        let expected = expected.map(|(name, value)| (name.to_owned(), value));
+        assert_eq!(constants(script), expected);
+        assert!(constants("x = 1; // DefineConstant[ h = 1 ];").is_empty());
+    }
+
+    #[test]
     fn broken_scripts_do_not_panic() {
         for script in [
             "DefineConstant[",
@@ -265,6 +301,7 @@ mod tests {
         ] {
             let _ = objection(script, "h");
             let _ = objection(script, "");
+            let _ = constants(script);
         }
     }
 }

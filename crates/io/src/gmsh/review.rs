@@ -61,7 +61,7 @@ pub(super) fn folder_of(file: &Path) -> PathBuf {
 
 /// Reviews a file that gmsh is to open, with all files that it names. If gmsh is confined, names
 /// that are computed are no defects: it finds out itself that it may not open them.
-fn review(file: &Path, is_confined: bool) -> Review {
+pub(super) fn review(file: &Path, is_confined: bool) -> Review {
     let mut walk = Walk {
         is_confined,
         ..Walk::default()
