@@ -89,6 +89,39 @@ fn an_abaqus_file_with_cohesive_elements_runs() {
     joint_carries_the_load("cubes.inp", CUBES, "joint");
 }
 
+/// The joint as gmsh writes a physical surface: in a set of its own, and in that of the surface of
+/// the geometry.
+#[test]
+fn a_fracture_that_gmsh_names_twice_is_one() {
+    let text = CUBES
+        .replace("2, 15, 16, 17, 18,", "2, 5, 6, 7, 8,")
+        .replace(
+            "TYPE=COH3D8, ELSET=joint\n3, 5, 6, 7, 8, 15, 16, 17, 18",
+            "TYPE=CPS4, ELSET=Surface13\n3, 5, 6, 7, 8\n*ELSET,ELSET=fault\n3, ",
+        );
+    joint_carries_the_load("gmsh.inp", &text, "fault");
+    let (workshop, run) = imported("gmsh.inp", &text);
+    let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("`Surface13` (`fault`)"), "{said}");
+    let scene = fs::read_to_string(workshop.path("made/scene.toml")).expect("a scene");
+    assert_eq!(scene.matches("[fracture.").count(), 1, "{scene}");
+}
+
+/// A range that no memory holds, and sets named in another case than where they are defined.
+#[test]
+fn ranges_and_names_of_sets_are_those_of_abaqus() {
+    let text = CUBES
+        .replace(
+            "*STEP",
+            "*ELSET, ELSET=all, GENERATE\n1,18446744073709551615\n*STEP",
+        )
+        .replace(
+            "*SURFACE, NAME=lid\n2,",
+            "*ELSET, ELSET=Upper\n2\n*SURFACE, NAME=lid\nUPPER,",
+        );
+    joint_carries_the_load("cubes.inp", &text, "joint");
+}
+
 #[test]
 fn a_grid_of_the_plane_with_materials_runs() {
     joint_carries_the_load("grid.vtu", GRID, "surface-7");
@@ -106,10 +139,27 @@ fn what_is_not_taken_over_is_named_and_what_cannot_be_read_is_refused() {
     assert!(run.out.contains("porosity"), "{}", run.out);
     for (name, text, says) in [
         ("mesh.med", "", "meshio convert"),
-        ("grid.vtu", "<VTKFile", "cannot be read"),
+        ("grid.vtu", "<VTKFile", "VTK reader understands: it is cut"),
+        ("grid.vtu", "words", "VTK reader understands: it has no"),
+        ("grid.vtu", "words", "ParaView or meshio"),
+        (
+            "grid.vtu",
+            &GRID.replace("0 0 0 1 0 0", "0 0 nan 1 0 0"),
+            "finite numbers: 0",
+        ),
         ("grid.vtu", &GRID.replace("9 9 3", "9 9 7"), "types 7"),
         ("a.inp", "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "not there"),
         ("a.inp", "no mesh", "it has no cells and no surfaces"),
+        (
+            "a.inp",
+            &format!("{CUBES}*ELSET, ELSET=all, GENERATE\n1\n"),
+            "`1` is no range of elements",
+        ),
+        (
+            "a.inp",
+            &CUBES.replace("2, S2", "rocks, S2"),
+            "did you mean `rock`?",
+        ),
     ] {
         let (_, run) = imported(name, text);
         assert_eq!(run.code, Some(2), "{}", run.err);

@@ -97,6 +97,11 @@ fn structural_damage_names_the_place() {
             "2 7 2 18446744073709551615",
             "is 18446744073709551615",
         ),
+        (
+            "2 7 2 1\n",
+            "1 7 2 1\n",
+            "curve 7: 1 elements are of gmsh type 2",
+        ),
         ("3 3 0 4", "3 3 2 4", "parametric flag 2"),
         ("0 0 1 1\n7", "0 0 9 1\n7", "entities"),
         ("$EndElements", "", "cut off"),

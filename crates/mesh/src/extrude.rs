@@ -79,12 +79,9 @@ impl Draft {
             true => vec![0.0, THICKNESS, THICKNESS / 2.0],
             false => vec![0.0, THICKNESS],
         };
-        let below = std::mem::take(&mut self.nodes);
-        self.nodes = Vec::with_capacity(heights.len() * below.len());
-        for height in &heights {
-            let raised = below.iter().map(|[x, y, z]| [*x, *y, z + height]);
-            self.nodes.extend(raised);
-        }
+        let on_plane = flat.elements.nodes.first();
+        let elevation = on_plane.map_or(0.0, |&node| self.nodes[node as usize][2]);
+        self.nodes = raised_to(&heights, elevation, &self.nodes);
         self.node_tags = self.node_tags.repeat(heights.len());
         for group in self.groups.iter_mut().filter(|group| group.dimension > 0) {
             group.dimension += 1;
@@ -92,4 +89,14 @@ impl Draft {
         self.is_extruded = true;
         self
     }
+}
+
+/// Nodes of a plane at heights above it (m). All have its `elevation`: rounding in that of the
+/// nodes would tilt the faces of the cells.
+fn raised_to(heights: &[f64], elevation: f64, nodes: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let layer = |height: &f64| {
+        let z = elevation + height;
+        nodes.iter().map(move |[x, y, _]| [*x, *y, z])
+    };
+    heights.iter().flat_map(layer).collect()
 }

@@ -9,6 +9,7 @@ use kluft_mesh::Defect;
 
 use super::abaqus_mesh::build;
 use super::abaqus_model::{Element, Kind, Model, kind_of};
+use super::abaqus_sets::Member;
 use super::imported::Imported;
 
 /// Reads the text of an Abaqus input file; `source` names it in messages.
@@ -37,7 +38,10 @@ pub fn parse_abaqus(text: &str, source: &str) -> Result<Imported, Vec<Defect>> {
         }
     }
     if file.defects.is_empty() {
-        build(&file.model, source)
+        file.check_members();
+    }
+    if file.defects.is_empty() {
+        build(&file.model, source).map(Imported::without_copies)
     } else {
         Err(file.defects)
     }
@@ -82,46 +86,43 @@ impl File<'_> {
                 (key.trim().to_uppercase(), value.to_owned())
             })
             .collect();
+        let text = |key: &str| parameters.get(key).cloned().unwrap_or_default();
         match name.as_str() {
             "NODE" => Some(Section::Nodes),
-            "ELEMENT" => {
-                let kind = parameters
-                    .get("TYPE")
-                    .map(String::as_str)
-                    .unwrap_or_default();
-                match kind_of(kind) {
-                    Some(kind) => Some(Section::Elements {
-                        kind,
-                        set: parameters.get("ELSET").cloned(),
-                        begun: Vec::new(),
-                    }),
-                    None => {
-                        let remedy = "mesh with tetrahedra, hexahedra, wedges or pyramids (C3D4, \
-                                      C3D8, C3D6, C3D5 and their quadratic forms), or plane \
-                                      strain elements";
-                        self.refuse(
-                            line,
-                            format!("elements of type `{kind}` cannot be used"),
-                            remedy,
-                        );
-                        None
-                    }
-                }
+            "ELEMENT" => self.elements(&text("TYPE"), parameters.get("ELSET").cloned(), line),
+            "ELSET" => {
+                let name = text("ELSET");
+                self.model.sets.define(&name);
+                Some(Section::Set {
+                    name,
+                    is_range: parameters.contains_key("GENERATE"),
+                })
             }
-            "ELSET" => Some(Section::Set {
-                name: parameters.get("ELSET").cloned().unwrap_or_default(),
-                is_range: parameters.contains_key("GENERATE"),
-            }),
-            "SURFACE" => {
-                let name = parameters.get("NAME").cloned().unwrap_or_default();
-                self.model.surfaces.push((name, Vec::new()));
-                Some(Section::Surface(self.model.surfaces.len() - 1))
-            }
+            "SURFACE" => Some(Section::Surface(self.model.surface(&text("NAME")))),
             _ => {
                 self.model.ignored.insert(name);
                 None
             }
         }
+    }
+
+    /// Begins elements of a type, which belong to a set if it is given.
+    fn elements(&mut self, name: &str, set: Option<String>, line: usize) -> Option<Section> {
+        let Some(kind) = kind_of(name) else {
+            let problem = format!("elements of type `{name}` cannot be used");
+            let remedy = "mesh with tetrahedra, hexahedra, wedges or pyramids (C3D4, C3D8, C3D6, \
+                          C3D5 and their quadratic forms), or plane strain elements";
+            self.refuse(line, problem, remedy);
+            return None;
+        };
+        if let Some(set) = &set {
+            self.model.sets.define(set);
+        }
+        Some(Section::Elements {
+            kind,
+            set,
+            begun: Vec::new(),
+        })
     }
 
     fn data(&mut self, section: &mut Section, line: &str, number: usize) {
@@ -130,10 +131,10 @@ impl File<'_> {
             .split(',')
             .map(str::trim)
             .collect();
-        let whole: Option<Vec<u64>> = words.iter().map(|word| word.parse().ok()).collect();
         match section {
             Section::Nodes => self.node(&words, number),
             Section::Elements { kind, set, begun } => {
+                let whole: Option<Vec<u64>> = words.iter().map(|word| word.parse().ok()).collect();
                 let Some(whole) = whole else {
                     let problem = format!("`{line}` is no element");
                     return self.refuse(number, problem, "write the numbers of element and nodes");
@@ -143,35 +144,59 @@ impl File<'_> {
                     return;
                 }
                 let numbers = std::mem::take(begun);
-                self.element(*kind, set.clone(), &numbers, number);
+                self.element(*kind, set.as_deref(), &numbers, number);
             }
-            Section::Set { name, is_range } => {
-                let own = match (whole.as_deref(), *is_range) {
-                    (Some(&[first, last]), true) => (first..=last).collect(),
-                    (Some(&[first, last, step]), true) => {
-                        (first..=last).step_by(step.max(1) as usize).collect()
-                    }
-                    (Some(numbers), false) => numbers.to_vec(),
-                    _ => {
-                        let sets = words.iter().filter_map(|word| self.model.sets.get(*word));
-                        sets.flatten().copied().collect()
-                    }
-                };
-                self.model.sets.entry(name.clone()).or_default().extend(own);
+            Section::Set { name, is_range } => match *is_range {
+                true => self.range(name, &words, number),
+                false => self.members(name, &words, number),
+            },
+            Section::Surface(index) => self.face(*index, &words, number),
+        }
+    }
+
+    /// Adds a range of elements to a set.
+    fn range(&mut self, set: &str, words: &[&str], line: usize) {
+        match Member::range(words) {
+            Some(range) => self.model.sets.define(set).add(range),
+            None => {
+                let problem = format!("`{}` is no range of elements", words.join(", "));
+                let remedy = "write the first number, the last and the increment, or list the \
+                              numbers without GENERATE";
+                self.refuse(line, problem, remedy);
             }
-            Section::Surface(index) => {
-                let face = words.get(1).and_then(|face| face.strip_prefix(['S', 's']));
-                match (words.first(), face.and_then(|face| face.parse().ok())) {
-                    (Some(of), Some(face)) => {
-                        self.model.surfaces[*index].1.push(((*of).to_owned(), face))
-                    }
-                    _ => {
-                        self.model
-                            .ignored
-                            .insert("SURFACE of nodes or shells".to_owned());
-                    }
-                }
+        }
+    }
+
+    /// Adds elements and other sets to a set.
+    fn members(&mut self, set: &str, words: &[&str], line: usize) {
+        let set = self.model.sets.define(set);
+        for word in words.iter().filter(|word| !word.is_empty()) {
+            set.add(Member::of(word, line));
+        }
+    }
+
+    /// Adds a face of an element, or of all elements of a set, to a surface.
+    fn face(&mut self, surface: usize, words: &[&str], line: usize) {
+        let face = words.get(1).and_then(|face| face.strip_prefix(['S', 's']));
+        match (
+            words.first(),
+            face.and_then(|face| face.parse::<usize>().ok()),
+        ) {
+            (Some(of), Some(face)) => {
+                let faces = &mut self.model.surfaces[surface].faces;
+                faces.push((Member::of(of, line), face));
             }
+            _ => {
+                let what = "SURFACE of nodes or shells".to_owned();
+                self.model.ignored.insert(what);
+            }
+        }
+    }
+
+    /// Refuses members that are neither numbers nor sets.
+    fn check_members(&mut self) {
+        for (line, [problem, remedy]) in self.model.unknown_members() {
+            self.refuse(line, problem, &remedy);
         }
     }
 
@@ -194,7 +219,7 @@ impl File<'_> {
         }
     }
 
-    fn element(&mut self, kind: Kind, set: Option<String>, numbers: &[u64], line: usize) {
+    fn element(&mut self, kind: Kind, set: Option<&str>, numbers: &[u64], line: usize) {
         let Some((&tag, nodes)) = numbers.split_first() else {
             return;
         };
@@ -215,7 +240,7 @@ impl File<'_> {
             self.refuse(line, format!("element {tag} stands twice"), remedy);
         }
         if let Some(set) = set {
-            self.model.sets.entry(set).or_default().push(tag);
+            self.model.sets.define(set).add(Member::element(tag));
         }
     }
 }

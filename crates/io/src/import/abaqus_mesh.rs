@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use kluft_mesh::{Defect, DisjointSets, Draft, Group, Shape, TaggedElements, sample};
 
-use super::abaqus_model::{Kind, Model, face_corners};
+use super::abaqus_model::{Kind, Model, Surface, face_corners};
 use super::imported::Imported;
 use super::vtk_order::from_vtk;
 
@@ -78,8 +78,8 @@ struct Made<'a> {
 impl<'a> Made<'a> {
     fn new(model: &'a Model, index: BTreeMap<u64, u32>, root: &'a dyn Fn(u64) -> u64) -> Self {
         let mut sets_of: BTreeMap<u64, Vec<&str>> = BTreeMap::new();
-        for (name, elements) in &model.sets {
-            for &element in elements {
+        for (name, elements) in model.sets.named(&model.elements) {
+            for element in elements {
                 sets_of.entry(element).or_default().push(name);
             }
         }
@@ -159,25 +159,20 @@ impl<'a> Made<'a> {
 
     fn add_surfaces(&mut self) {
         let model = self.model;
-        let mut next = model.elements.keys().max().map_or(1, |tag| tag + 1);
-        for (name, faces) in &model.surfaces {
-            let set = self.set(&[name], 2);
-            let before = self.draft.facets.elements.len();
-            for (of, face) in faces {
-                let own = match (of.parse::<u64>(), model.sets.get(of)) {
-                    (Ok(element), _) => vec![element],
-                    (_, Some(elements)) => elements.clone(),
-                    _ => Vec::new(),
-                };
-                for element in own {
-                    if let Some((shape, nodes)) = self.face(element, *face) {
-                        self.push(next, shape, &nodes, set);
-                        next += 1;
-                    }
+        let last = model.elements.keys().max().copied().unwrap_or(0);
+        let mut next = last.saturating_add(1);
+        for surface in &model.surfaces {
+            let set = self.set(&[&surface.name], 2);
+            let mut count = 0;
+            for (element, face) in faces_of(model, surface) {
+                if let Some((shape, nodes)) = self.face(element, face) {
+                    self.push(next, shape, &nodes, set);
+                    next = next.saturating_add(1);
+                    count += 1;
                 }
             }
-            let count = self.draft.facets.elements.len() - before;
-            self.notes.push(format!("surface `{name}`: {count} faces"));
+            let note = format!("surface `{}`: {count} faces", surface.name);
+            self.notes.push(note);
         }
     }
 
@@ -201,4 +196,18 @@ impl<'a> Made<'a> {
             own.nodes.iter().map(|&n| nodes[n as usize]).collect(),
         ))
     }
+}
+
+/// The elements of a surface with numbers of their faces, each face once.
+fn faces_of(model: &Model, surface: &Surface) -> Vec<(u64, usize)> {
+    let mut seen = BTreeSet::new();
+    let mut faces = Vec::new();
+    for (of, face) in &surface.faces {
+        let elements = model
+            .sets
+            .elements(std::slice::from_ref(of), &model.elements);
+        let own = elements.into_iter().map(|element| (element, *face));
+        faces.extend(own.filter(|own| seen.insert(*own)));
+    }
+    faces
 }

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use kluft_mesh::Shape;
 
+use super::abaqus_sets::{Member, Sets};
+
 /// What becomes of an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
@@ -27,17 +29,47 @@ pub(super) struct Element {
     pub(super) nodes: Vec<u64>,
 }
 
+/// A surface.
+pub(super) struct Surface {
+    pub(super) name: String,
+    /// Elements, each with the number of its face.
+    pub(super) faces: Vec<(Member, usize)>,
+}
+
 /// Nodes, elements and sets by their numbers and names.
 #[derive(Default)]
 pub(super) struct Model {
     pub(super) nodes: BTreeMap<u64, [f64; 3]>,
     pub(super) elements: BTreeMap<u64, Element>,
-    /// Elements of each set.
-    pub(super) sets: BTreeMap<String, Vec<u64>>,
-    /// Surfaces: names, and faces as elements or sets with the number of the face.
-    pub(super) surfaces: Vec<(String, Vec<(String, usize)>)>,
+    pub(super) sets: Sets,
+    pub(super) surfaces: Vec<Surface>,
     /// Keywords that are passed over.
     pub(super) ignored: BTreeSet<String>,
+}
+
+impl Model {
+    /// The index of the surface of a name, whose case does not count; it is made if there is none.
+    pub(super) fn surface(&mut self, name: &str) -> usize {
+        let mut surfaces = self.surfaces.iter();
+        let known = surfaces.position(|surface| surface.name.eq_ignore_ascii_case(name));
+        known.unwrap_or_else(|| {
+            self.surfaces.push(Surface {
+                name: name.to_owned(),
+                faces: Vec::new(),
+            });
+            self.surfaces.len() - 1
+        })
+    }
+
+    /// Members that are neither numbers nor sets, by their lines: what is wrong, and a remedy.
+    pub(super) fn unknown_members(&self) -> Vec<(usize, [String; 2])> {
+        let faces = self.surfaces.iter().flat_map(|surface| &surface.faces);
+        let members = self.sets.members().chain(faces.map(|(of, _)| of));
+        let unknown = members.filter_map(|member| self.sets.unknown(member));
+        let mut unknown: Vec<(usize, [String; 2])> = unknown.collect();
+        unknown.sort();
+        unknown
+    }
 }
 
 /// The element of a type.

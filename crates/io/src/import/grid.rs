@@ -133,7 +133,7 @@ impl Cells {
                 self.others.join(", ")
             ));
         }
-        Ok(Imported { draft, notes })
+        Ok(Imported { draft, notes }.without_copies())
     }
 
     fn nodes_of(&self, cell: usize) -> &[u64] {
@@ -141,9 +141,27 @@ impl Cells {
         &self.nodes[start as usize..self.ends[cell] as usize]
     }
 
-    /// Cells of no shape that serves, or with another number of nodes. Vertices lie on nodes that
-    /// others have.
+    /// Points that are nowhere, counted from 0.
+    fn lost_points(&self) -> Vec<u64> {
+        let points = self.points.iter().zip(0..);
+        let lost = points.filter(|(point, _)| point.iter().any(|x| !x.is_finite()));
+        lost.map(|(_, number)| number).collect()
+    }
+
+    /// Points that are nowhere, cells of no shape that serves, or with another number of nodes.
+    /// Vertices lie on nodes that others have.
     fn unusable(&self, source: &str, shapes: &[Option<Shape>]) -> Option<Defect> {
+        let lost = self.lost_points();
+        if !lost.is_empty() {
+            return Some(Defect::new(
+                source,
+                format!(
+                    "coordinates of points are no finite numbers: {}",
+                    sample(&lost)
+                ),
+                "write the grid again with numbers in their place",
+            ));
+        }
         let odd = self.types.iter().zip(shapes);
         let odd = odd.filter(|(kind, shape)| shape.is_none() && **kind > 2);
         let mut odd: Vec<u64> = odd.map(|(kind, _)| u64::from(*kind)).collect();
@@ -203,4 +221,38 @@ fn group(draft: &mut Draft, dimension: usize, (material, highest): (i64, usize))
         draft.group_sets.push(vec![draft.groups.len() - 1]);
         draft.groups.len() - 1
     }) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const QUAD: &str = r#"<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">
+<Points><DataArray type="Float64" Name="Points" NumberOfComponents="3" format="ascii">
+0 0 0 2 0 0 2 4 0 0 4 0</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">9</DataArray></Cells>
+</Piece></UnstructuredGrid></VTKFile>"#;
+
+    #[test]
+    fn points_that_are_nowhere_are_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.vtu");
+        for (number, is_lost) in [("2.5", false), ("nan", true), ("-inf", true)] {
+            let text = QUAD.replace("2 4 0 0 4 0", &format!("2 4 0 0 {number} 0"));
+            std::fs::write(&file, text).expect("written");
+            let told = match read_grid(&file) {
+                Ok(_) => String::new(),
+                Err(defects) => defects[0].to_string(),
+            };
+            assert_eq!(
+                told.contains("finite numbers: 3\n"),
+                is_lost,
+                "{number}: {told}"
+            );
+            assert_eq!(told.is_empty(), !is_lost, "{number}: {told}");
+        }
+    }
 }

@@ -3,9 +3,11 @@
 mod abaqus;
 mod abaqus_mesh;
 mod abaqus_model;
+mod abaqus_sets;
 mod grid;
 mod imported;
 mod piece;
+mod same_surfaces;
 mod values;
 mod vtk_order;
 

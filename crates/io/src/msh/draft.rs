@@ -318,12 +318,16 @@ fn unknown_entities(survey: &FileSurvey) -> Option<Defect> {
     })
 }
 
-/// One defect for each element type of dimension 2 or 3 that has no shape here.
+/// One defect for each element type of dimension 2 or 3 that has no shape here, or lies on an
+/// entity of another dimension.
 fn unsupported_elements(survey: &FileSurvey, groups: &Groups) -> Vec<Defect> {
     let mut by_kind: BTreeMap<i32, Vec<&Block>> = BTreeMap::new();
-    let solid = |block: &&Block| block.entity.0 >= 2 && block.count > 0;
-    let fits =
-        |block: &Block| shape_of(block.kind).is_some_and(|s| s.dimension() == block.entity.0);
+    let solid = |block: &&Block| block.entity.0 >= 1 && block.count > 0;
+    let fits = |block: &Block| match shape_of(block.kind) {
+        Some(shape) => shape.dimension() == block.entity.0,
+        // Lines of any order may bound surfaces.
+        None => block.entity.0 == 1,
+    };
     for block in survey
         .blocks
         .iter()
