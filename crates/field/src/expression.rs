@@ -63,7 +63,15 @@ impl Expression {
             return Err([problem, format!("write numbers, {}", known())]);
         }
         let parsed = Parsed::parse(&calls::between(text)?).map_err(|error| {
-            let problem = format!("the expression cannot be read: {}", error.msg());
+            // Its parser counts operators and values.
+            let why = match error.msg() {
+                counts if counts.contains(" ops and ") => {
+                    "an operator between two values, or a value beside an operator or in a \
+                     function, is missing"
+                }
+                other => other,
+            };
+            let problem = format!("the expression cannot be read: {why}");
             [problem, format!("write numbers, {}", known())]
         })?;
         let mut variables = Vec::new();

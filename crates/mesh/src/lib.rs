@@ -76,5 +76,5 @@ pub use sectors::Sectors;
 pub use shape::{Face, Shape};
 pub use survey::{
     BlockSurvey, CellAngles, CellQuality, Contact, FractureSurvey, MeanOrientation, Survey,
-    UnresolvedPatch, cell_angles,
+    UnresolvedPatch, bearing, cell_angles,
 };

@@ -211,6 +211,13 @@ impl Mesh {
         original.is_none_or(|original| original[node as usize] == node)
     }
 
+    /// The node of a mesh of the plane in the layer below that a node moves with; the node itself
+    /// in a mesh in space.
+    pub fn layer_below(&self, node: u32) -> u32 {
+        let original = self.original.as_ref();
+        original.map_or(node, |original| original[node as usize])
+    }
+
     /// Multiplies all coordinates by a factor, as another unit of length does.
     ///
     /// # Panics

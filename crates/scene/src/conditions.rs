@@ -187,13 +187,12 @@ pub(crate) fn read_boundary(section: &Section<'_, '_>, setting: Setting) -> Opti
         "spring",
         "far_field",
     ];
-    let says_nothing = match setting.is_rigid() {
-        true => !section
-            .table()
-            .iter()
-            .any(|(key, _)| key.get_ref() != "where"),
-        false => fluid.is_none() && !names.into_iter().any(|name| section.has(name)),
-    };
+    // A place alone names a face, for probes and for other programs.
+    let says_nothing = !section.has("where")
+        && match setting.is_rigid() {
+            true => section.table().is_empty(),
+            false => fluid.is_none() && !names.into_iter().any(|name| section.has(name)),
+        };
     if says_nothing {
         section.refuse(
             "traction",

@@ -12,6 +12,7 @@ mod bind_fields;
 mod bind_flow;
 mod bind_probes;
 mod bind_rocks;
+mod bisected_curves;
 mod cases;
 mod conditions;
 mod conduit;

@@ -132,9 +132,12 @@ fn remedy(entry: &FieldEntry) -> &'static str {
             "add rows that reach there, or write beyond = \"nearest\"; a value out of range needs \
              other rows"
         }
+        kluft_solver::Field::Samples(_) if entry.reach.is_some() => {
+            "add samples there, or raise `reach`; a value out of range needs other samples"
+        }
         kluft_solver::Field::Samples(_) => {
-            "add samples there; beyond = \"nearest\" goes on with the last values, a larger reach \
-             bridges gaps; a value out of range needs other samples"
+            "add samples there, or write beyond = \"nearest\", which goes on with the last values; \
+             a value out of range needs other samples"
         }
         _ => "let the expression have a value in range there: max(a, b) and min(a, b) bound it",
     }

@@ -116,9 +116,11 @@ fn read_lines(section: &Section<'_, '_>) -> Option<Vec<DVec3>> {
         ),
         false => ([0.0; 3], 1),
     };
-    if count * rows > MOST_POINTS {
-        let problem = format!("the probe has {} points", count * rows);
+    let points = count.saturating_mul(rows);
+    if points > MOST_POINTS {
+        let problem = format!("the probe has {points} points");
         section.refuse("count", problem, format!("write at most {MOST_POINTS}"));
+        return None;
     }
     let (from, to) = (DVec3::from(from?), DVec3::from(to?));
     if from == to {

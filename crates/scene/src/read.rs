@@ -7,6 +7,7 @@ use kluft_keys::{Document, Range};
 use kluft_mesh::Defect;
 use lie_core::FacetQuadrature;
 
+use crate::bisected_curves::refuse_bisected_curves;
 use crate::conditions::{BodyEntry, FixedPointEntry, read_body, read_boundary, read_fixed_point};
 use crate::fluid::{FluidEntry, SourceEntry, fluid_use, read_fluid, read_source};
 use crate::fracture::read_placed_fracture;
@@ -145,6 +146,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
     let probe = |(name, s)| entry(source, name, s, |s| read_probe(s, setting));
     let oracle = |(name, s)| entry(source, name, s, oracle::read);
     let flowing = read_flow(root, &body);
+    refuse_bisected_curves(root, mesh.source.as_ref());
     Some(Scene {
         oracles: named("oracle").filter_map(oracle).collect(),
         probes: named("probe").filter_map(probe).collect(),

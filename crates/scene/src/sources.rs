@@ -59,8 +59,8 @@ impl Drilling<'_> {
         };
         match &entry.value.place {
             SourcePlace::At { at, radius } => {
-                let place = self.well(entry, (*at, *radius), decisions)?;
-                Ok(vec![condition(place)])
+                let node = self.well(entry, *at, decisions)?;
+                Ok(vec![condition(self.open_at(node, *radius, lines))])
             }
             SourcePlace::Fracture(name) => {
                 let fracture = self.fracture(entry, name)?;
@@ -77,7 +77,7 @@ impl Drilling<'_> {
                 Ok(vec![condition(FlowPlace::Line(lines.len() - 1))])
             }
             SourcePlace::Along { from, to, radius } => {
-                self.borehole(entry, ([*from, *to], *radius), decisions)
+                self.borehole(entry, ([*from, *to], *radius), (lines, decisions))
             }
         }
     }
@@ -163,7 +163,28 @@ impl Drilling<'_> {
                  rest does nothing"
             ));
         }
-        Ok(found.shares)
+        Ok(self.through_layers(found.shares))
+    }
+
+    /// The shares of a line in both layers of nodes of a mesh of the plane.
+    fn through_layers(&self, shares: Vec<LineShare>) -> Vec<LineShare> {
+        if !self.mesh.is_plane() {
+            return shares;
+        }
+        let elements = &self.mesh.facets.elements;
+        let of_share = |share: LineShare| {
+            let below = self.mesh.layer_below(share.node);
+            let facet = share.facet as usize;
+            let corners = &elements.nodes_of(facet)[..elements.shapes[facet].corner_count()];
+            let both = corners.iter().copied();
+            let both = both.filter(move |&node| self.mesh.layer_below(node) == below);
+            both.map(move |node| LineShare {
+                node,
+                length: 0.5 * share.length,
+                ..share
+            })
+        };
+        shares.into_iter().flat_map(of_share).collect()
     }
 
     /// A borehole through all fractures that it crosses: one pressure is hydrostatic along it,
@@ -173,7 +194,7 @@ impl Drilling<'_> {
         &self,
         entry: &Named<SourceEntry>,
         (ends, radius): ([DVec3; 2], f64),
-        decisions: &mut Vec<String>,
+        (lines, decisions): (&mut Vec<Vec<LineShare>>, &mut Vec<String>),
     ) -> Result<Vec<FlowCondition>, Defect> {
         let crossings = self.crossings(ends);
         let drive = entry.value.drive.resolved(self.weight);
@@ -204,15 +225,12 @@ impl Drilling<'_> {
             .map(|one| self.cubed(one.fracture))
             .collect();
         let whole: f64 = weights.iter().sum();
-        let condition = |(crossing, weight): (&Crossing, f64)| FlowCondition {
+        let mut condition = |(crossing, weight): (&Crossing, f64)| FlowCondition {
             name: format!(
                 "{} through {}",
                 entry.name, self.mesh.fractures[crossing.fracture as usize]
             ),
-            place: FlowPlace::Well {
-                node: crossing.node,
-                radius,
-            },
+            place: self.open_at(crossing.node, radius, lines),
             drive: match &drive {
                 FlowDrive::Rate(rate) => FlowDrive::Rate(rate * weight / whole),
                 leakoff @ FlowDrive::Leakoff(_) => leakoff.clone(),
@@ -225,7 +243,7 @@ impl Drilling<'_> {
             },
             case: self.case,
         };
-        Ok(crossings.iter().zip(weights).map(condition).collect())
+        Ok(crossings.iter().zip(weights).map(&mut condition).collect())
     }
 
     /// Cube of the hydraulic aperture of a fracture without load (m^3).
@@ -301,13 +319,37 @@ impl Drilling<'_> {
         })
     }
 
+    /// Where a borehole is open that meets fractures at a node. In the plane it is one along the
+    /// edge of the facets there: nothing flows around it, so that its radius does not matter.
+    fn open_at(&self, node: u32, radius: f64, lines: &mut Vec<Vec<LineShare>>) -> FlowPlace {
+        if !self.mesh.is_plane() {
+            return FlowPlace::Well { node, radius };
+        }
+        let facets = &self.mesh.facets;
+        let corners = |facet: usize| {
+            let count = facets.elements.shapes[facet].corner_count();
+            facets.elements.nodes_of(facet)[..count].iter().copied()
+        };
+        let all = (0..facets.elements.len()).filter(|&f| self.conducts(facets.fracture[f]));
+        let shares = all.flat_map(|facet| corners(facet).map(move |corner| (facet, corner)));
+        let own = self.mesh.layer_below(node);
+        let shares = shares.filter(|(_, corner)| self.mesh.layer_below(*corner) == own);
+        let share = |(facet, node): (usize, u32)| LineShare {
+            node,
+            facet: facet as u32,
+            length: 0.5,
+        };
+        lines.push(shares.map(share).collect());
+        FlowPlace::Line(lines.len() - 1)
+    }
+
     /// The node of a borehole at a place.
     fn well(
         &self,
         entry: &Named<SourceEntry>,
-        (at, radius): (DVec3, f64),
+        at: DVec3,
         decisions: &mut Vec<String>,
-    ) -> Result<FlowPlace, Defect> {
+    ) -> Result<u32, Defect> {
         let mesh = self.mesh;
         let facets = &mesh.facets;
         let conducts = |facet: &usize| self.conducts(facets.fracture[*facet]);
@@ -344,7 +386,7 @@ impl Drilling<'_> {
                 "{name}: no node of a fracture at {wanted}; {found} is taken instead"
             ));
         }
-        Ok(FlowPlace::Well { node, radius })
+        Ok(node)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reads samples from CSV files.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -68,6 +69,10 @@ impl SampleFile<'_> {
     fn text(&self) -> Result<String, Found> {
         match ordinary_text(self.path) {
             Ok(text) => Ok(text.trim_start_matches('\u{feff}').to_owned()),
+            Err(error) if error.kind() == ErrorKind::InvalidData => Err([
+                self.of_file("is no text in UTF-8"),
+                "save it as UTF-8".into(),
+            ]),
             Err(error) => Err([
                 self.of_file(&format!("cannot be read: {error}")),
                 "give the path of a CSV file, relative to the folder of the scene".into(),

@@ -53,6 +53,14 @@ pub enum ClosureKind {
     Own(OwnLaw),
 }
 
+impl ClosureKind {
+    /// Whether a large enough load pushes the walls through each other: the aperture may be
+    /// negative.
+    pub fn may_overlap(&self) -> bool {
+        matches!(self, Self::Linear | Self::Logarithmic { cutoff: Some(_) })
+    }
+}
+
 /// How far the walls of a fracture are apart, to full relative precision wherever that matters:
 /// the opening near the initial aperture, the aperture near closure.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

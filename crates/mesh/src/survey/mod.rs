@@ -15,7 +15,7 @@ use fractures::{FacetGeometry, add_facets, add_nodes};
 pub use blocks::BlockSurvey;
 pub use contacts::Contact;
 pub use fractures::FractureSurvey;
-pub use orientation::MeanOrientation;
+pub use orientation::{MeanOrientation, bearing};
 pub use patches::UnresolvedPatch;
 pub use quality::{CellAngles, CellQuality, cell_angles};
 

@@ -42,6 +42,13 @@ pub(super) fn of_fractures(
     orientations
 }
 
+/// Direction of a vector clockwise from north (degrees, from 0 on and below 360).
+pub fn bearing(east: f64, north: f64) -> f64 {
+    let bearing = east.atan2(north).to_degrees().rem_euclid(360.0);
+    // Of an angle just below 0 the remainder is 360 by rounding.
+    if bearing < 360.0 { bearing } else { 0.0 }
+}
+
 fn of_tensor(tensor: DMat3) -> MeanOrientation {
     let axis = leading_axis(tensor);
     let up = match [axis.z, axis.y, axis.x]
@@ -53,7 +60,7 @@ fn of_tensor(tensor: DMat3) -> MeanOrientation {
     };
     let level = up.truncate();
     let dip_direction = if level.length() > 1e-9 {
-        level.x.atan2(level.y).to_degrees().rem_euclid(360.0)
+        bearing(level.x, level.y)
     } else {
         0.0
     };
@@ -80,4 +87,16 @@ fn leading_axis(mut matrix: DMat3) -> DVec3 {
         .into_iter()
         .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
     longest.unwrap_or(DVec3::Z).normalize_or(DVec3::Z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bearings_lie_below_360_degrees() {
+        assert_eq!(bearing(1.0, 0.0), 90.0);
+        assert_eq!(bearing(-1.0, 0.0), 270.0);
+        assert_eq!(bearing(-1e-18, 1.0), 0.0);
+    }
 }

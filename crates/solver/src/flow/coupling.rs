@@ -51,6 +51,8 @@ pub struct Coupling<'a> {
     pub(super) push: Push,
     /// How each facet point conducts; none where nothing flows.
     hydraulic: Vec<Option<HydraulicAperture>>,
+    /// Whether the walls of each facet point may overlap.
+    may_overlap: Vec<bool>,
     /// Whether the flow takes time.
     pub(super) is_transient: bool,
     /// Networks that keep what they hold; none where the flow takes time.
@@ -153,6 +155,8 @@ impl<'a> Coupling<'a> {
             _ => None,
         };
         let facets = interface.points().iter().map(|point| point.facet);
+        let laws = interface.points().iter();
+        let laws = laws.map(|point| &interface.laws()[point.law as usize]);
         let areas = points.at_rows(&vec![1.0; apertures.len()]);
         let undrained = match is_transient {
             true => Vec::new(),
@@ -160,6 +164,7 @@ impl<'a> Coupling<'a> {
         };
         Ok(Self {
             hydraulic: facets.enumerate().map(conduit).collect(),
+            may_overlap: laws.map(|law| law.closure.kind.may_overlap()).collect(),
             areas,
             undrained,
             initial_volumes: points.at_rows(apertures),
@@ -294,11 +299,14 @@ impl<'a> Coupling<'a> {
     }
 
     /// Apertures to conduct with after an iteration that has led to `reached` from where fractures
-    /// conducted with `before` (m).
+    /// conducted with `before` (m). Walls that may overlap are where they are.
     pub(crate) fn conducting(&self, before: &[f64], reached: &[f64]) -> Vec<f64> {
-        let pairs = before.par_iter().zip(reached);
+        let pairs = before.par_iter().zip(reached).zip(&self.may_overlap);
         pairs
-            .map(|(before, reached)| reached.max(LEAST_SHARE * before))
+            .map(|((before, reached), may_overlap)| match may_overlap {
+                true => *reached,
+                false => reached.max(LEAST_SHARE * before),
+            })
             .collect()
     }
 

@@ -222,7 +222,8 @@ fn opens(trial: &TrialState, state: &FacetPointState) -> bool {
 }
 
 /// Moves a facet point, whose law is smooth, to where a linear solve has put its walls, but no
-/// closer than to a share of its aperture; returns its closure error (Pa).
+/// closer than to a share of its aperture if the law keeps them apart; returns its closure error
+/// (Pa).
 fn at_jump(
     law: &FractureLaw,
     point: &FacetPoint,
@@ -231,7 +232,8 @@ fn at_jump(
 ) -> f64 {
     let before = state.joint.separation;
     let least = LEAST_SHARE * before.aperture;
-    let separation = match trial.separation.aperture < least {
+    let is_too_close = trial.separation.aperture < least && !law.closure.kind.may_overlap();
+    let separation = match is_too_close {
         true => before.moved(least - before.aperture),
         false => trial.separation,
     };
