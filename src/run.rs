@@ -132,8 +132,8 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
         counted(summary.threads, "thread")
     );
     report.entry("took", &text);
-    if !summary.steps.is_empty() {
-        let rock = folder.join("rock.pvd");
+    let rock = folder.join("rock.pvd");
+    if rock.exists() {
         let fractures = folder.join("fractures.pvd");
         let text = format!("{} and {}", rock.display(), fractures.display());
         report.entry("open", &text);

@@ -26,6 +26,7 @@ use crate::printing;
 use crate::stdout::print;
 use kluft_run::{
     MESH, Output, RunFlow, folder_for, inputs, mesh_file, pool, read_mesh, thread_count,
+    unfinished_mesh_file,
 };
 use kluft_scene::{
     Binding, JoinedDraft, MeshSource, Scene, SurfaceMesh, bind, in_terms_of_scene, join,
@@ -119,8 +120,18 @@ fn read(
     let Some(scene) = scene else {
         return read_mesh(input, 0, &scratch, gmsh);
     };
-    let file = mesh_file(scene, output, None, gmsh, &mut ())?;
-    read_mesh(&file.path, scene.refine, &scratch, gmsh)
+    // The mesh beside results is theirs: an adapted one is not the one that the geometry asks for.
+    if !output.has_results() {
+        let file = mesh_file(scene, output, None, gmsh, &mut ())?;
+        return read_mesh(&file.path, scene.refine, &scratch, gmsh);
+    }
+    let file = unfinished_mesh_file(scene, output, None, gmsh, &mut ())?;
+    let draft = read_mesh(&file.path, scene.refine, &scratch, gmsh);
+    if file.meshed.is_some() {
+        // Were it to stay, the next command in this folder would remove it.
+        let _ = std::fs::remove_file(&file.path);
+    }
+    draft
 }
 
 /// Fills the inspection as far as the input allows; returns what is wrong with it.

@@ -166,8 +166,8 @@ fn closing_lines(report: &Report, outcome: &Outcome, folder: &Path) {
         memory::in_words(ranks.sum_of_peak_memory_bytes as usize)
     );
     report.entry("took", &text);
-    if !summary.steps.is_empty() {
-        let [rock, fractures] = ["rock.pvd", "fractures.pvd"].map(|name| folder.join(name));
+    let [rock, fractures] = ["rock.pvd", "fractures.pvd"].map(|name| folder.join(name));
+    if rock.exists() {
         let text = format!("{} and {}", rock.display(), fractures.display());
         report.entry("open", &text);
     }

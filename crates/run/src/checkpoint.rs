@@ -18,12 +18,12 @@ use twox_hash::XxHash3_128;
 use crate::choice::Choice;
 use crate::flow_summary::StepFlow;
 use crate::measure::Measure;
-use crate::summary::{FractureSummary, Seconds, StepFracture, StepMeasures};
+use crate::summary::{FractureSummary, MeshTrial, Seconds, StepFracture, StepMeasures};
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 15\n";
+const HEAD: &[u8] = b"kluft checkpoint 16\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -79,12 +79,25 @@ pub struct Progress<'a> {
     pub seconds: Seconds,
     /// Largest resident memory so far (bytes).
     pub peak_memory_bytes: u64,
+    /// Where its mesh came from, and what was decided.
+    pub origins: Origins,
     /// What the present stage of the body began with, if it is not the first.
     pub stage: Option<Cow<'a, StageEnd>>,
     /// Where the solver stands; none after the last load step, and in rigid rock.
     pub restart: Option<RestartState<'a>>,
     /// Where the flow in rigid rock stands; none after the last load step.
     pub flow_restart: Option<FlowRestart>,
+}
+
+/// What is told of a run once, at its beginning or on the way.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Origins {
+    /// The meshes on the way to the last one.
+    pub meshes: Vec<MeshTrial>,
+    /// What the program decided, in words.
+    pub decisions: Vec<String>,
+    /// Version of gmsh, if it made the mesh.
+    pub gmsh: Option<String>,
 }
 
 /// How a flow in rigid rock goes on.
@@ -338,6 +351,7 @@ mod tests {
             measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,
+            origins: Origins::default(),
             stage: None,
             restart: None,
             flow_restart: None,

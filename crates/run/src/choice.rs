@@ -28,11 +28,6 @@ impl Choice {
         self.why.first().map_or("", String::as_str)
     }
 
-    /// Why others took its place.
-    pub fn later_reasons(&self) -> &[String] {
-        self.why.get(1..).unwrap_or_default()
-    }
-
     /// Learns from a load step that continued a path: its linear solves and linear iterations.
     pub fn observe(&mut self, solves: usize, iterations: usize) {
         if let Some(method) = self.method() {

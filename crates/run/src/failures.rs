@@ -18,8 +18,12 @@ pub fn too_large(plan: &Plan, asked: &SolverEntry, limit: usize) -> Defect {
         (None, None) => "memory of this machine",
         _ => "[solver]",
     };
+    let more = match asked.memory_limit {
+        Some(_) => "raise `memory_limit` under [solver]",
+        None => "run it on a machine with more memory",
+    };
     let remedy = smaller.map_or(
-        "mesh coarser (a larger h, or order = 1), or run it on a machine with more memory".into(),
+        format!("mesh coarser (a larger h, or order = 1), or {more}"),
         |smaller| {
             format!(
                 "write linear = \"{}\" under [solver] ({}), or leave the choice to the program",

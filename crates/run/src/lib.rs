@@ -114,7 +114,7 @@ pub use outcome::{Outcome, StepResult};
 pub use output::Output;
 pub use page::NAME as REPORT;
 pub use permeability_summary::{PermeabilitySummary, PrincipalPermeability, TensorSummary};
-pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh};
+pub use prepare::{MESH, folder_for, inputs, mesh_file, read_mesh, unfinished_mesh_file};
 pub use provenance::{InputFile, Provenance};
 pub use ranks::Ranks;
 pub use request::{Caller, MeshInput, Origin, Request};

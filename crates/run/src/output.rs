@@ -142,6 +142,12 @@ impl Output {
         matches!(self.place, Place::Kept(_))
     }
 
+    /// Whether the folder holds what a run has written.
+    pub fn has_results(&self) -> bool {
+        let told = [SUMMARY, checkpoint::NAME].map(|name| self.path(name));
+        told.iter().any(|file| file.exists())
+    }
+
     /// Whether another process could write into the folder, because its file system has no locks.
     pub fn is_unguarded(&self) -> bool {
         matches!(&self.place, Place::Kept(folder) if !folder.is_locked())

@@ -1,5 +1,6 @@
 //! The numbers of an equivalent permeability.
 
+use kluft_mesh::bearing;
 use kluft_solver::{EquivalentPermeability, PermeabilityTensor};
 use serde::Serialize;
 
@@ -63,7 +64,7 @@ impl TensorSummary {
                 value,
                 direction: direction.to_array(),
                 trend: match level > 0.0 {
-                    true => down.x.atan2(down.y).to_degrees().rem_euclid(360.0),
+                    true => bearing(down.x, down.y),
                     false => 0.0,
                 },
                 plunge: (-down.z).atan2(level).to_degrees(),

@@ -109,6 +109,26 @@ pub fn mesh_file(
     gmsh: &GmshOptions,
     observer: &mut dyn Observer,
 ) -> Result<MeshFile, Vec<Defect>> {
+    let mut file = unfinished_mesh_file(scene, output, sizes, gmsh, observer)?;
+    if file.meshed.is_some() {
+        output.publish(MESH).map_err(|defect| vec![defect])?;
+        file.path = output.path(MESH);
+    }
+    Ok(file)
+}
+
+/// The same where the place of the mesh is to keep what it holds: what gmsh makes has the name of
+/// an unfinished file.
+///
+/// # Errors
+/// Whatever gmsh objects to.
+pub fn unfinished_mesh_file(
+    scene: &Scene,
+    output: &Output,
+    sizes: Option<&Path>,
+    gmsh: &GmshOptions,
+    observer: &mut dyn Observer,
+) -> Result<MeshFile, Vec<Defect>> {
     match &scene.mesh {
         MeshSource::File(file) => Ok(MeshFile {
             path: file.clone(),
@@ -142,9 +162,8 @@ pub fn mesh_file(
             for warning in &meshed.warnings {
                 observer.detail("gmsh", warning);
             }
-            output.publish(MESH).map_err(|defect| vec![defect])?;
             Ok(MeshFile {
-                path: output.path(MESH),
+                path: unfinished,
                 meshed: Some(meshed),
             })
         }

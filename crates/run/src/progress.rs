@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use kluft_mesh::Defect;
 
-use crate::checkpoint::{self, FlowRestart, Progress};
+use crate::checkpoint::{self, FlowRestart, Origins, Progress};
 use crate::stages::Run;
 use crate::steps::Prepared;
 
@@ -98,6 +98,11 @@ impl Run<'_> {
             stress_error: summary.stress_error,
             seconds: summary.seconds.clone(),
             peak_memory_bytes: summary.peak_memory_bytes,
+            origins: Origins {
+                meshes: summary.meshes.clone(),
+                decisions: summary.decisions.clone(),
+                gmsh: summary.provenance.gmsh.clone(),
+            },
             stage: None,
             restart: None,
             flow_restart: None,

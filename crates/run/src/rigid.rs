@@ -108,6 +108,7 @@ impl Run<'_> {
         self.summary.measures = former.measures;
         self.flow_history = FlowHistory::from_text(former.history);
         self.probes.text = former.probes;
+        self.take_over_origins(former.origins);
         let text = format!("after step {} of {}", done.len(), steps.len());
         self.observer.note("resumed", &text);
         let restart = former.flow_restart?;

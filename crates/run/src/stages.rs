@@ -271,23 +271,23 @@ impl<'a> Run<'a> {
     fn bind(&mut self, draft: Draft) -> Result<Binding, Vec<Defect>> {
         let mut binding = self.request.scene.problem(draft)?;
         self.summary.decisions.append(&mut binding.decisions);
-        let rocks: Vec<&str> = self
-            .request
-            .scene
-            .rocks
-            .iter()
-            .map(|r| r.name.as_str())
-            .collect();
-        self.summary.facts = facts(&self.summary, &rocks, &binding.problem.mesh.fractures);
-        self.output.tell(self.summary.facts.clone());
         self.doubts = std::mem::take(&mut binding.warnings);
         self.summary.warnings.clone_from(&self.doubts);
         self.count_mesh(&binding.problem.mesh);
         Ok(binding)
     }
 
-    /// Sums up the mesh.
+    /// Lets the grids that follow tell their units, and the names of their rocks and fractures.
+    fn tell_facts(&mut self, mesh: &Mesh) {
+        let rocks = self.request.scene.rocks.iter();
+        let rocks: Vec<&str> = rocks.map(|rock| rock.name.as_str()).collect();
+        self.summary.facts = facts(&self.summary, &rocks, &mesh.fractures);
+        self.output.tell(self.summary.facts.clone());
+    }
+
+    /// Sums up the mesh that the grids which follow are of.
     pub fn count_mesh(&mut self, mesh: &Mesh) {
+        self.tell_facts(mesh);
         let counts = mesh.sectors.count.iter();
         let own = (0..mesh.nodes.len()).filter(|&node| mesh.is_own(node as u32));
         self.summary.mesh = MeshSummary {
@@ -403,6 +403,10 @@ impl<'a> Run<'a> {
 
     fn close(&mut self, ending: &Ending) -> Result<(), Defect> {
         self.summary.ending = Some(ending.clone());
+        if self.output.sums().is_empty() && self.checkpointed == 0 {
+            // A run may end before its first load step begins: its summary belongs to no grids.
+            self.output.remove_former()?;
+        }
         self.write_summary()?;
         self.write_page()?;
         self.output.sync()?;

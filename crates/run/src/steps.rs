@@ -4,7 +4,8 @@ use kluft_scene::Binding;
 use kluft_solver::{Estimator, Flow, Newton, Plan, StageEnd, State, StepOutcome, System, solution};
 
 use crate::accuracy::{self, Accuracy};
-use crate::checkpoint::{self, Progress};
+use crate::checkpoint::{self, Origins, Progress};
+use crate::choice::Choice;
 use crate::decisions;
 use crate::doubts;
 use crate::failures;
@@ -34,11 +35,20 @@ pub(crate) struct Prepared<'s, 'p> {
 
 impl Run<'_> {
     /// Solves all load steps without writing anything: the number of unknowns and the estimated
-    /// error at the end.
+    /// error at the end. Its load steps, and the solver that was chosen for them, are not those of
+    /// the run.
     ///
     /// # Errors
     /// As [`Self::solve`].
     pub fn trial(&mut self, binding: &Binding) -> Result<(usize, Accuracy), Interruption> {
+        let tried = self.solve_and_forget(binding);
+        self.summary.steps.clear();
+        self.iterations.clear();
+        self.choice = Choice::default();
+        tried
+    }
+
+    fn solve_and_forget(&mut self, binding: &Binding) -> Result<(usize, Accuracy), Interruption> {
         let problem = &binding.problem;
         let mut system = self.assemble(problem)?;
         self.let_flow(binding, &mut system)?;
@@ -56,8 +66,6 @@ impl Run<'_> {
         for index in 0..problem.schedule.steps.len() {
             self.solve_step(&mut prepared, index)?;
         }
-        self.summary.steps.clear();
-        self.iterations.clear();
         let solution = solution(&system, &prepared.state);
         let unknowns = system.discretisation().unknown_count();
         let duals = accuracy::duals(&system, &mut prepared.newton, &solution);
@@ -201,8 +209,7 @@ impl Run<'_> {
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
-        let later = self.choice.later_reasons();
-        self.summary.decisions.extend_from_slice(later);
+        self.take_over_origins(former.origins);
         let mut newton = self.set_up(system, plan)?;
         let system = &*system;
         let restart = former.restart.filter(|restart| restart.fits(system));
@@ -223,6 +230,14 @@ impl Run<'_> {
             stage: None,
             first: 0,
         })
+    }
+
+    /// Takes over where a former run's mesh came from, and what it decided.
+    pub(crate) fn take_over_origins(&mut self, former: Origins) {
+        self.summary.meshes = former.meshes;
+        self.summary.decisions = former.decisions;
+        let gmsh = &mut self.summary.provenance.gmsh;
+        *gmsh = former.gmsh.or(gmsh.take());
     }
 
     /// Solves a load step.

@@ -111,7 +111,7 @@ pub struct MeshSummary {
 }
 
 /// One mesh on the way to the last.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MeshTrial {
     /// Its unknowns.
     pub unknowns: usize,
