@@ -110,10 +110,19 @@ pub(super) fn closest_setting(study: &Study, found: &Assessment, tolerance: f64)
     }
 }
 
+/// What is charted in the place of what is asked for and no run has.
+pub(super) fn instead(found: &Assessment) -> Option<String> {
+    let problem = &found.missing.as_ref()?.problem;
+    Some(format!("{problem}; charted instead: {}", subject(found)))
+}
+
 /// Why there are no errors.
 pub(super) fn no_errors(study: &Study, found: &Assessment) -> String {
-    if found.target.is_none() {
+    if has_no_result(&study.records) {
         return "no setting was solved, see study.html for the reasons".into();
+    }
+    if found.target.is_none() {
+        return "the runs have no measure".into();
     }
     if let Some(reference) = found.references.first() {
         return reference.in_words();

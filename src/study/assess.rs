@@ -89,6 +89,8 @@ pub(super) struct MeasuredSeries {
 pub(super) struct Assessment {
     /// What is charted; none before a setting was solved.
     pub(super) target: Option<Target>,
+    /// What was asked for in its place, if no run so far has it.
+    pub(super) missing: Option<Defect>,
     /// What it is compared with, where there is no closed form.
     pub(super) references: Vec<Reference>,
     /// One entry for each setting.
@@ -100,18 +102,12 @@ pub(super) struct Assessment {
 }
 
 /// Assesses what has been run; `records` has an entry for each setting.
-///
-/// # Errors
-/// A measure that no run knows.
-pub(super) fn assess(
-    plan: &StudyPlan,
-    records: &[Option<PointRecord>],
-) -> Result<Assessment, Defect> {
+pub(super) fn assess(plan: &StudyPlan, records: &[Option<PointRecord>]) -> Assessment {
     let done: Vec<Option<&Numbers>> = records
         .iter()
         .map(|record| record.as_ref().and_then(PointRecord::numbers))
         .collect();
-    let target = target(plan, &done)?;
+    let (target, missing) = target(plan, &done);
     let extrapolates = target.as_ref().filter(|target| !target.is_compared);
     let references =
         extrapolates.map_or_else(Vec::new, |target| references(plan, records, &done, target));
@@ -121,13 +117,14 @@ pub(super) fn assess(
         let reference = references.iter().find(|reference| reference.key == key);
         measure.map_or_else(Verdict::default, |measure| judged(measure, reference))
     };
-    Ok(Assessment {
+    Assessment {
         verdicts: plan.settings.iter().zip(&done).map(verdict).collect(),
         identical_meshes: identical_meshes(plan, &done),
         series: series(plan, &done),
         target,
+        missing,
         references,
-    })
+    }
 }
 
 fn judged(measure: &Measure, reference: Option<&Reference>) -> Verdict {
@@ -159,45 +156,71 @@ fn find<'a>(numbers: &'a Numbers, target: &Target) -> Option<&'a Measure> {
     numbers.measures.iter().find(fits)
 }
 
-fn target(plan: &StudyPlan, done: &[Option<&Numbers>]) -> Result<Option<Target>, Defect> {
+/// What is charted. Where no run has what is asked for, something that serves, and a defect.
+fn target(plan: &StudyPlan, done: &[Option<&Numbers>]) -> (Option<Target>, Option<Defect>) {
+    let solved = || done.iter().flatten();
+    let Some(first) = solved().next() else {
+        return (None, None);
+    };
+    let all: Vec<&Measure> = solved().flat_map(|numbers| &numbers.measures).collect();
+    let largest = first.largest_fracture.as_deref();
     let request = &plan.request;
-    let Some(first) = done.iter().flatten().next() else {
-        return Ok(None);
-    };
-    let all = || done.iter().flatten().flat_map(|numbers| &numbers.measures);
-    let on =
-        |measure: &&Measure| request.fracture.is_none() || measure.fracture == request.fracture;
-    let named = |name: &str| all().filter(on).find(|measure| measure.name == name);
-    let compared = || all().filter(on).find(|measure| measure.error.is_some());
-    let of_largest = || {
-        let is_largest = |measure: &&Measure| {
-            request.fracture.is_some() || measure.fracture == first.largest_fracture
-        };
-        let mean = |measure: &&Measure| measure.name == "mean_aperture";
-        all().filter(on).filter(is_largest).find(mean)
-    };
-    let found = match &request.measure {
-        Some(name) => named(name),
-        None => compared().or_else(of_largest).or_else(|| all().find(on)),
-    };
-    let Some(found) = found else {
-        return Err(unknown(plan, first));
-    };
-    let alike = |other: &&Measure| other.name == found.name && other.fracture == found.fracture;
-    Ok(Some(Target {
+    let asked = (request.measure.as_deref(), request.fracture.as_deref());
+    let found = chosen(&all, asked, largest);
+    let is_missing = found.is_none() && asked != (None, None);
+    let found = found
+        .or_else(|| chosen(&all, (None, asked.1), largest))
+        .or_else(|| chosen(&all, (None, None), largest));
+    let target = found.map(|found| Target {
         name: found.name.clone(),
         fracture: found.fracture.clone(),
-        is_compared: all().filter(alike).any(|measure| measure.error.is_some()),
-    }))
+        is_compared: all.iter().any(|other| {
+            other.name == found.name && other.fracture == found.fracture && other.error.is_some()
+        }),
+    });
+    (target, is_missing.then(|| missing(plan, first)))
 }
 
-fn unknown(plan: &StudyPlan, numbers: &Numbers) -> Defect {
+/// The measure with a name and a fracture, as far as they are given. Without a name, the first with
+/// an error; without one, the mean aperture of the fracture or of the largest.
+fn chosen<'m>(
+    all: &[&'m Measure],
+    (name, fracture): (Option<&str>, Option<&str>),
+    largest: Option<&str>,
+) -> Option<&'m Measure> {
+    let on = |measure: &Measure, wanted: Option<&str>| measure.fracture.as_deref() == wanted;
+    let mut own = all.to_vec();
+    own.retain(|measure| fracture.is_none() || on(measure, fracture));
+    let found = match name {
+        Some(name) => own.iter().find(|measure| measure.name == name),
+        None => {
+            let of = fracture.or(largest);
+            let mean = || {
+                let mut all = own.iter();
+                all.find(|measure| measure.name == "mean_aperture" && on(measure, of))
+            };
+            let compared = own.iter().find(|measure| measure.error.is_some());
+            compared.or_else(mean).or(own.first())
+        }
+    };
+    found.copied()
+}
+
+/// What is asked for and no run has.
+fn missing(plan: &StudyPlan, numbers: &Numbers) -> Defect {
     let request = &plan.request;
-    let wanted = request.measure.as_deref().unwrap_or("any");
     let on = request
         .fracture
         .as_ref()
         .map_or_else(String::new, |name| format!(" on `{name}`"));
+    let problem = match &request.measure {
+        Some(name) => format!("the runs have no measure `{name}`{on}"),
+        None => format!("the runs have no measure{on}"),
+    };
+    let names = numbers.measures.iter().map(|measure| measure.name.as_str());
+    let wanted = request.measure.as_deref();
+    let near = wanted.and_then(|wanted| nearest(wanted, names).filter(|near| *near != wanted));
+    let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
     let known = numbers
         .measures
         .iter()
@@ -206,17 +229,8 @@ fn unknown(plan: &StudyPlan, numbers: &Numbers) -> Defect {
             None => measure.name.clone(),
         });
     let known = known.collect::<Vec<_>>().join(", ");
-    let near = nearest(
-        wanted,
-        numbers.measures.iter().map(|measure| measure.name.as_str()),
-    );
-    let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
-    let problem = format!("the runs have no measure `{wanted}`{on}");
-    Defect::new(
-        request.place.as_str(),
-        problem,
-        format!("{near}measures of the runs: {known}"),
-    )
+    let remedy = format!("{near}measures of the runs: {known}");
+    Defect::new(request.place.as_str(), problem, remedy)
 }
 
 /// The physics that a setting is compared with: its own, or that of the closure asked for.

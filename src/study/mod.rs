@@ -65,8 +65,9 @@ pub struct StudyOptions {
 /// when a setting reaches it, and prints that setting as a fragment of a scene.
 ///
 /// # Errors
-/// [`Failure::BadInput`] with every defect of the scene; [`Failure::NotReached`] if no setting was
-/// solved, or none is as accurate as wanted. Settings that fail are results.
+/// [`Failure::BadInput`] with every defect of the scene, or if no run has the measure that is asked
+/// for, after all have been run; [`Failure::NotReached`] if no setting was solved, or none is as
+/// accurate as wanted. Settings that fail are results.
 pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
     let mut report = Report::new(options.verbosity);
     let mut study = Study::begin(scene_file, options)?;
@@ -91,6 +92,9 @@ pub fn study(scene_file: &Path, options: &StudyOptions) -> Result<(), Failure> {
         return Err(Failure::NotReached(format!(
             "no setting was solved; the first: {why}"
         )));
+    }
+    if let Some(defect) = &found.missing {
+        return Err(defect.clone().into());
     }
     let Some(tolerance) = options.tolerance else {
         return Ok(());
@@ -125,6 +129,7 @@ impl Study {
             program,
             threads: count,
             gmsh: options.gmsh,
+            gmsh_version: version(&options.gmsh.options(options.own.as_ref())),
         };
         std::fs::create_dir_all(&runner.folder).map_err(|error| {
             let place = runner.folder.display().to_string();
@@ -141,8 +146,6 @@ impl Study {
             folders,
             records,
             machine: Machine::this(),
-            gmsh: version(&options.gmsh.options(options.own.as_ref()))
-                .unwrap_or_else(|| "unknown".to_owned()),
             thread_word: word,
             claimed,
         })
@@ -150,12 +153,14 @@ impl Study {
 
     /// Runs what has not been run, until a setting reaches the tolerance.
     fn run(&mut self, report: &mut Report, tolerance: Option<f64>) -> Result<Assessment, Failure> {
-        let mut found = assess(&self.plan, &self.records)?;
+        let mut found = assess(&self.plan, &self.records);
         let count = self.plan.settings.len();
         let kept = self.records.iter().flatten().count();
         report.entry("settings", &format!("{count}, {kept} of them run before"));
         for index in 0..count {
-            let reached = tolerance.and_then(|most| answer::cheapest(self, &found, most));
+            // What is charted instead of what is asked for reaches nothing.
+            let wanted = tolerance.filter(|_| found.missing.is_none());
+            let reached = wanted.and_then(|most| answer::cheapest(self, &found, most));
             if reached.is_some() {
                 break;
             }
@@ -176,7 +181,7 @@ impl Study {
             let record = self.runner.run(&self.folders[index], &scene);
             report.work_ends();
             self.records[index] = Some(record?);
-            found = assess(&self.plan, &self.records)?;
+            found = assess(&self.plan, &self.records);
             self.tell(report, &found, index);
             // Whoever interrupts a study finds what is known so far.
             self.write(&found)?;
@@ -198,8 +203,11 @@ impl Study {
                 } else {
                     " so far"
                 };
-                let error =
-                    error.map_or_else(String::new, |e| format!(", error {}{so_far}", percent(e)));
+                let error = match &found.missing {
+                    Some(missing) => format!(", {}", missing.problem),
+                    None => error
+                        .map_or_else(String::new, |e| format!(", error {}{so_far}", percent(e))),
+                };
                 let took = duration(numbers.seconds);
                 format!("{took}, {} unknowns{error}", numbers.unknowns)
             }
@@ -272,10 +280,10 @@ impl Study {
 fn claim(plan: &StudyPlan, runner: &Runner) -> (Vec<String>, Vec<Option<PointRecord>>) {
     let mut former = runner.former();
     let find = |setting: &settings::Setting| {
-        let wanted = runner.fingerprint(&plan.scene_of(setting));
-        let at = former
-            .iter()
-            .position(|(_, record)| record.fingerprint == wanted)?;
+        let scene = plan.scene_of(setting);
+        let (wanted, gmsh) = (runner.fingerprint(&scene)?, runner.gmsh_of(&scene));
+        let is_own = |(_, record): &(String, PointRecord)| record.is_of(&wanted, gmsh);
+        let at = former.iter().position(is_own)?;
         Some(former.remove(at))
     };
     let found: Vec<Option<(String, PointRecord)>> = plan.settings.iter().map(find).collect();
@@ -320,6 +328,7 @@ fn summary(study: &Study, found: &Assessment) -> Vec<String> {
             "{failed} settings failed, see study.html for the reasons"
         ));
     }
+    lines.extend(answer::instead(found));
     if found.verdicts.iter().all(|verdict| verdict.error.is_none()) {
         lines.push(format!("no errors: {}", answer::no_errors(study, found)));
     }

@@ -67,6 +67,9 @@ fn lead(page: &mut Page, study: &Study, found: &Assessment) {
     page.text(&format!(
         "Measured: {subject}. {solved} of {count} settings were solved. {against}"
     ));
+    if let Some(text) = answer::instead(found) {
+        page.warning(&format!("{text}."));
+    }
     let references: Vec<String> = found.references.iter().map(|r| r.in_words()).collect();
     page.list(references.iter().map(String::as_str));
     if let Some(labels) = &found.identical_meshes {
@@ -193,7 +196,7 @@ fn circumstances(page: &mut Page, study: &Study) {
         machine.cores,
         study.runner.threads,
         env!("CARGO_PKG_VERSION"),
-        study.gmsh
+        study.runner.gmsh_version.as_deref().unwrap_or("unknown")
     ));
     page.folded("Scene", &study.text);
 }

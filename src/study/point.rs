@@ -13,10 +13,11 @@ use toml::Table;
 
 use super::files::{RECORD, RESULTS, SCENE, remove_setting, unwritable};
 use crate::gmsh::GmshArgs;
-use kluft_io::gmsh::NOT_MESHED;
+use kluft_io::gmsh::{NOT_MESHED, geometry_fingerprint};
 use kluft_io::{Fingerprint, fingerprint, fingerprint_of};
 use kluft_program::invocation::OwnProgram;
 use kluft_run::Measure;
+use kluft_scene::Scene;
 
 /// Lines of a failed run's messages that are kept.
 const LINES: usize = 10;
@@ -24,8 +25,11 @@ const LINES: usize = 10;
 /// A setting that has been run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct PointRecord {
-    /// Of everything that the run depends on.
+    /// Of everything that the run depends on but gmsh; empty if that is not known.
     pub(super) fingerprint: String,
+    /// The version of gmsh that made the mesh; none if none did, or said no version.
+    #[serde(default)]
+    pub(super) gmsh: Option<String>,
     /// What came out of it.
     #[serde(flatten)]
     pub(super) outcome: PointOutcome,
@@ -67,6 +71,12 @@ pub(super) struct Numbers {
 }
 
 impl PointRecord {
+    /// Whether it is of a setting with this fingerprint and this gmsh. A gmsh that cannot be asked
+    /// for its version speaks against no record.
+    pub(super) fn is_of(&self, fingerprint: &str, gmsh: Option<&str>) -> bool {
+        self.fingerprint == fingerprint && (gmsh.is_none() || self.gmsh.as_deref() == gmsh)
+    }
+
     /// The numbers, if the run solved the scene.
     pub(super) fn numbers(&self) -> Option<&Numbers> {
         match &self.outcome {
@@ -99,19 +109,28 @@ pub(super) struct Runner {
     pub(super) threads: usize,
     /// How each run starts gmsh.
     pub(super) gmsh: GmshArgs,
+    /// Its version, if it said one.
+    pub(super) gmsh_version: Option<String>,
 }
 
 impl Runner {
-    /// Sum over what a run of a scene depends on: its text, the geometry or mesh it names, this
-    /// build, and the threads, which its time depends on.
-    pub(super) fn fingerprint(&self, scene: &Table) -> String {
-        let mesh = scene.get("mesh");
-        let mut file = ["geometry", "file"].into_iter();
-        let file = file.find_map(|key| mesh?.get(key)?.as_str());
-        // A file that cannot be read is refused by the run.
-        let bytes = file.and_then(|file| fingerprint_of(Path::new(file)).ok());
-        let parts = format!("{}\n{}\n{bytes:?}\n{scene}", self.build, self.threads);
-        format!("{:032x}", fingerprint(&parts))
+    /// Sum over what a run of a scene depends on: its text, its mesh or its geometry with all that
+    /// it includes, its files of values, this build, and the threads, which its time depends on.
+    /// None if the mesh depends on more, or cannot be read.
+    pub(super) fn fingerprint(&self, scene: &Table) -> Option<String> {
+        let mesh = mesh_sum(scene)?;
+        let scene = scene.to_string();
+        let values = value_sums(&scene);
+        let (build, threads) = (self.build, self.threads);
+        let parts = format!("{build}\n{threads}\n{mesh:x}\n{values:?}\n{scene}");
+        Some(format!("{:032x}", fingerprint(&parts)))
+    }
+
+    /// The version of gmsh that makes the mesh of a scene; none if no mesh is made, or if gmsh said
+    /// none.
+    pub(super) fn gmsh_of(&self, scene: &Table) -> Option<&str> {
+        scene.get("mesh")?.get("geometry")?;
+        self.gmsh_version.as_deref()
     }
 
     /// The records of former studies in the folder, each with the name of its own.
@@ -138,6 +157,8 @@ impl Runner {
         remove_setting(&folder)?;
         fs::create_dir_all(&folder).map_err(|error| unwritable(&folder, &error))?;
         let scene_file = folder.join(SCENE);
+        // Of the files as they are before the run reads them.
+        let fingerprint = self.fingerprint(scene).unwrap_or_default();
         self.write(&scene_file, |out| {
             out.write_all(scene.to_string().as_bytes())
         })?;
@@ -146,7 +167,8 @@ impl Runner {
         let output = self.start(&scene_file, &results)?;
         let seconds = begin.elapsed().as_secs_f64();
         let record = PointRecord {
-            fingerprint: self.fingerprint(scene),
+            fingerprint,
+            gmsh: self.gmsh_of(scene).map(str::to_owned),
             outcome: outcome(&output, &results.join("summary.json"), seconds),
         };
         // Wrong input takes no time to find, and may be mended where no sum sees it (gmsh, memory);
@@ -206,6 +228,23 @@ impl Runner {
             Defect::new(place, problem, "install it again")
         })
     }
+}
+
+/// Sum of the mesh that a scene names, or of the geometry with the files that it includes.
+fn mesh_sum(scene: &Table) -> Option<Fingerprint> {
+    let mesh = scene.get("mesh")?;
+    match mesh.get("geometry") {
+        Some(geometry) => geometry_fingerprint(Path::new(geometry.as_str()?)),
+        None => fingerprint_of(Path::new(mesh.get("file")?.as_str()?)).ok(),
+    }
+}
+
+/// Sums of the files that values of a scene come from. What is no scene, or cannot be read, is
+/// refused by the run.
+fn value_sums(scene: &str) -> Vec<Option<Fingerprint>> {
+    let scene = Scene::parse(scene, "", Path::new(""));
+    let files = scene.iter().flat_map(Scene::value_files);
+    files.map(|file| fingerprint_of(file).ok()).collect()
 }
 
 fn outcome(output: &Output, summary: &Path, seconds: f64) -> PointOutcome {
@@ -304,8 +343,6 @@ pub(super) fn numbers(text: &[u8], seconds: f64) -> serde_json::Result<Numbers> 
 
 #[cfg(test)]
 mod tests {
-    use toml::Value;
-
     use super::*;
 
     const SUMMARY: &str = r#"{
@@ -352,6 +389,7 @@ mod tests {
         ] {
             let record = PointRecord {
                 fingerprint: "f".into(),
+                gmsh: Some("4.8.4".into()),
                 outcome,
             };
             let text = serde_json::to_string(&record).expect("JSON");
@@ -359,22 +397,10 @@ mod tests {
         }
     }
 
-    #[test]
-    fn fingerprints_follow_scene_file_and_threads() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let geometry = folder.path().join("a.geo");
-        fs::write(&geometry, "Box(1) = 1;").expect("written");
-        let scene = |order: i64| -> Table {
-            let mesh = [
-                ("geometry", Value::from(geometry.display().to_string())),
-                ("order", Value::from(order)),
-            ];
-            let mesh = Table::from_iter(mesh.map(|(key, value)| (key.to_owned(), value)));
-            Table::from_iter([("mesh".to_owned(), Value::from(mesh))])
-        };
-        let mut runner = Runner {
-            study: folder.path().into(),
-            folder: folder.path().into(),
+    fn runner(folder: &Path) -> Runner {
+        Runner {
+            study: folder.into(),
+            folder: folder.into(),
             program: OwnProgram {
                 file: "kluft".into(),
                 before: Vec::new(),
@@ -384,14 +410,76 @@ mod tests {
             build: 7,
             threads: 1,
             gmsh: GmshArgs::default(),
-        };
-        let first = runner.fingerprint(&scene(1));
-        assert_eq!(first, runner.fingerprint(&scene(1)));
-        assert_ne!(first, runner.fingerprint(&scene(2)));
-        fs::write(&geometry, "Box(1) = 2;").expect("written");
-        let other = runner.fingerprint(&scene(1));
-        assert_ne!(first, other);
+            gmsh_version: Some("4.8.4".into()),
+        }
+    }
+
+    fn scene(text: &str) -> Table {
+        text.parse().expect("TOML")
+    }
+
+    #[test]
+    fn fingerprints_follow_scene_files_and_threads() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let write = |name: &str, text: &str| fs::write(path(name), text).expect("written");
+        write("a.geo", "Include \"b.inc\";");
+        write("b.inc", "Box(1) = 1;");
+        let geometry = path("a.geo").display().to_string();
+        let of_order = |order| scene(&format!("[mesh]\ngeometry = '{geometry}'\norder = {order}"));
+        let mut runner = runner(folder.path());
+        let first = runner.fingerprint(&of_order(1));
+        assert!(first.is_some());
+        assert_eq!(first, runner.fingerprint(&of_order(1)));
+        assert_ne!(first, runner.fingerprint(&of_order(2)));
+        write("b.inc", "Box(1) = 2;");
+        let included = runner.fingerprint(&of_order(1));
+        assert_ne!(first, included);
+        write("a.geo", "Include \"b.inc\"; Box(2) = 2;");
+        let other = runner.fingerprint(&of_order(1));
+        assert_ne!(included, other);
         runner.threads = 2;
-        assert_ne!(other, runner.fingerprint(&scene(1)));
+        assert_ne!(other, runner.fingerprint(&of_order(1)));
+        write("b.inc", "x = GetEnv(\"HOME\");");
+        assert_eq!(runner.fingerprint(&of_order(1)), None, "it is not known");
+    }
+
+    #[test]
+    fn fingerprints_follow_files_of_values() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let write = |name: &str, text: &str| fs::write(path(name), text).expect("written");
+        write("a.msh", "a mesh");
+        write("E.csv", "z,E\n0,1e10\n1,2e10\n");
+        let (mesh, values) = (path("a.msh"), path("E.csv"));
+        let (mesh, values) = (mesh.display(), values.display());
+        let scene = scene(&format!(
+            "title = 'a'\n[mesh]\nfile = '{mesh}'\n[rock.default]\npoisson_ratio = 0.25\n\
+             young_modulus = {{ file = '{values}', column = 'E' }}\n\
+             [boundary.a]\npressure = 1e6\n"
+        ));
+        let runner = runner(folder.path());
+        let first = runner.fingerprint(&scene);
+        assert!(first.is_some());
+        write("E.csv", "z,E\n0,1e10\n1,3e10\n");
+        let other = runner.fingerprint(&scene);
+        assert_ne!(first, other);
+        write("a.msh", "another");
+        assert_ne!(other, runner.fingerprint(&scene));
+    }
+
+    #[test]
+    fn records_are_of_one_gmsh_where_it_makes_the_mesh() {
+        let runner = runner(Path::new("a"));
+        let made = scene("[mesh]\ngeometry = 'a.geo'");
+        assert_eq!(runner.gmsh_of(&made), Some("4.8.4"));
+        assert_eq!(runner.gmsh_of(&scene("[mesh]\nfile = 'a.msh'")), None);
+        let record = PointRecord {
+            fingerprint: "f".into(),
+            gmsh: Some("4.8.4".into()),
+            outcome: PointOutcome::Failed("why".into()),
+        };
+        assert!(record.is_of("f", Some("4.8.4")) && record.is_of("f", None));
+        assert!(!record.is_of("f", Some("4.13.1")) && !record.is_of("g", None));
     }
 }

@@ -3,14 +3,18 @@
 use std::path::Path;
 
 use kluft_keys::Document;
-use kluft_mesh::Defect;
-use toml::{Table, Value};
+use kluft_mesh::{Defect, nearest};
+use toml::{Spanned, Table, Value};
 
 use super::dimension::{SweepDimension, SweepKind};
 use super::edits::Edit;
 use super::sweep;
+use super::values::fractures;
 use kluft_scene::Scene;
 use kluft_scene::reader::{Section, Source};
+
+/// Keys that hold the path of a file, wherever they stand.
+const PATHS: [&str; 2] = ["geometry", "file"];
 
 /// Most settings of a study; more are taken for a slip.
 const MOST_SETTINGS: usize = 2000;
@@ -63,7 +67,8 @@ impl StudyPlan {
         let unreadable =
             |error: toml::de::Error| vec![Defect::new(&*name, error.message(), "correct the TOML")];
         let mut scene: Table = text.parse().map_err(unreadable)?;
-        make_paths_absolute(&mut scene, file.parent().unwrap_or(Path::new(".")));
+        let folder = file.parent().unwrap_or(Path::new("."));
+        make_paths_absolute(&mut scene, folder).map_err(|defect| vec![defect])?;
         let asked = scene.remove("study");
         let asked = asked.as_ref().and_then(Value::as_table);
         let source = Source::new(&name, text, Document::Scene);
@@ -73,7 +78,7 @@ impl StudyPlan {
             .map(|table| Section::root(&source, table.get_ref()));
         let section = root.as_ref().and_then(|root| root.section("study"));
         let (dimensions, request) = match (section, asked) {
-            (Some(section), Some(asked)) => read_study(section, asked, &scene),
+            (Some(section), Some(asked)) => read_study(&source, section, asked, &scene),
             _ => (sweep::by_default(&scene, &name)?, StudyRequest::default()),
         };
         let defects = source.into_defects();
@@ -137,6 +142,7 @@ impl StudyPlan {
 }
 
 fn read_study(
+    source: &Source<'_>,
     section: Section<'_, '_>,
     asked: &Table,
     scene: &Table,
@@ -147,7 +153,7 @@ fn read_study(
         measure: text("measure"),
         fracture: text("fracture"),
         reference: text("reference"),
-        place: section.place(),
+        place: place_of_request(source, &section),
     };
     let closures = dimensions.iter().filter(|d| d.kind == SweepKind::Closure);
     let labels: Vec<&str> = closures
@@ -161,49 +167,66 @@ fn read_study(
         let remedy = format!("write one of: {}", labels.join(", "));
         section.refuse("reference", problem, remedy);
     }
+    check_fracture(&section, request.fracture.as_deref(), scene);
     section.finish();
     (dimensions, request)
 }
 
-/// Scenes of the settings lie in other folders.
-fn make_paths_absolute(scene: &mut Table, folder: &Path) {
-    let Some(mesh) = scene.get_mut("mesh").and_then(Value::as_table_mut) else {
+/// File and line of what is to be charted.
+fn place_of_request(source: &Source<'_>, section: &Section<'_, '_>) -> String {
+    let mut keys = ["measure", "fracture"].into_iter();
+    let value = keys.find_map(|key| section.table().get(key));
+    source.place(&value.map_or(section.at.clone(), Spanned::span))
+}
+
+/// Refuses a fracture that is none of the scene, where the scene names them all.
+fn check_fracture(section: &Section<'_, '_>, wanted: Option<&str>, scene: &Table) {
+    let names: Vec<&str> = fractures(scene).map(|(name, _)| name.as_str()).collect();
+    let names_all = !names.is_empty() && !names.contains(&"default");
+    let Some(wanted) = wanted.filter(|wanted| names_all && !names.contains(wanted)) else {
         return;
     };
-    for key in ["geometry", "file"] {
-        if let Some(Value::String(path)) = mesh.get_mut(key) {
-            make_absolute(path, folder);
-        }
-    }
-    for key in ["fracture", "boundary", "initial_stress"] {
-        scene
-            .get_mut(key)
-            .into_iter()
-            .for_each(|value| of_values(value, folder));
-    }
+    let near = nearest(wanted, names.iter().copied());
+    let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
+    let problem = format!("the scene has no fracture `{wanted}`");
+    let remedy = format!("{near}the scene has: {}", names.join(", "));
+    section.refuse("fracture", problem, remedy);
 }
 
-/// The files of values that vary, wherever they stand in a section.
-fn of_values(value: &mut Value, folder: &Path) {
+/// Makes the paths of files absolute, wherever they stand: scenes of the settings lie in other
+/// folders.
+fn make_paths_absolute(table: &mut Table, folder: &Path) -> Result<(), Defect> {
+    for (key, value) in table.iter_mut() {
+        match value {
+            Value::String(path) if PATHS.contains(&key.as_str()) => make_absolute(path, folder)?,
+            other => make_absolute_below(other, folder)?,
+        }
+    }
+    Ok(())
+}
+
+/// The same for all tables in a value.
+fn make_absolute_below(value: &mut Value, folder: &Path) -> Result<(), Defect> {
     match value {
-        Value::Table(table) => {
-            for (key, value) in table.iter_mut() {
-                match value {
-                    Value::String(path) if key == "file" => make_absolute(path, folder),
-                    other => of_values(other, folder),
-                }
-            }
+        Value::Table(table) => make_paths_absolute(table, folder),
+        Value::Array(array) => {
+            let mut entries = array.iter_mut();
+            entries.try_for_each(|entry| make_absolute_below(entry, folder))
         }
-        Value::Array(array) => array.iter_mut().for_each(|entry| of_values(entry, folder)),
-        _ => {}
+        _ => Ok(()),
     }
 }
 
-fn make_absolute(path: &mut String, folder: &Path) {
+fn make_absolute(path: &mut String, folder: &Path) -> Result<(), Defect> {
     let beside = folder.join(&*path);
     // One that is not there is refused by the runs.
     let absolute = std::path::absolute(&beside).unwrap_or(beside);
-    *path = absolute.display().to_string();
+    *path = absolute.into_os_string().into_string().map_err(|other| {
+        let problem = "a study needs a folder whose name is UTF-8";
+        let remedy = "rename the folder, or move the scene and its files to another one";
+        Defect::new(other.display().to_string(), problem, remedy)
+    })?;
+    Ok(())
 }
 
 /// Defects of the choices under which no setting is a scene, so that a slip costs no run.

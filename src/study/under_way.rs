@@ -18,8 +18,6 @@ pub(super) struct Study {
     /// What came out of each setting; none before it is run.
     pub(super) records: Vec<Option<PointRecord>>,
     pub(super) machine: Machine,
-    /// Version of gmsh.
-    pub(super) gmsh: String,
     /// Why it runs on fewer threads than were asked for, if so.
     pub(super) thread_word: Option<String>,
     /// The folder of its results.

@@ -375,12 +375,66 @@ fn a_study_without_any_result_says_why() {
     assert!(workshop.path("study/study.html").exists());
 }
 
+/// What has been run is there all the same.
 #[test]
 fn a_measure_that_no_run_knows_is_refused_with_those_that_they_know() {
-    let workshop = workshop("measure = 'opening_l3'");
-    let run = study(&workshop, &[]);
+    let workshop = workshop("meshes = [{ h = 0.5 }, { h = 0.4 }]\nmeasure = 'opening_l3'");
+    let run = study(&workshop, &["-q", "--tolerance", "99%"]);
     assert_eq!(run.code, Some(2));
     for part in ["scene.toml:", "opening_l2", "volume of penny"] {
         assert!(run.err.contains(part), "{part}: {}", run.err);
     }
+    let folder = workshop.path("study");
+    let rows = table(&folder);
+    assert_eq!(rows.len(), 2);
+    for row in &rows {
+        assert_eq!(row("error"), row("penny.opening_l2.error"));
+        assert!(row("penny.volume").parse::<f64>().is_ok());
+    }
+    let page = fs::read_to_string(folder.join("study.html")).expect("the page");
+    let instead = "charted instead: opening (root mean square) of penny";
+    assert!(page.contains(instead), "{page}");
+}
+
+#[test]
+fn a_fracture_that_the_scene_does_not_have_is_refused_before_any_run() {
+    let workshop = workshop("meshes = [{ h = 0.5 }]\nfracture = 'pennny'");
+    let run = study(&workshop, &[]);
+    assert_eq!(run.code, Some(2));
+    let near = "did you mean \"penny\"?";
+    assert!(run.err.contains(near), "{}", run.err);
+    assert!(!workshop.path("study").exists());
+}
+
+#[test]
+fn files_of_values_and_included_geometries_are_compared() {
+    let workshop = workshop("meshes = [{ h = 0.5 }]\nmeasure = 'volume'");
+    let edit = |name: &str, edit: &dyn Fn(&str) -> String| {
+        let text = fs::read_to_string(workshop.path(name)).expect("a text");
+        fs::write(workshop.path(name), edit(&text)).expect("written");
+    };
+    let file = "young_modulus = { file = \"E.csv\", column = \"E\" }";
+    edit("scene.toml", &|text| {
+        text.replace("young_modulus = 25e9", file)
+    });
+    edit("penny.geo", &|text| format!("Include \"inc.geo\";\n{text}"));
+    let write = |name: &str, text: &str| fs::write(workshop.path(name), text).expect("written");
+    write("inc.geo", "unused = 1;\n");
+    write("E.csv", "z,E\n-1,25e9\n1,25e9\n");
+    let volume = |before: usize| -> f64 {
+        let run = study(&workshop, &["-v"]);
+        assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
+        let told = format!("1, {before} of them run before");
+        assert!(run.out.contains(&told), "{told}: {}", run.out);
+        let rows = table(&workshop.path("study"));
+        rows[0]("value").parse().expect("a volume")
+    };
+    let first = volume(0);
+    assert_eq!(volume(1), first);
+    write("E.csv", "z,E\n-1,50e9\n1,50e9\n");
+    let ratio = volume(0) / first;
+    assert!((ratio - 0.5).abs() < 1e-6, "a stiffer rock: {ratio}");
+    assert!(volume(1) < first);
+    write("inc.geo", "unused = 2;\n");
+    volume(0);
 }

@@ -12,7 +12,7 @@ parameters = { h = 0.4 }
 [rock.default]
 young_modulus = 50e9
 poisson_ratio = 0.25
-[fracture.a]
+[fracture.default]
 aperture = 1e-4
 normal_stiffness = 1e11
 shear_stiffness = 1e10
@@ -36,6 +36,7 @@ fn measure(name: &str, fracture: &str, value: f64, error: Option<f64>) -> Measur
 fn solved(cells: usize, measures: Vec<Measure>) -> Option<PointRecord> {
     Some(PointRecord {
         fingerprint: String::new(),
+        gmsh: None,
         outcome: PointOutcome::Solved(Box::new(Numbers {
             cells,
             unknowns: 3 * cells,
@@ -91,7 +92,7 @@ fn the_first_measure_with_an_error_is_charted_or_what_is_asked_for() {
         ),
     ] {
         let plan = plan(study);
-        let found = assess(&plan, &records(&plan)).expect("an assessment");
+        let found = assess(&plan, &records(&plan));
         let target = found.target.expect("a target");
         assert_eq!(
             (target.name.as_str(), target.fracture.as_deref()),
@@ -99,19 +100,33 @@ fn the_first_measure_with_an_error_is_charted_or_what_is_asked_for() {
         );
         assert_eq!(target.is_compared, compared);
     }
-    let wrong = plan("measure = 'opening_l3'");
-    let defect = assess(&wrong, &records(&wrong)).expect_err("no such measure");
-    assert!(
-        defect.remedy.contains("did you mean \"opening_l2\""),
-        "{defect}"
-    );
-    assert!(defect.place.contains("scene.toml:"), "{defect}");
+    for (study, problem, near, served) in [
+        (
+            "measure = 'opening_l3'\nfracture = 'b'",
+            "the runs have no measure `opening_l3` on `b`",
+            "did you mean \"opening_l2\"? ",
+            "b",
+        ),
+        ("fracture = 'c'", "the runs have no measure on `c`", "", "a"),
+    ] {
+        let wrong = plan(study);
+        let found = assess(&wrong, &records(&wrong));
+        let defect = found.missing.expect("no such measure");
+        assert_eq!(defect.problem, problem);
+        let known = format!("{near}measures of the runs: energy of a, ");
+        assert!(defect.remedy.starts_with(&known), "{defect}");
+        let line = SCENE.lines().count() + 1;
+        assert_eq!(defect.place, format!("scene.toml:{line}"));
+        let target = found.target.expect("another target");
+        assert_eq!(target.name, "opening_l2");
+        assert_eq!(target.fracture.as_deref(), Some(served));
+    }
 }
 
 #[test]
 fn without_closed_forms_the_mean_aperture_of_the_largest_fracture_is_extrapolated() {
     let plan = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]\norders = [1, 2]");
-    let found = assess(&plan, &extrapolated(&plan, |_| 3.0)).expect("an assessment");
+    let found = assess(&plan, &extrapolated(&plan, |_| 3.0));
     let target = found.target.as_ref().expect("a target");
     assert_eq!(
         (target.name.as_str(), target.fracture.as_deref()),
@@ -141,7 +156,7 @@ fn each_law_has_its_own_reference_unless_one_serves_all() {
     let sweep = "meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]\norders = [2, 1]\nclosures = ['linear', 'logarithmic']";
     let limit = |law: &str| if law == "linear" { 3.0 } else { 4.0 };
     let own = plan(sweep);
-    let found = assess(&own, &extrapolated(&own, limit)).expect("an assessment");
+    let found = assess(&own, &extrapolated(&own, limit));
     assert_eq!(found.references.len(), 2);
     for (setting, verdict) in own.settings.iter().zip(&found.verdicts) {
         close(
@@ -150,7 +165,7 @@ fn each_law_has_its_own_reference_unless_one_serves_all() {
         );
     }
     let shared = plan(&format!("{sweep}\nreference = 'logarithmic'"));
-    let found = assess(&shared, &extrapolated(&shared, limit)).expect("an assessment");
+    let found = assess(&shared, &extrapolated(&shared, limit));
     for verdict in &found.verdicts {
         close(verdict.reference.expect("a reference"), 4.0);
     }
@@ -162,13 +177,14 @@ fn two_meshes_or_failures_leave_no_errors() {
     let mut records = extrapolated(&sweep, |_| 3.0);
     records[1] = Some(PointRecord {
         fingerprint: String::new(),
+        gmsh: None,
         outcome: PointOutcome::Failed("for want of memory".into()),
     });
-    let found = assess(&sweep, &records).expect("an assessment");
+    let found = assess(&sweep, &records);
     assert!(found.references.is_empty());
     assert!(found.verdicts.iter().all(|verdict| verdict.error.is_none()));
     assert_eq!(found.verdicts[1], Verdict::default());
-    let nothing = assess(&sweep, &[None, None, None]).expect("an assessment");
+    let nothing = assess(&sweep, &[None, None, None]);
     assert_eq!(nothing.target, None);
 }
 
@@ -178,13 +194,14 @@ fn lower_orders_wait_for_higher_ones_unless_these_fail() {
     let mut records = extrapolated(&plan, |_| 3.0);
     let finest = plan.settings.len() - 1;
     records[finest] = None;
-    let found = assess(&plan, &records).expect("an assessment");
+    let found = assess(&plan, &records);
     assert!(found.references.is_empty(), "{:?}", found.references);
     records[finest] = Some(PointRecord {
         fingerprint: String::new(),
+        gmsh: None,
         outcome: PointOutcome::Failed("for want of memory".into()),
     });
-    let found = assess(&plan, &records).expect("an assessment");
+    let found = assess(&plan, &records);
     assert!(
         found.references[0].from.contains("order 1"),
         "{:?}",
@@ -197,7 +214,7 @@ fn a_drift_has_a_reference_but_no_errors() {
     let plan = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]");
     let run = |cells, value| solved(cells, vec![measure("mean_aperture", "b", value, None)]);
     let records = [run(10, 1.0), run(80, 1.1), run(640, 1.3)];
-    let found = assess(&plan, &records).expect("an assessment");
+    let found = assess(&plan, &records);
     assert_eq!(found.references.len(), 1);
     assert!(found.verdicts.iter().all(|verdict| verdict.error.is_none()));
     assert!(
@@ -212,10 +229,10 @@ fn a_drift_has_a_reference_but_no_errors() {
 fn meshes_that_do_not_differ_are_named() {
     let plan = plan("meshes = [{ h = 0.4 }, { h = 0.2 }, { h = 0.1 }]");
     let run = |cells| solved(cells, vec![measure("mean_aperture", "b", 1.0, None)]);
-    let found = assess(&plan, &[run(10), run(80), run(80)]).expect("an assessment");
+    let found = assess(&plan, &[run(10), run(80), run(80)]);
     assert_eq!(found.identical_meshes.as_deref(), Some("h=0.2 and h=0.1"));
     assert!(found.references.is_empty(), "two meshes have no limit");
-    let found = assess(&plan, &[run(10), run(80), None]).expect("an assessment");
+    let found = assess(&plan, &[run(10), run(80), None]);
     assert_eq!(found.identical_meshes, None);
 }
 
@@ -223,7 +240,7 @@ fn meshes_that_do_not_differ_are_named() {
 fn series_differ_in_anything_but_the_mesh() {
     let plan =
         plan("meshes = [{ h = 0.1 }, { h = 0.2 }]\norders = [1, 2]\nfacets = ['nodal', 'gauss']");
-    let found = assess(&plan, &extrapolated(&plan, |_| 1.0)).expect("an assessment");
+    let found = assess(&plan, &extrapolated(&plan, |_| 1.0));
     let names: Vec<&str> = found
         .series
         .iter()

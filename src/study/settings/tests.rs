@@ -315,7 +315,8 @@ fn every_key_of_a_study_in_the_table_is_asked_for() {
     let root = Section::root(&source, table.get_ref());
     let scene: Table = text.parse().expect("TOML");
     let study = scene["study"].as_table().expect("a study");
-    read_study(root.section("study").expect("a study"), study, &scene);
+    let section = root.section("study").expect("a study");
+    read_study(&source, section, study, &scene);
     let mut unasked = source.unasked();
     let sections = Document::Study.sections();
     // Keys of fractures are read in the scene of each setting.
@@ -338,4 +339,53 @@ fn swept_values_may_have_units() {
     assert_eq!(fracture["cutoff_aperture"].as_str(), Some("1 um"));
     let defects = read("[study.values]\naperture = ['1 GPa']\n").expect_err("no length");
     assert!(defects[0].remedy.contains("a length in m"), "{defects:?}");
+}
+
+#[test]
+fn files_of_all_sections_are_named_by_their_whole_paths() {
+    let text = "[mesh]\ngeometry = 'a.geo'\n[rock.a]\nyoung_modulus = { file = 'b.csv' }\n\
+        [boundary.file]\npressure = { file = '/c.csv' }\n[fluid]\n\
+        initial_pressure = { file = 'd.csv' }\n[[source]]\nrate = { file = 'e.csv' }\n\
+        [[fixed_point]]\ndisplacement = { x = { file = 'f/g.csv' } }\n\
+        [study]\nclosures = [{ normal_stiffness = { file = 'h.csv' } }]\n";
+    let mut scene: Table = text.parse().expect("TOML");
+    make_paths_absolute(&mut scene, Path::new("/data")).expect("UTF-8");
+    let [source, point] = ["source", "fixed_point"].map(|list| &scene[list][0]);
+    let closure = &scene["study"]["closures"][0]["normal_stiffness"];
+    for (path, name) in [
+        (&scene["mesh"]["geometry"], "/data/a.geo"),
+        (&scene["rock"]["a"]["young_modulus"]["file"], "/data/b.csv"),
+        (&scene["boundary"]["file"]["pressure"]["file"], "/c.csv"),
+        (&scene["fluid"]["initial_pressure"]["file"], "/data/d.csv"),
+        (&source["rate"]["file"], "/data/e.csv"),
+        (&point["displacement"]["x"]["file"], "/data/f/g.csv"),
+        (&closure["file"], "/data/h.csv"),
+    ] {
+        assert_eq!(path.as_str(), Some(name));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_whose_name_is_not_utf_8_is_refused() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = std::ffi::OsStr::from_bytes(b"/a\xff");
+    let mut scene: Table = SCENE.parse().expect("TOML");
+    let refused = make_paths_absolute(&mut scene, Path::new(folder));
+    let problem = refused.expect_err("no text").problem;
+    assert!(problem.contains("whose name is UTF-8"), "{problem}");
+}
+
+#[test]
+fn a_fracture_is_one_of_the_scene_unless_the_mesh_may_have_others() {
+    let study = "[study]\nmeasure = 'max_slip'\nfracture = 'aa'\n";
+    let defects = read(study).expect_err("no such fracture");
+    let line = SCENE.lines().count() + 3;
+    assert_eq!(defects[0].place, format!("folder/scene.toml:{line}"));
+    for part in ["did you mean \"a\"?", "the scene has: a, b"] {
+        assert!(defects[0].remedy.contains(part), "{defects:?}");
+    }
+    let text = SCENE.replace("[fracture.b]", "[fracture.default]") + study;
+    let plan = StudyPlan::read(Path::new("scene.toml"), &text).expect("a plan");
+    assert_eq!(plan.request.place, format!("scene.toml:{}", line - 1));
 }
