@@ -24,6 +24,7 @@ use kluft_mesh::{Defect, Draft, Faces, Group};
 
 use crate::failure::Failure;
 use crate::input::EXODUS;
+use crate::printing::shell_path;
 use crate::report::{Report, Verbosity};
 
 use project::{Project, read_project};
@@ -85,7 +86,7 @@ pub fn import(file: &Path, options: &ImportOptions) -> Result<(), Failure> {
     })?;
     sync_folder(folder.path())?;
     let scene = options.out.join(SCENE);
-    report.entry("next", &format!("kluft inspect {}", scene.display()));
+    report.entry("next", &format!("kluft inspect {}", shell_path(&scene)));
     Ok(())
 }
 

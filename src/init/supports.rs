@@ -20,6 +20,14 @@ pub enum Assumed {
     Free(&'static str),
 }
 
+/// The axes along which the body can move; the last one points upwards.
+pub fn axes(mesh: &Mesh) -> &'static [&'static str] {
+    match mesh.is_plane() {
+        true => &["x", "y"],
+        false => &["x", "y", "z"],
+    }
+}
+
 /// What is assumed of each part of the outer surface.
 pub fn assumed(mesh: &Mesh) -> Vec<Assumed> {
     let (low, high) = mesh.bounds();
@@ -41,12 +49,18 @@ fn of_part(mesh: &Mesh, part: &Boundary, [low, high]: [DVec3; 2]) -> Assumed {
         return Assumed::Free("not flat");
     }
     let (normal, middle) = (vector.normalize(), middle / area);
-    let reach = NEAR * (high - low).length();
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+    let axes = axes(mesh);
+    let up = axes.len() - 1;
+    let mut size = high - low;
+    if mesh.is_plane() {
+        size.z = 0.0;
+    }
+    let reach = NEAR * size.length();
+    for (axis, &name) in axes.iter().enumerate() {
         if normal[axis] < -FLAT && middle[axis] - low[axis] < reach {
             return Assumed::Roller(name);
         }
-        if axis == 2 && normal[axis] > FLAT && high[axis] - middle[axis] < reach {
+        if axis == up && normal[axis] > FLAT && high[axis] - middle[axis] < reach {
             return Assumed::Pressed;
         }
     }

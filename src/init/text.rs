@@ -1,16 +1,15 @@
 //! The text of a scene that a mesh suggests.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
-use glam::DVec3;
-use kluft_keys::{quoted, section_head};
-use kluft_mesh::{Mesh, Survey};
+use kluft_keys::{key_text, quoted, section_head};
+use kluft_mesh::{FractureSurvey, Mesh, Survey};
 
-use super::supports::{Assumed, assumed};
+use super::conditions::conditions;
+use super::lines::Lines;
 
-/// Column in which comments begin.
-const COMMENT: usize = 34;
+/// Most constants of a geometry that are shown.
+const CONSTANTS: usize = 3;
 
 /// Where a mesh comes from.
 pub struct Source {
@@ -18,10 +17,20 @@ pub struct Source {
     pub path: PathBuf,
     /// Whether gmsh makes the mesh from it.
     pub is_geometry: bool,
+    /// What a scene may set of a geometry, with the defaults.
+    pub constants: Vec<(String, f64)>,
+}
+
+/// A scene that is suggested.
+pub struct Suggested {
+    /// The scene.
+    pub text: String,
+    /// Whether enough was found that holds the body for a run to begin.
+    pub is_held: bool,
 }
 
 /// The scene.
-pub fn scene(source: &Source, mesh: &Mesh, survey: &Survey) -> String {
+pub fn scene(source: &Source, mesh: &Mesh, survey: &Survey) -> Suggested {
     let mut out = Lines::default();
     let name = source.path.file_stem().unwrap_or_default();
     out.add(
@@ -36,58 +45,63 @@ pub fn scene(source: &Source, mesh: &Mesh, survey: &Survey) -> String {
     mesh_section(&mut out, source, mesh);
     rocks(&mut out, mesh);
     fractures(&mut out, mesh, survey);
-    boundaries(&mut out, mesh);
-    out.text
-}
-
-#[derive(Default)]
-struct Lines {
-    text: String,
-}
-
-impl Lines {
-    /// Adds a line with a comment, which may be empty.
-    fn add(&mut self, line: &str, comment: &str) {
-        let _ = match comment {
-            "" => writeln!(self.text, "{line}"),
-            comment => writeln!(
-                self.text,
-                "{line:<COMMENT$}# {}",
-                crate::printing::one_line(comment)
-            ),
-        };
-    }
-
-    fn section(&mut self, head: &str, comment: &str) {
-        self.text.push('\n');
-        self.add(head, comment);
+    let is_held = conditions(&mut out, mesh);
+    Suggested {
+        text: out.text,
+        is_held,
     }
 }
 
 fn mesh_section(out: &mut Lines, source: &Source, mesh: &Mesh) {
+    let strain = match mesh.is_plane() {
+        true => "a plane, in plane strain: ",
+        false => "",
+    };
     let cells = format!(
-        "{} cells, {} fracture facets",
+        "{strain}{} cells, {} fracture facets",
         mesh.cells.len(),
         mesh.facets.elements.len()
     );
     out.section("[mesh]", &cells);
-    let key = if source.is_geometry {
-        "geometry"
-    } else {
-        "file"
-    };
     let path = quoted(&source.path.to_string_lossy());
-    out.add(&format!("{key} = {path}"), "");
-    if source.is_geometry {
-        out.add(
-            "# parameters = { h = 0.1 }",
-            "values of its DefineConstant names",
-        );
+    if !source.is_geometry {
+        return out.add(&format!("file = {path}"), "");
+    }
+    out.add(&format!("geometry = {path}"), "");
+    if mesh.is_plane() {
+        out.add("dimension = 2", "the geometry has no volumes");
+    }
+    parameters(out, &source.constants);
+}
+
+/// What a scene may set of a geometry, with the defaults.
+fn parameters(out: &mut Lines, constants: &[(String, f64)]) {
+    if constants.is_empty() {
+        return;
+    }
+    let shown = constants.iter().take(CONSTANTS);
+    let shown: Vec<String> = shown
+        .map(|(name, value)| format!("{} = {value:?}", key_text(name)))
+        .collect();
+    let line = format!("# parameters = {{ {} }}", shown.join(", "));
+    let comment = match constants.len() > CONSTANTS {
+        true => "the first of its DefineConstant names, with their defaults",
+        false => "its DefineConstant names, with their defaults",
+    };
+    out.add(&line, comment);
+}
+
+/// What gmsh calls the groups of rock and of fractures.
+fn kinds(mesh: &Mesh) -> [&'static str; 2] {
+    match mesh.is_plane() {
+        true => ["surface", "curve"],
+        false => ["volume", "surface"],
     }
 }
 
 /// One section for each volume that has a name, or one for all.
 fn rocks(out: &mut Lines, mesh: &Mesh) {
+    let [kind, _] = kinds(mesh);
     let mut cells = vec![0; mesh.groups.len()];
     let mut nameless = 0;
     for &set in &mesh.cell_group_set {
@@ -102,13 +116,13 @@ fn rocks(out: &mut Lines, mesh: &Mesh) {
     if volumes.is_empty() || nameless > 0 {
         out.section(
             "[rock.default]",
-            &format!("{nameless} cells of no physical volume"),
+            &format!("{nameless} cells of no physical {kind}"),
         );
         elasticity(out);
     }
     for (group, cells) in volumes {
         let head = section_head("rock", &group.name);
-        out.section(&head, &format!("a physical volume of {cells} cells"));
+        out.section(&head, &format!("a physical {kind} of {cells} cells"));
         elasticity(out);
     }
 }
@@ -120,17 +134,7 @@ fn elasticity(out: &mut Lines) {
 
 fn fractures(out: &mut Lines, mesh: &Mesh, survey: &Survey) {
     for (name, found) in mesh.fractures.iter().zip(&survey.fractures) {
-        let lies = match found.closed {
-            true => "closed".to_owned(),
-            false => {
-                let mean = &found.orientation;
-                format!(
-                    "dip {:.0}°, dip direction {:.0}°",
-                    mean.dip, mean.dip_direction
-                )
-            }
-        };
-        let what = format!("rock on both sides; {:.4} m2, {lies}", found.area);
+        let what = format!("rock on both sides; {}", extent(mesh, found));
         out.section(&section_head("fracture", name), &what);
         out.add("aperture = \"0.1 mm\"", "assumed");
         out.add("normal_stiffness = \"100 GPa/m\"", "assumed");
@@ -141,69 +145,21 @@ fn fractures(out: &mut Lines, mesh: &Mesh, survey: &Survey) {
         );
     }
     if mesh.fractures.is_empty() {
-        out.section(
-            "# No physical surface has rock on both sides: there is no fracture.",
-            "",
-        );
+        let [_, kind] = kinds(mesh);
+        let text = format!("# No physical {kind} has rock on both sides: there is no fracture.");
+        out.section(&text, "");
     }
 }
 
-fn boundaries(out: &mut Lines, mesh: &Mesh) {
-    let assumed = assumed(mesh);
-    for (part, assumed) in mesh.boundaries.iter().zip(&assumed) {
-        let head = section_head("boundary", &part.name);
-        match assumed {
-            Assumed::Roller(axis) => {
-                out.section(
-                    &head,
-                    &format!("assumed: a roller at the lower end of {axis}"),
-                );
-                out.add("symmetry = true", "");
-            }
-            Assumed::Pressed => {
-                out.section(&head, "the top");
-                out.add("pressure = \"10 MPa\"", "assumed");
-            }
-            Assumed::Free(why) => {
-                out.section(&format!("# {head}"), &format!("free: {why}"));
-                out.add(
-                    "# pressure = \"1 MPa\"",
-                    "or symmetry = true, displacement = { x = 0 }",
-                );
-            }
-        }
+/// How large a fracture is, and how it lies; in the plane the area of one metre is a length.
+fn extent(mesh: &Mesh, found: &FractureSurvey) -> String {
+    let mean = &found.orientation;
+    match (mesh.is_plane(), found.closed) {
+        (true, _) => format!("{:.4} m long", found.area),
+        (false, true) => format!("{:.4} m2, closed", found.area),
+        (false, false) => format!(
+            "{:.4} m2, dip {:.0}°, dip direction {:.0}°",
+            found.area, mean.dip, mean.dip_direction
+        ),
     }
-    let misses = |wanted: &dyn Fn(&Assumed) -> bool| !assumed.iter().any(wanted);
-    let axes = ["x", "y", "z"].into_iter();
-    let loose: Vec<&str> = axes
-        .filter(|&axis| misses(&|one| *one == Assumed::Roller(axis)))
-        .collect();
-    match loose[..] {
-        [] => {}
-        [axis] => fixed_point(out, mesh, axis),
-        _ => {
-            let text = "# Too little was found that holds the body: give surfaces above";
-            out.section(text, "");
-            out.add("# `symmetry = true`, or add [[fixed_point]] sections.", "");
-        }
-    }
-    if misses(&|one| *one == Assumed::Pressed) {
-        out.section("# No flat top was found: give a surface above a pressure, or let gravity act (`kluft explain gravity`).", "");
-    }
-}
-
-/// Holds a node at the lowest corner of the body along an axis; rollers along the others keep it
-/// from turning.
-fn fixed_point(out: &mut Lines, mesh: &Mesh, axis: &str) {
-    let (low, _) = mesh.bounds();
-    let distance = |node: &DVec3| node.distance_squared(low);
-    let nodes = mesh.nodes.iter();
-    let nearest = nodes.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let Some(DVec3 { x, y, z }) = nearest else {
-        return;
-    };
-    let why = format!("assumed: no roller holds the body along {axis}");
-    out.section("[[fixed_point]]", &why);
-    out.add(&format!("at = [{x:?}, {y:?}, {z:?}]"), "");
-    out.add(&format!("displacement = {{ {axis} = 0.0 }}"), "");
 }

@@ -17,6 +17,7 @@ use kluft_mesh::Defect;
 use kluft_network::{Domain, Grouping, Network, write_geo};
 
 use crate::failure::Failure;
+use crate::printing::shell_path;
 use crate::report::{Report, Verbosity};
 use crate::run::{RunOptions, run};
 use body::included;
@@ -87,7 +88,7 @@ pub fn make_network(file: &Path, options: &NetworkOptions) -> Result<(), Failure
     write(file, options, &input, &network, &record)?;
     let scene = options.out.join(SCENE);
     if !options.run {
-        report.entry("next", &format!("kluft run {}", scene.display()));
+        report.entry("next", &format!("kluft run {}", shell_path(&scene)));
         return Ok(());
     }
     let running = RunOptions {

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use kluft_defect::ordinary_text;
 use kluft_mesh::Defect;
 
+use crate::printing::shell_path;
+
 /// Bytes that tell what a file is.
 const HEAD: u64 = 4096;
 
@@ -99,22 +101,39 @@ pub fn scene_at(path: &Path) -> Result<PathBuf, Defect> {
     }
 }
 
-/// The files in a folder that have the section of a mesh, in the order of their names.
+/// The scenes in a folder, in the order of their names.
 fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let files = entries.map(|entry| entry.path());
-    let is_toml = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
-    let has_mesh = |file: &PathBuf| {
-        let text = ordinary_text(file).unwrap_or_default();
-        text.lines()
-            .any(|line| line.trim_start().starts_with("[mesh"))
-            && text
-                .lines()
-                .any(|line| line.trim_start().starts_with("[fracture."))
-    };
-    let mut found: Vec<PathBuf> = files.filter(is_toml).filter(has_mesh).collect();
+    let mut found: Vec<PathBuf> = files
+        .filter(|file| has_ending(file, &["toml"]))
+        .filter(|file| is_scene(&ordinary_text(file).unwrap_or_default()))
+        .collect();
     found.sort();
     found
+}
+
+/// Whether a text has the section `mesh` of a scene; one that is no TOML, whether it seems so: who
+/// reads it then says what is wrong.
+fn is_scene(text: &str) -> bool {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let Ok(table) = text.parse::<toml::Table>() else {
+        let mut lines = text.lines().map(str::trim_start);
+        return lines.any(|line| line.starts_with("[mesh") || line.starts_with("mesh"));
+    };
+    let mesh = table.get("mesh").and_then(toml::Value::as_table);
+    mesh.is_some_and(|mesh| !is_description(&table, mesh))
+}
+
+/// Whether it is a description for `kluft network`: its section `mesh` has sizes, and no mesh.
+fn is_description(table: &toml::Table, mesh: &toml::Table) -> bool {
+    let has_mesh = mesh.contains_key("file") || mesh.contains_key("geometry");
+    !has_mesh && (mesh.contains_key("h") || table.contains_key("fracture_set"))
+}
+
+/// Whether a file of this name would be taken for something else than a scene.
+pub fn is_named_otherwise(path: &Path) -> bool {
+    of_name(path).is_some()
 }
 
 /// Whether a file is a geometry of gmsh, by its name.
@@ -174,10 +193,10 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
 }
 
 fn refusal(kind: FileKind, path: &Path) -> Defect {
-    let shown = path.display();
+    let (shown, word) = (path.display(), shell_path(path));
     let name = path.file_name().unwrap_or_default().display();
     let convert = match has_ending(path, &IMPORTED) || has_ending(path, &EXODUS) {
-        true => format!("`kluft import {shown} -o DIR` makes a mesh and a scene of it"),
+        true => format!("`kluft import {word} -o DIR` makes a mesh and a scene of it"),
         false => {
             "convert a mesh for gmsh first (`meshio convert FILE mesh.msh`), and name it in a \
                   scene: `[mesh] file = \"mesh.msh\"`"
@@ -193,12 +212,12 @@ fn refusal(kind: FileKind, path: &Path) -> Defect {
         FileKind::Mesh => (
             "a mesh of gmsh",
             format!(
-                "`kluft inspect {shown}` looks at it; `kluft init {shown}` writes a scene with `[mesh] file = \"{name}\"`"
+                "`kluft inspect {word}` looks at it; `kluft init {word}` writes a scene with `[mesh] file = \"{name}\"`"
             ),
         ),
         FileKind::Geometry => (
             "a geometry",
-            format!("`kluft init {shown}` writes a scene with `[mesh] geometry = \"{name}\"`"),
+            format!("`kluft init {word}` writes a scene with `[mesh] geometry = \"{name}\"`"),
         ),
         FileKind::Vtk => (
             "a file of VTK",
@@ -208,7 +227,7 @@ fn refusal(kind: FileKind, path: &Path) -> Defect {
         FileKind::List => (
             "a list or a table",
             format!(
-                "`kluft network {shown} -o DIR` makes a geometry and a scene from a list of fractures"
+                "`kluft network {word} -o DIR` makes a geometry and a scene from a list of fractures"
             ),
         ),
         FileKind::Json => ("JSON", "give the scene (TOML) that it came from".to_owned()),
@@ -237,5 +256,56 @@ mod tests {
         assert_eq!(of_name(Path::new("a.GEO")), Some(FileKind::Geometry));
         assert_eq!(of_name(Path::new("scene.toml")), None);
         assert_eq!(of_name(Path::new("scene")), None);
+    }
+
+    #[test]
+    fn every_text_with_a_mesh_is_a_scene() {
+        for text in [
+            "[mesh]\nfile = 'a.msh'\n",
+            "mesh = { file = 'a.msh' }\n[fracture]\n",
+            "\u{feff}mesh.geometry = 'a.geo'\n",
+            "[mesh]\ngeometry = 'a.geo'\nh = 1\n",
+            "[mesh]\n",
+            "title = \n [mesh]\n",
+            "title = \nmesh = {\n",
+        ] {
+            assert!(is_scene(text), "{text:?}");
+        }
+        for text in [
+            "",
+            "meshes = 'many'\n",
+            "mesh = 'a.msh'\n",
+            "[package]\nname = 'a'\n",
+            "[mesh]\nh = 1\n",
+            "[mesh]\nsmall = 0.1\n[fracture_set.a]\n",
+            "title = \n[rock]\n",
+        ] {
+            assert!(!is_scene(text), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_only_scene_of_a_folder_is_found_whatever_its_ending() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("Joint.TOML");
+        std::fs::write(&file, "\u{feff}mesh = { file = 'a.msh' }\n").expect("written");
+        std::fs::write(folder.path().join("network.toml"), "[mesh]\nh = 1\n").expect("written");
+        assert_eq!(scene_at(folder.path()), Ok(file));
+    }
+
+    #[test]
+    fn commands_that_refusals_name_are_for_a_shell() {
+        for (file, command) in [
+            ("my mesh.msh", "`kluft inspect 'my mesh.msh'`"),
+            ("my mesh.msh", "`kluft init 'my mesh.msh'`"),
+            ("my rock.geo", "`kluft init 'my rock.geo'`"),
+            ("my list.csv", "`kluft network 'my list.csv' -o DIR`"),
+            ("my grid.inp", "`kluft import 'my grid.inp' -o DIR`"),
+        ] {
+            let path = Path::new(file);
+            let defect = refusal(of_name(path).expect("a kind"), path);
+            assert!(defect.remedy.contains(command), "{}", defect.remedy);
+            assert_eq!(defect.place, file);
+        }
     }
 }

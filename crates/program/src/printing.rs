@@ -2,7 +2,9 @@
 //! of them.
 
 use std::fmt::Write;
+use std::path::Path;
 
+use crate::invocation::quoted;
 pub use kluft_io::printable::{cell, json, lines, one_line};
 
 /// Columns of a line.
@@ -40,6 +42,15 @@ pub fn wrapped(line: &str, indent: usize) -> String {
     out
 }
 
+/// A path as a shell takes it for a file: in quotes where it needs them, and never as an option.
+pub fn shell_path(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    match text.starts_with('-') {
+        true => quoted(&format!("./{text}")),
+        false => quoted(&text),
+    }
+}
+
 /// A number in at most nine characters.
 pub fn in_nine(value: f64) -> String {
     match value.abs() {
@@ -56,6 +67,19 @@ mod tests {
     fn long_names_lose_their_middle() {
         assert_eq!(shortened("joint", 5), "joint");
         assert_eq!(shortened("FRACTURE_0123", 8), "FRAC…123");
+    }
+
+    #[test]
+    fn a_path_is_one_word_of_a_shell() {
+        for (path, word) in [
+            ("a/b-1.5_c.toml", "a/b-1.5_c.toml"),
+            ("my rock/a.toml", "'my rock/a.toml'"),
+            ("rock's.msh", r"'rock'\''s.msh'"),
+            ("$x;&*.msh", "'$x;&*.msh'"),
+            ("-o.msh", "./-o.msh"),
+        ] {
+            assert_eq!(shell_path(Path::new(path)), word);
+        }
     }
 
     #[test]
