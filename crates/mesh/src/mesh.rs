@@ -207,8 +207,7 @@ impl Mesh {
 
     /// Whether a node moves by itself: in a mesh of the plane, that it is in the layer below.
     pub fn is_own(&self, node: u32) -> bool {
-        let original = self.original.as_ref();
-        original.is_none_or(|original| original[node as usize] == node)
+        self.layer_below(node) == node
     }
 
     /// The node of a mesh of the plane in the layer below that a node moves with; the node itself

@@ -17,12 +17,12 @@ use crate::summary::MeshTrial;
 pub const SIZES: &str = "sizes.pos";
 
 /// Leaves a mesh on which the estimated error meets the tolerance of the scene, or the budget is
-/// spent. A run from the beginning (`is_new`) removes what a former one has written once a mesh is
+/// spent. A run that goes on from no other removes what a former one has written once a mesh is
 /// there.
 ///
 /// # Errors
 /// As a run on any of the meshes.
-pub fn search(run: &mut Run<'_>, is_new: bool) -> Result<(), Interruption> {
+pub fn search(run: &mut Run<'_>) -> Result<(), Interruption> {
     let MeshSource::Geometry {
         adapt: Some(adapt), ..
     } = run.request.scene.mesh
@@ -36,8 +36,8 @@ pub fn search(run: &mut Run<'_>, is_new: bool) -> Result<(), Interruption> {
     for number in 1..=adapt.max_rounds {
         let start = Instant::now();
         let binding = run.prepare(None)?;
-        if is_new && number == 1 {
-            run.output.remove_former()?;
+        if number == 1 {
+            run.remove_former()?;
         }
         let (unknowns, accuracy) = run.trial(&binding)?;
         let problem = &binding.problem;

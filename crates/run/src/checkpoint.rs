@@ -337,7 +337,7 @@ mod tests {
         Progress {
             choice: Choice {
                 solver: "direct".into(),
-                why: vec!["why".into()],
+                why: "why".into(),
                 ..Choice::default()
             },
             steps: Vec::new(),

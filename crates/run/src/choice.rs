@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Choice {
     /// Its name.
     pub solver: String,
-    /// Why it was chosen; before that, what was chosen before it and why.
-    pub why: Vec<String>,
+    /// Why the first one was chosen.
+    pub why: String,
     /// What load steps have taken.
     pub observed: Observed,
     /// Memory for all that a solver needs (bytes).
@@ -21,11 +21,6 @@ impl Choice {
     /// The solver, if it is one that can be chosen.
     pub fn method(&self) -> Option<LinearMethod> {
         self.solver.parse().ok()
-    }
-
-    /// Why the first one was chosen.
-    pub fn first_reason(&self) -> &str {
-        self.why.first().map_or("", String::as_str)
     }
 
     /// Learns from a load step that continued a path: its linear solves and linear iterations.

@@ -56,7 +56,8 @@ impl Run<'_> {
     fn begin_with(&mut self, plan: &Plan) {
         let why = decisions::of_plan(plan, &self.request.scene.solver);
         if self.finished.is_empty() {
-            self.choose(plan, why);
+            self.choose(plan);
+            self.choice.why = why;
         } else if self.choice.method() != Some(plan.method) {
             let number = self.finished.len() + 1;
             self.choose_instead(plan, format!("from step {number} on, {why}"));
@@ -66,14 +67,13 @@ impl Run<'_> {
     /// Tells that another solver takes the place of the one before.
     fn choose_instead(&mut self, plan: &Plan, why: String) {
         self.observer.note("decided", &why);
-        self.summary.decisions.push(why.clone());
-        self.choose(plan, why);
+        self.summary.decisions.push(why);
+        self.choose(plan);
     }
 
-    /// Notes what was chosen and why.
-    pub fn choose(&mut self, plan: &Plan, why: String) {
+    /// Notes what was chosen.
+    pub fn choose(&mut self, plan: &Plan) {
         self.choice.solver = plan.method.to_string();
-        self.choice.why.push(why);
     }
 
     /// What all load steps of a system ask for. Until the last of them a solver stands beside the

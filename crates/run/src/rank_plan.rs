@@ -35,11 +35,11 @@ impl Run<'_> {
             false => Err(vec![failures::rank_too_large(ranks, needed, limit)]),
         };
         ranks.agree(fits)?;
-        let why = match ranks.count() {
+        self.choice.why = match ranks.count() {
             1 => "linear solver: iterative, on one rank".to_owned(),
             count => format!("linear solver: iterative, its rows divided among {count} ranks"),
         };
-        self.choose(&plan, why);
+        self.choose(&plan);
         Ok(plan)
     }
 }

@@ -103,7 +103,7 @@ fn solve(
     mesh_is_kept: bool,
 ) -> Result<(), Interruption> {
     if !mesh_is_kept {
-        adapt::search(run, former.is_none())?;
+        adapt::search(run)?;
     }
     if run.request.scene.has_stages() {
         return run.solve_stages(former);

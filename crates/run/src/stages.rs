@@ -401,11 +401,22 @@ impl<'a> Run<'a> {
         Ok(self.into_outcome(ending))
     }
 
+    /// Removes what another run has written, unless this one goes on from it.
+    ///
+    /// # Errors
+    /// If a file cannot be removed.
+    pub fn remove_former(&self) -> Result<(), Defect> {
+        match self.checkpointed {
+            0 => self.output.remove_former(),
+            _ => Ok(()),
+        }
+    }
+
     fn close(&mut self, ending: &Ending) -> Result<(), Defect> {
         self.summary.ending = Some(ending.clone());
-        if self.output.sums().is_empty() && self.checkpointed == 0 {
+        if self.output.sums().is_empty() {
             // A run may end before its first load step begins: its summary belongs to no grids.
-            self.output.remove_former()?;
+            self.remove_former()?;
         }
         self.write_summary()?;
         self.write_page()?;

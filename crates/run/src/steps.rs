@@ -135,8 +135,7 @@ impl Run<'_> {
     /// Takes over and tells what was decided for a problem.
     pub fn decide(&mut self, binding: &Binding) {
         let settings = newton_settings(&self.request.scene.solver);
-        let reason = self.choice.first_reason().to_owned();
-        self.summary.decisions.push(reason);
+        self.summary.decisions.push(self.choice.why.clone());
         let of_problem =
             decisions::of_problem(&binding.problem, binding.flow.as_ref(), settings.path);
         self.summary.decisions.extend(of_problem);

@@ -347,10 +347,7 @@ fn bind_fixed_points<'a>(
         let Some((node, distance, longest_edge)) = nearest_node(mesh, at) else {
             continue;
         };
-        let node = mesh
-            .original
-            .as_ref()
-            .map_or(node, |own| own[node] as usize);
+        let node = mesh.layer_below(node as u32) as usize;
         let x = mesh.nodes[node];
         let tag = mesh.node_tags[node];
         if distance > longest_edge {

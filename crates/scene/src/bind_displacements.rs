@@ -75,11 +75,7 @@ fn bind_held(problem: &mut Problem, held: &Held<'_>, look: &mut Look<'_>) {
 /// those that move, without their copies.
 fn nodes_of_boundary(mesh: &Mesh, boundary: usize) -> Vec<DVec3> {
     let nodes = mesh.boundaries[boundary].elements.nodes.iter();
-    let moving = nodes.map(|&node| match &mesh.original {
-        Some(original) => original[node as usize],
-        None => node,
-    });
-    let mut moving: Vec<u32> = moving.collect();
+    let mut moving: Vec<u32> = nodes.map(|&node| mesh.layer_below(node)).collect();
     moving.sort_unstable();
     moving.dedup();
     let places = moving.into_iter().map(|node| mesh.nodes[node as usize]);

@@ -326,20 +326,14 @@ impl Drilling<'_> {
             return FlowPlace::Well { node, radius };
         }
         let facets = &self.mesh.facets;
-        let corners = |facet: usize| {
-            let count = facets.elements.shapes[facet].corner_count();
-            facets.elements.nodes_of(facet)[..count].iter().copied()
-        };
         let all = (0..facets.elements.len()).filter(|&f| self.conducts(facets.fracture[f]));
-        let shares = all.flat_map(|facet| corners(facet).map(move |corner| (facet, corner)));
-        let own = self.mesh.layer_below(node);
-        let shares = shares.filter(|(_, corner)| self.mesh.layer_below(*corner) == own);
-        let share = |(facet, node): (usize, u32)| LineShare {
+        let around = all.filter(|&facet| facets.elements.nodes_of(facet).contains(&node));
+        let share = |facet: usize| LineShare {
             node,
             facet: facet as u32,
-            length: 0.5,
+            length: 1.0,
         };
-        lines.push(shares.map(share).collect());
+        lines.push(self.through_layers(around.map(share).collect()));
         FlowPlace::Line(lines.len() - 1)
     }
 
