@@ -1,8 +1,8 @@
 //! Unknowns, and what solving for them will take.
 
 use kluft_mesh::{Defect, Mesh};
-use kluft_run::RunFlow;
-use kluft_scene::{Binding, Scene, in_terms_of_scene};
+use kluft_run::{RunFlow, too_large};
+use kluft_scene::{Binding, Scene, SolverEntry, in_terms_of_scene};
 use kluft_solver::{
     Discretisation, Flow, Pattern, Plan, Prediction, Problem, SectorNodes, Unknowns, Workload,
 };
@@ -12,13 +12,14 @@ use super::findings::{Inspection, SectorCounts, SolverFinding, UnknownFindings};
 /// Directions in which a permeability is asked for.
 const AXES: usize = 3;
 
-/// Counts unknowns and predicts memory and time of the solvers.
+/// Counts unknowns and predicts memory and time of the solvers; returns what is wrong if the one
+/// that a scene asks for, or else all of them, take more memory than it allows.
 pub fn predict(
     mesh: &Mesh,
     discretisation: Option<&Discretisation>,
-    workload: Workload,
+    (workload, asked): (Workload, &SolverEntry),
     inspection: &mut Inspection,
-) {
+) -> Option<Defect> {
     let own = discretisation.is_none().then(|| {
         let points = SectorNodes::of(mesh);
         let pattern = Pattern::of(mesh, &points);
@@ -27,7 +28,7 @@ pub fn predict(
     let (points, pattern) = match (&own, discretisation) {
         (Some((points, pattern)), _) => (points, pattern),
         (None, Some(found)) => (found.points(), found.pattern()),
-        (None, None) => return,
+        (None, None) => return None,
     };
     inspection.unknowns = Some(unknowns(mesh, points, discretisation));
     let jumps: Vec<u32> = match discretisation {
@@ -43,15 +44,21 @@ pub fn predict(
         jumps: &jumps,
     };
     let workload = workload.with_extra_memory(mesh, points.len());
-    match Plan::of(outline, workload, None, usize::MAX) {
+    let limit = asked
+        .memory_limit
+        .map_or(usize::MAX, |limit| limit as usize);
+    match Plan::of(outline, workload, asked.linear, limit) {
         Ok(plan) => {
             let all = plan.predictions.iter();
             let all = all.map(|own| finding(own, own.method == plan.method));
             inspection.solvers.extend(all);
+            let is_too_large = plan.prediction().memory_bytes > limit;
+            is_too_large.then(|| too_large(&plan, asked, limit))
         }
         Err(failure) => {
             let warning = format!("the direct solver cannot analyse this mesh: {failure:?}");
             inspection.warnings.push(warning);
+            None
         }
     }
 }

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use kluft_io::{GmshOptions, NOT_WRITTEN, write_atomically, write_vtu};
 use kluft_mesh::{Defect, Draft, Faces, Mesh, SurfaceRole, Survey, outer_surfaces};
-use kluft_solver::{Discretisation, FlowWorkload, Problem, Workload};
+use kluft_solver::{Discretisation, EquivalentPermeability, FlowWorkload, Workload, unfit_walls};
 
 use crate::failure::Failure;
 use crate::input::{expect_scene, is_mesh, scene_at};
@@ -29,8 +29,8 @@ use kluft_run::{
     unfinished_mesh_file,
 };
 use kluft_scene::{
-    Binding, JoinedDraft, MeshSource, Scene, SurfaceMesh, bind, in_terms_of_scene, join,
-    name_places, refine, roles, surface_mesh,
+    Binding, JoinedDraft, MeshSource, Scene, SolverEntry, SurfaceMesh, bind, in_terms_of_scene,
+    join, name_places, refine, roles, surface_mesh,
 };
 
 use findings::{Inspection, MeshCounts};
@@ -162,37 +162,51 @@ fn look(
         defects.extend(output.write(GRID, |path| write_vtu(path, grid)).err());
     }
     let Some(scene) = scene else {
-        cost::predict(&mesh, None, Workload::one_step(&mesh, &[]), inspection);
+        let asked = (Workload::one_step(&mesh, &[]), &SolverEntry::default());
+        defects.extend(cost::predict(&mesh, None, asked, inspection));
         return defects;
     };
     match bind(scene, mesh) {
         Ok(binding) => {
-            let is_idle = scene.equivalent_permeability
-                && binding
-                    .flow
-                    .as_ref()
-                    .is_some_and(|flow| flow.conditions.is_empty());
-            let is_timed = binding.problem.schedule.is_timed;
-            let takes_time = match (scene.is_rigid(), &binding.flow) {
-                (true, Some(flow)) => flow.is_stored(is_timed),
-                _ => is_timed,
-            };
-            let pressures = connect(&binding, takes_time || is_idle, inspection);
-            if scene.is_rigid() && pressures.is_ok() {
-                let found = cost::predict_flow(scene, &binding, inspection);
-                defects.extend(found.err().unwrap_or_default());
-            }
-            if !scene.is_rigid() {
-                let pressures = pressures.as_ref().ok().copied().flatten();
-                let flow = workload(scene, &binding, pressures);
-                defects.extend(weigh((&binding.problem, flow), &survey, inspection));
-            }
-            defects.extend(pressures.err().unwrap_or_default());
+            defects.extend(look_at_problem(scene, &binding, &survey, inspection));
             inspection.decisions.extend(binding.decisions);
             inspection.warnings.extend(binding.warnings);
         }
         Err(found) => defects.extend(found),
     }
+    defects
+}
+
+/// Looks at a problem and its flow; returns why they could not be solved.
+fn look_at_problem(
+    scene: &Scene,
+    binding: &Binding,
+    survey: &Survey,
+    inspection: &mut Inspection,
+) -> Vec<Defect> {
+    let flow = binding.flow.as_ref();
+    let is_idle = scene.equivalent_permeability && flow.is_some_and(|f| f.conditions.is_empty());
+    let is_timed = binding.problem.schedule.is_timed;
+    let takes_time = match (scene.is_rigid(), flow) {
+        (true, Some(flow)) => flow.is_stored(is_timed),
+        _ => is_timed,
+    };
+    let mut defects = Vec::new();
+    if scene.equivalent_permeability {
+        let volume = EquivalentPermeability::volume_of(&binding.problem.mesh);
+        defects.extend(volume.err());
+    }
+    let pressures = connect(binding, takes_time || is_idle, inspection);
+    if scene.is_rigid() && pressures.is_ok() {
+        let found = cost::predict_flow(scene, binding, inspection);
+        defects.extend(found.err().unwrap_or_default());
+    }
+    if !scene.is_rigid() {
+        let pressures = pressures.as_ref().ok().copied().flatten();
+        let flow = workload(scene, binding, pressures);
+        defects.extend(weigh((scene, binding, flow), survey, inspection));
+    }
+    defects.extend(pressures.err().unwrap_or_default());
     defects
 }
 
@@ -293,18 +307,27 @@ fn workload(scene: &Scene, binding: &Binding, pressures: Option<usize>) -> Optio
 
 /// Adds what supports, loads, laws and a flow with them make of the mesh.
 fn weigh(
-    (problem, flow): (&Problem, Option<FlowWorkload>),
+    (scene, binding, flow): (&Scene, &Binding, Option<FlowWorkload>),
     survey: &Survey,
     inspection: &mut Inspection,
 ) -> Vec<Defect> {
+    let problem = &binding.problem;
     gather::held_and_loaded(problem, inspection);
     walls::judge(problem, survey, inspection);
-    let (discretisation, defects) = match Discretisation::of(problem) {
+    let (discretisation, mut defects) = match Discretisation::of(problem) {
         Ok(discretisation) => (Some(discretisation), Vec::new()),
         Err(defects) => (None, in_terms_of_scene(defects)),
     };
+    let following = binding.flow.as_ref();
+    let following = following.filter(|flow| flow.follows_walls(problem.schedule.is_timed));
+    if let (Some(flow), Some(discretisation)) = (following, &discretisation) {
+        let unfit = unfit_walls(problem, flow, discretisation.interface());
+        defects.extend(in_terms_of_scene(unfit));
+    }
     let workload = Workload::of(problem).with_flow(flow);
-    cost::predict(&problem.mesh, discretisation.as_ref(), workload, inspection);
+    let asked = (workload, &scene.solver);
+    let too_large = cost::predict(&problem.mesh, discretisation.as_ref(), asked, inspection);
+    defects.extend(too_large);
     defects
 }
 

@@ -384,6 +384,23 @@ fn wrong_input_is_refused_after_what_could_be_seen() {
         assert_eq!(named(&report["groups"], "joint")["role"], role);
         assert!(!report["defects"].as_array().expect("defects").is_empty());
     }
+    // What `run` would refuse for the same reason.
+    for (sections, said) in [
+        (
+            "[solver]\nmemory_limit = 1e3\n",
+            "raise `memory_limit` under [solver]",
+        ),
+        (
+            "[fluid]\nviscosity = 1e-3\n[[source]]\nfracture = \"joint\"\npressure = 1e5\n\
+             [solver]\nfacets = \"gauss\"\n",
+            "integrated at Gauss points, where flow cannot follow",
+        ),
+    ] {
+        fs::write(&scene, format!("{SCENE}\n{sections}")).expect("a scene");
+        let runs = inspect(&scene, &out, &[]);
+        assert_eq!(runs.code, Some(2), "{}", runs.err);
+        assert!(runs.err.contains(said), "{said}: {}", runs.err);
+    }
     let run = kluft(&["inspect", "no/such/scene.toml"]);
     assert_eq!((run.code, run.out.as_str()), (Some(2), ""));
     assert!(run.err.contains("remedy: "), "{}", run.err);

@@ -134,6 +134,11 @@ fn results_are_grids_of_the_plane() {
     assert!(said.contains("fractures [3] (0.0, 0.0)"), "{said}");
 }
 
+/// Sections before the fixed points.
+fn before_points(sections: &str) -> String {
+    format!("{sections}[[fixed_point]]")
+}
+
 #[test]
 fn what_leaves_the_plane_is_refused() {
     let gravity = (
@@ -149,11 +154,26 @@ fn what_leaves_the_plane_is_refused() {
         "traction = [0.0, -7e3, 0.0]",
         "traction = [0.0, -7e3, { expression = \"x\" }]",
     );
+    let by_metre =
+        before_points("[initial_stress]\nyy = { value = -8e3, per_metre = 26e3, at = 1.0 }\n");
+    let by_depth = before_points(
+        "[initial_stress]\nyy = { table = [[0, -8e3], [2, -9e3]], over = \"depth\" }\n",
+    );
+    let by_z = before_points("[initial_stress]\nyy = { expression = \"-8e3 + z\" }\n");
+    let by_water =
+        before_points("[fluid]\nviscosity = 1e-3\ninitial_pressure = { water_table = 2.0 }\n");
+    let edit = |text| ("[[fixed_point]]", text);
+    let [by_metre, by_depth, by_z, by_water] =
+        [&by_metre, &by_depth, &by_z, &by_water].map(|text| edit(text.as_str()));
     for (edits, says) in [
         (&[gravity, density][..], "out of the plane"),
         (&[load], "the traction has a part along z"),
         (&[varying], "the traction has a part along z"),
         (&[("{ y = 0.0 }", "{ z = 1.0, y = 0.0 }")], "plane strain"),
+        (&[by_metre], "\"-8000.0 + 26000.0 * (y - 1.0)\""),
+        (&[by_depth], "write over = \"y\", with the rows by y"),
+        (&[by_z], "write y (upwards) in place of z and depth"),
+        (&[by_water], "\"9810 * (2.0 - y)\""),
     ] {
         let run = workshop(edits).run("out", &[]);
         assert_eq!(run.code, Some(2), "{}", run.err);

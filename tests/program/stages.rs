@@ -345,11 +345,29 @@ fn wrong_stages_are_refused_by_name() {
             ("added_as = \"concrete\"", "added_as = \"concret\""),
             "`added_as` names a rock `concret` that the scene has not",
         ),
+        (
+            (
+                "remove = [\"core\", \"ring\"]",
+                "remove = [\"core\", \"ring\", \"core\"]",
+            ),
+            "names a volume twice in `remove`",
+        ),
     ] {
         let run = Workshop::new("lined-tunnel", &[edit]).run("out", &[]);
         assert_eq!(run.code, Some(2), "{}", run.out);
         assert!(run.err.contains(said), "{said:?} is not in\n{}", run.err);
     }
+    let all = [
+        (
+            "remove = [\"core\", \"ring\"]\nadd = [\"ring\"]\nadded_as = \"concrete\"",
+            "remove = [\"core\", \"ring\", \"rock\"]",
+        ),
+        (CONCRETE, ""),
+    ];
+    let run = Workshop::new("lined-tunnel", &all).run("out", &[]);
+    assert_eq!(run.code, Some(2), "{}", run.out);
+    let said = "leaves nothing: no volume of the mesh is there any more";
+    assert!(run.err.contains(said), "{}", run.err);
     let early = [
         (
             "until = 1\nremove = [\"core\", \"ring\"]\nadd = [\"ring\"]\nadded_as = \"concrete\"",

@@ -115,6 +115,12 @@ impl Expression {
         self.variables.contains(&Coordinate::Time)
     }
 
+    /// Whether it has the elevation in it.
+    pub fn depends_on_elevation(&self) -> bool {
+        let elevations = [Coordinate::Z, Coordinate::Depth];
+        self.variables.iter().any(|own| elevations.contains(own))
+    }
+
     /// Whether it has a coordinate in it.
     pub fn depends_on_place(&self) -> bool {
         self.variables.iter().any(|own| *own != Coordinate::Time)

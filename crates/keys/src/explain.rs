@@ -37,6 +37,10 @@ pub fn explain(query: &str) -> Result<String, Vec<&'static str>> {
         }
     }
     if out.is_empty() {
+        let named = places.iter().filter(|place| is_a_name(place, &wanted));
+        out.extend(named.map(of_section));
+    }
+    if out.is_empty() {
         let names = places.iter().flat_map(|place| place.section.keys);
         let last = wanted.rsplit('.').next().unwrap_or_default();
         return Err(some_near(last, names.map(|key| key.name), 3));
@@ -95,6 +99,13 @@ fn ends_with(path: &str, wanted: &str) -> bool {
 fn is_of_a_name(section: &str, key: &str, wanted: &str) -> bool {
     let parts: Vec<&str> = wanted.split('.').collect();
     parts.len() == 3 && parts[0] == section && parts[2] == key
+}
+
+/// Whether the path is that of a section with a name of the user's: `rock.granite`.
+fn is_a_name(place: &KeyPlace, wanted: &str) -> bool {
+    let name = wanted.strip_prefix(&place.path);
+    let is_one = name.is_some_and(|name| name.starts_with('.') && !name[1..].contains('.'));
+    is_one && place.section.pattern.contains("NAME")
 }
 
 /// Name of a section, the documents that have it, and its sentence.
@@ -186,6 +197,8 @@ mod tests {
             }
         }
         assert!(explain("load.phase.steps").is_ok_and(|text| text.contains("whole number")));
+        assert!(explain("rock.granite").is_ok_and(|text| text.contains("young_modulus")));
+        assert!(explain("rock.granite.colour").is_err());
         assert!(explain("[mesh]").is_ok_and(|text| text.contains("h_fracture")));
     }
 

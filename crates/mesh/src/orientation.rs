@@ -40,10 +40,11 @@ impl Orientation {
     pub fn of_normal(normal: DVec3) -> Self {
         let up = if normal.z < 0.0 { -normal } else { normal };
         let dip = libm::atan2(up.truncate().length(), up.z).to_degrees();
-        let direction = libm::atan2(up.x, up.y).to_degrees();
+        let direction = libm::atan2(up.x, up.y).to_degrees().rem_euclid(360.0);
         Self {
             dip,
-            dip_direction: direction.rem_euclid(360.0),
+            // Of an angle just below 0 the remainder is 360 by rounding.
+            dip_direction: if direction < 360.0 { direction } else { 0.0 },
         }
     }
 }

@@ -34,7 +34,7 @@ const KINDS: [(&[&str], FileKind); 6] = [
     ),
     (
         &[
-            "inp", "exo", "e", "med", "unv", "stl", "bdf", "obj", "ply", "mesh",
+            "inp", "exo", "e", "ex2", "exii", "g", "med", "unv", "stl", "bdf", "obj", "ply", "mesh",
         ],
         FileKind::OtherMesh,
     ),

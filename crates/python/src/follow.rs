@@ -135,6 +135,10 @@ impl Observer for Told {
             // Where nobody answers any more, nobody stops it either.
             let _ = self.answers.recv();
         }
+        self.goes_on()
+    }
+
+    fn goes_on(&mut self) -> ControlFlow<()> {
         match self.stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

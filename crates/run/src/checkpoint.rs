@@ -18,12 +18,13 @@ use twox_hash::XxHash3_128;
 use crate::choice::Choice;
 use crate::flow_summary::StepFlow;
 use crate::measure::Measure;
+use crate::page::Iterations;
 use crate::summary::{FractureSummary, MeshTrial, Seconds, StepFracture, StepMeasures};
 
 /// Its name in the folder of the results.
 pub const NAME: &str = "resume.bin";
 /// What every checkpoint begins with, and the number of the format.
-const HEAD: &[u8] = b"kluft checkpoint 16\n";
+const HEAD: &[u8] = b"kluft checkpoint 17\n";
 const KIND: usize = b"kluft checkpoint ".len();
 /// Bytes of the sum at the end.
 const SUM: usize = 16;
@@ -75,6 +76,8 @@ pub struct Progress<'a> {
     pub probes: String,
     /// The measures after the last of them.
     pub measures: Vec<Measure>,
+    /// How Newton's method went, for the page.
+    pub iterations: Iterations,
     /// Where the time went so far.
     pub seconds: Seconds,
     /// Largest resident memory so far (bytes).
@@ -348,6 +351,7 @@ mod tests {
             history: String::new(),
             probes: String::new(),
             stress_error: 0.0,
+            iterations: Iterations::default(),
             measures: Vec::new(),
             seconds: Seconds::default(),
             peak_memory_bytes: 5,

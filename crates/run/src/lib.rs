@@ -102,6 +102,7 @@ mod unresolved;
 pub use advance::{Advance, PreparedRock, with_prepared_rock};
 pub use cases::{ActingCases, GRAVITY};
 pub use ending::Ending;
+pub use failures::too_large;
 pub use flow::RunFlow;
 pub use flow_summary::{
     ConduitSummary, FlowSummary, Hydraulics, NetworkSummary, SourceFlow, StepFlow,

@@ -86,6 +86,12 @@ pub trait Observer: Send {
         ControlFlow::Continue(())
     }
 
+    /// Whether to go on with the next load step of a flow in rigid rock, which takes no iterations.
+    /// `Break` stops the run; the steps before are kept.
+    fn goes_on(&mut self) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
     /// A load step has converged. Called only if the run was asked to keep results.
     fn step_ends(&mut self, _result: &StepResult) {}
 }

@@ -96,6 +96,7 @@ impl Run<'_> {
             probes: self.probes.text.clone(),
             measures: summary.measures.clone(),
             stress_error: summary.stress_error,
+            iterations: self.iterations.clone(),
             seconds: summary.seconds.clone(),
             peak_memory_bytes: summary.peak_memory_bytes,
             origins: Origins {

@@ -74,6 +74,9 @@ impl Run<'_> {
             }
         }
         for index in done..steps {
+            if index > done && self.observer.goes_on().is_break() {
+                return Err(Interruption::Stopped);
+            }
             let solved = self.flow_at(problem, (&made, in_time.as_mut()), index)?;
             self.flow_step(problem, (&made, &solved), index)?;
             if index + 1 < steps {

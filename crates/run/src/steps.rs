@@ -208,6 +208,7 @@ impl Run<'_> {
         self.summary.measures = former.measures;
         self.summary.stress_error = former.stress_error;
         self.finished = former.steps;
+        self.iterations = former.iterations;
         self.take_over_origins(former.origins);
         let mut newton = self.set_up(system, plan)?;
         let system = &*system;

@@ -127,10 +127,10 @@ pub(crate) fn bind_with(
     let moved = (scene.quarter_points).then(|| quarter_points(mesh.move_to_quarter_points()));
     decisions.extend(moved.into_iter().flatten());
     let mut rock_of_cell = bind_rocks(scene, &mesh, &mut defects);
-    for (cell, rock) in rock_of_cell.iter_mut().enumerate() {
-        *rock = rock_of(cell).unwrap_or(*rock);
-    }
+    let cells = rock_of_cell.iter_mut().enumerate();
+    cells.for_each(|(cell, rock)| *rock = rock_of(cell).unwrap_or(*rock));
     defects.extend(wrong_gravity(scene, &mesh));
+    defects.extend(out_of_plane(scene, &mesh).iter().cloned());
     let fractures = bind_fractures(scene, &mesh.fractures, &mut decisions);
     let fixed_points = bind_fixed_points(scene, &mesh, &mut decisions, &mut defects);
     let oracles = bind_oracles(scene, &mesh, &fractures, &mut defects);
@@ -177,6 +177,14 @@ pub(crate) fn bind_with(
         oracles,
         probes,
     })
+}
+
+/// What a scene is wrong about because its mesh is one of the plane.
+fn out_of_plane<'s>(scene: &'s Scene, mesh: &Mesh) -> &'s [Defect] {
+    match mesh.is_plane() {
+        true => &scene.in_plane,
+        false => &[],
+    }
 }
 
 /// All warnings of a scene on its mesh, with those that are known.

@@ -176,6 +176,11 @@ fn read_water_table(section: &Section<'_, '_>, name: &'static str) -> Option<f64
     let forms = ["value", "per_metre", "at", "table", "expression", "file"];
     refuse_beside(&value, "water_table", &forms);
     let level = value.number("water_table");
+    let remedy = format!(
+        "write {{ expression = \"9810 * ({:?} - y)\" }}, with the weight of the fluid (Pa/m)",
+        level.unwrap_or(0.0)
+    );
+    value.refuse_in_plane("water_table", remedy);
     value.finish();
     level
 }

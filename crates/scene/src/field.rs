@@ -193,6 +193,9 @@ fn read_table(section: &Section<'_, '_>, wanted: &Wanted) -> Option<FieldEntry> 
         };
         section.refuse("table", problem.into(), remedy);
     }
+    if matches!(over_what, Some(Coordinate::Z | Coordinate::Depth)) {
+        section.refuse_in_plane("over", "write over = \"y\", with the rows by y");
+    }
     let table = table?;
     let [first, last] = table.ends();
     let origin = format!(
@@ -211,6 +214,9 @@ fn read_expression(section: &Section<'_, '_>, wanted: &Wanted) -> Option<FieldEn
         Ok(expression) => {
             if expression.depends_on_time() {
                 check_time(section, "expression", wanted);
+            }
+            if expression.depends_on_elevation() {
+                section.refuse_in_plane("expression", "write y (upwards) in place of z and depth");
             }
             let field = Field::Expression(Arc::new(expression));
             Some(entry(section, wanted, (field, format!("`{text}`"))))

@@ -44,6 +44,7 @@ mod roles;
 mod scene;
 mod setting;
 mod sources;
+mod stage_plans;
 mod stages;
 mod strength;
 mod surfaces;

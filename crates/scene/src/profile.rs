@@ -23,6 +23,16 @@ pub(crate) fn read_profile(section: &Section<'_, '_>, name: &'static str) -> Pro
         value: number("value"),
         per_metre: number("per_metre"),
     };
+    if read.per_metre != 0.0 {
+        let Profile {
+            value,
+            per_metre,
+            at,
+        } = read;
+        let remedy =
+            format!("write {{ expression = \"{value:?} + {per_metre:?} * (y - {at:?})\" }}");
+        profile.refuse_in_plane("per_metre", remedy);
+    }
     profile.finish();
     read
 }

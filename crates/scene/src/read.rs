@@ -130,7 +130,6 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         false => root.require("rock"),
     }
     let rock = |(name, s)| entry(source, name, s, |s| read_rock(s, setting));
-    let rocks = named("rock").filter_map(rock).collect();
     let fracture = |(name, s): (String, _)| {
         let called = name.clone();
         entry(source, name, s, |s| {
@@ -162,7 +161,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         strength_reduction: read_strength(root),
         silenced: silenced(root),
         title,
-        rocks,
+        rocks: named("rock").filter_map(rock).collect(),
         fractures,
         boundaries,
         scale: mesh.scale,
@@ -170,6 +169,7 @@ fn read_scene(source: &Source<'_>, root: &Section<'_, '_>, folder: &Path) -> Opt
         weld: mesh.weld,
         refine: mesh.refine,
         mesh: mesh.source?,
+        in_plane: source.take_defects_in_plane(),
         warnings: source.take_warnings(),
     })
 }

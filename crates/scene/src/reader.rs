@@ -32,6 +32,8 @@ pub struct Source<'a> {
     breaks: Vec<usize>,
     /// Defects with their position in the text.
     defects: RefCell<Vec<(usize, Defect)>>,
+    /// What is a defect if the mesh is one of the plane, with its position in the text.
+    in_plane: RefCell<Vec<(usize, Defect)>>,
     /// Doubts about values, with their position in the text.
     warnings: RefCell<Vec<(usize, String)>>,
     /// Patterns of sections with the keys of them that were asked for.
@@ -50,6 +52,7 @@ impl<'a> Source<'a> {
             folder: None,
             breaks: breaks.map(|(position, _)| position).collect(),
             defects: RefCell::default(),
+            in_plane: RefCell::default(),
             warnings: RefCell::default(),
             asked: RefCell::default(),
         }
@@ -66,9 +69,19 @@ impl<'a> Source<'a> {
 
     /// Keeps a defect of a part of the text.
     pub fn report(&self, at: &Range<usize>, problem: String, remedy: String) {
-        let excerpt = Excerpt::of(self.text, at);
-        let defect = Defect::new(self.place(at), problem, remedy).with_excerpt(excerpt);
+        let defect = self.defect(at, problem, remedy);
         self.defects.borrow_mut().push((at.start, defect));
+    }
+
+    /// Keeps what a part of the text is wrong about if the mesh is one of the plane.
+    fn report_in_plane(&self, at: &Range<usize>, problem: String, remedy: String) {
+        let defect = self.defect(at, problem, remedy);
+        self.in_plane.borrow_mut().push((at.start, defect));
+    }
+
+    fn defect(&self, at: &Range<usize>, problem: String, remedy: String) -> Defect {
+        let excerpt = Excerpt::of(self.text, at);
+        Defect::new(self.place(at), problem, remedy).with_excerpt(excerpt)
     }
 
     /// Keeps a doubt about a part of the text.
@@ -89,6 +102,11 @@ impl<'a> Source<'a> {
     /// The defects in the order of the text.
     pub fn into_defects(self) -> Vec<Defect> {
         in_order(self.defects)
+    }
+
+    /// What is a defect if the mesh is one of the plane, in the order of the text.
+    pub fn take_defects_in_plane(&self) -> Vec<Defect> {
+        in_order(RefCell::new(self.in_plane.take()))
     }
 
     /// Values that are possible but hardly meant, in the order of the text.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use kluft_mesh::Draft;
+use kluft_mesh::{Defect, Draft};
 use kluft_solver::LinearMethod;
 use lie_core::FacetQuadrature;
 
@@ -141,6 +141,8 @@ pub struct Scene {
     pub probes: Vec<Named<ProbeEntry>>,
     /// Closed forms by fracture.
     pub oracles: Vec<Named<Oracle>>,
+    /// What is a defect if the mesh is one of the plane: values that vary along z.
+    pub in_plane: Vec<Defect>,
     /// Values that are possible but hardly meant, each with its place.
     pub warnings: Vec<String>,
     /// Names of the warnings that are not told.

@@ -49,7 +49,7 @@ pub use estimate::{
 pub use flow::{
     ConditionFlow, Coupling, EquivalentPermeability, FlowBalance, FlowFields, FlowNetwork,
     FlowState, FlowSystem, FluidState, NO_PRESSURE, NoPermeability, PermeabilityTensor, TimeStep,
-    TransientFlow, TransientState,
+    TransientFlow, TransientState, unfit_walls,
 };
 pub use kluft_algebra::{
     AllGather, Analysis, BlockMatrix, BlockRows, Cholesky, Communicator, Division, FixedPart,

@@ -2,12 +2,13 @@
 
 use kluft_chart::{Axis, Chart, Series};
 use kluft_solver::Iteration;
+use serde::{Deserialize, Serialize};
 
 /// Iterations that are kept; a run of more is charted up to there.
 const MOST: usize = 400;
 
 /// The measures of convergence after the iterations of a run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Iterations {
     /// Force out of balance, increment, error of closure.
     measures: Vec<[f64; 3]>,

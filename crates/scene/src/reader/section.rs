@@ -127,6 +127,16 @@ impl<'a, 'i> Section<'a, 'i> {
         self.report(&at, problem, remedy.into());
     }
 
+    /// Reports `key`'s value, which varies along z, for meshes of the plane.
+    pub fn refuse_in_plane(&self, key: &'static str, remedy: impl Into<String>) {
+        let at = self.table.get(key).map_or(self.at.clone(), Spanned::span);
+        let problem = format!(
+            "{} varies along z, out of the plane of the mesh",
+            self.title
+        );
+        self.source.report_in_plane(&at, problem, remedy.into());
+    }
+
     /// Reports a key that must be there and is not.
     pub fn require(&self, key: &'static str) {
         if self.has(key) || self.misspelt(key).is_some() {

@@ -7,8 +7,22 @@ use serde::{Deserialize, Serialize};
 pub struct ConditionFlow {
     /// Pressure there (Pa): at the wall of a borehole, else the mean of the nodes.
     pub pressure: f64,
-    /// What enters through it (m^3/s); negative where it leaves.
+    /// What enters through it at that time (m^3/s); negative where it leaves.
     pub rate: f64,
+    /// What has entered through it in the last increment, in the mean of that time (m^3/s): the
+    /// rate itself in steady flow, and where a pressure drives it.
+    pub mean_rate: f64,
+}
+
+impl ConditionFlow {
+    /// A flow at a pressure (Pa) with one rate (m^3/s) all the time.
+    pub(super) fn steady(pressure: f64, rate: f64) -> Self {
+        Self {
+            pressure,
+            rate,
+            mean_rate: rate,
+        }
+    }
 }
 
 /// The mass balance of a flow.

@@ -90,8 +90,15 @@ pub struct FluidState {
 pub(crate) struct FlowIncrement {
     /// What belonged to each node when it began (m^3).
     pub(crate) volumes: Vec<f64>,
-    /// How long it takes (s); none for a steady state.
-    pub(crate) duration: Option<f64>,
+    /// The load that it begins under; none for a steady state.
+    from: Option<Load>,
+}
+
+impl FlowIncrement {
+    /// How long it takes to a load (s); none for a steady state.
+    pub(super) fn duration(&self, to: &Load) -> Option<f64> {
+        self.from.as_ref().map(|from| to.time - from.time)
+    }
 }
 
 /// A flow at some apertures and potentials.
@@ -131,8 +138,10 @@ impl<'a> Coupling<'a> {
         apertures: &[f64],
     ) -> Result<Self, Vec<Defect>> {
         let mesh = &problem.mesh;
-        gauss_points(problem, interface)?;
-        shut_contacts(problem, flow, interface)?;
+        let unfit = unfit_walls(problem, flow, interface);
+        if !unfit.is_empty() {
+            return Err(unfit);
+        }
         let nodes = FlowNodes::of(mesh, flow);
         let at_nodes = &apertures[..mesh.facets.elements.nodes.len()];
         let transmissivity = conductance::transmissivities(mesh, flow, &nodes, at_nodes);
@@ -238,10 +247,7 @@ impl<'a> Coupling<'a> {
         let loaded = Loaded::of(&self.topology, load).counted_from_means();
         let rows = 0..self.nodes();
         let potentials = rows.map(|row| self.initial(row) - loaded.weight(row));
-        let none = ConditionFlow {
-            pressure: 0.0,
-            rate: 0.0,
-        };
+        let none = ConditionFlow::steady(0.0, 0.0);
         let conditions = self.topology.flow.conditions.len();
         FluidState {
             potentials: potentials.collect(),
@@ -283,11 +289,11 @@ impl<'a> Coupling<'a> {
         rows.map(|(row, phi)| phi + loaded.weight(row)).collect()
     }
 
-    /// The increment from a state under one load to another.
-    pub(crate) fn increment(&self, fluid: &FluidState, from: &Load, to: &Load) -> FlowIncrement {
+    /// The increment of a fluid that begins under a load.
+    pub(crate) fn increment(&self, fluid: &FluidState, from: Load) -> FlowIncrement {
         FlowIncrement {
             volumes: fluid.volumes.clone(),
-            duration: self.is_transient.then_some(to.time - from.time),
+            from: self.is_transient.then_some(from),
         }
     }
 
@@ -340,7 +346,7 @@ impl<'a> Coupling<'a> {
         let conductance = Conductance::of(nodes, stencils, transmissivity);
         let operator = FlowOperator::of(&self.topology, conductance);
         let mut loaded = self.loaded(fluid, load);
-        loaded.duration = increment.duration;
+        loaded.from = increment.from.as_ref();
         let potentials = &fluid.potentials;
         let compressibility = self.topology.flow.fluid.compressibility;
         let density = potentials.iter().enumerate().map(|(row, potential)| {
@@ -350,7 +356,7 @@ impl<'a> Coupling<'a> {
         let spaces = self.points.at_rows(storing);
         let volumes = density.iter().zip(&spaces).map(|(rho, space)| rho * space);
         let volumes: Vec<f64> = volumes.collect();
-        if let Some(duration) = increment.duration {
+        if let Some(duration) = increment.duration(load) {
             let pairs = volumes.iter().zip(&increment.volumes);
             loaded.stored = Some(Stored {
                 rates: pairs.map(|(now, then)| (now - then) / duration).collect(),
@@ -377,18 +383,19 @@ impl<'a> Coupling<'a> {
         }
     }
 
-    /// A converged flow as the state that the next increment starts from.
+    /// A flow that has converged under a load, as the state that the next increment starts from.
     pub(crate) fn commit(
         &self,
         fluid: &mut FluidState,
         flow: &FlowAtWalls,
-        increment: &FlowIncrement,
+        (increment, load): (&FlowIncrement, &Load),
     ) {
         fluid.volumes.clone_from(&flow.volumes);
         fluid.conditions.clone_from(&flow.conditions);
         fluid.balance = flow.balance;
+        let duration = increment.duration(load).unwrap_or(0.0);
         for (entered, condition) in fluid.entered.iter_mut().zip(&flow.conditions) {
-            *entered += condition.rate * increment.duration.unwrap_or(0.0);
+            *entered += condition.mean_rate * duration;
         }
     }
 
@@ -424,8 +431,16 @@ impl<'a> Coupling<'a> {
     }
 }
 
-/// Refuses walls in contact between which nothing could flow.
-fn shut_contacts(problem: &Problem, flow: &Flow, interface: &Interface) -> Result<(), Vec<Defect>> {
+/// Fractures whose walls a flow cannot follow: those integrated at Gauss points, and those whose
+/// walls come into contact and leave nothing open.
+pub fn unfit_walls(problem: &Problem, flow: &Flow, interface: &Interface) -> Vec<Defect> {
+    let mut defects = gauss_points(problem, interface);
+    defects.extend(shut_contacts(problem, flow, interface));
+    defects
+}
+
+/// Walls in contact between which nothing could flow.
+fn shut_contacts(problem: &Problem, flow: &Flow, interface: &Interface) -> Vec<Defect> {
     let leaves_nothing = |conduit: &Conduit| {
         matches!(
             conduit,
@@ -442,36 +457,26 @@ fn shut_contacts(problem: &Problem, flow: &Flow, interface: &Interface) -> Resul
     let fractures = problem.mesh.fractures.iter().zip(&flow.conduits);
     let fractures = fractures.enumerate();
     let shut = fractures.filter(|(index, (_, conduit))| leaves_nothing(conduit) && touches(*index));
-    let defects: Vec<Defect> = shut
-        .map(|(_, (name, _))| {
-            Defect::new(
-                format!("fracture `{name}`"),
-                "its walls come into contact, and nothing could flow between them then",
-                "give it a residual hydraulic aperture (residual_hydraulic_aperture = 1e-6)",
-            )
-        })
-        .collect();
-    match defects.is_empty() {
-        true => Ok(()),
-        false => Err(defects),
-    }
+    let defects = shut.map(|(_, (name, _))| {
+        Defect::new(
+            format!("fracture `{name}`"),
+            "its walls come into contact, and nothing could flow between them then",
+            "give it a residual hydraulic aperture (residual_hydraulic_aperture = 1e-6)",
+        )
+    });
+    defects.collect()
 }
 
-/// Refuses fractures integrated at Gauss points.
-fn gauss_points(problem: &Problem, interface: &Interface) -> Result<(), Vec<Defect>> {
+/// Fractures integrated at Gauss points.
+fn gauss_points(problem: &Problem, interface: &Interface) -> Vec<Defect> {
     let fractures = problem.mesh.fractures.iter().zip(0_u32..);
     let gauss = fractures.filter(|(_, index)| interface.rule_of(*index) == FacetQuadrature::Gauss);
-    let defects: Vec<Defect> = gauss
-        .map(|(name, _)| {
-            Defect::new(
-                format!("fracture `{name}`"),
-                "it is integrated at Gauss points, where flow cannot follow its walls",
-                "integrate it at its nodes (facets = \"nodal\")",
-            )
-        })
-        .collect();
-    match defects.is_empty() {
-        true => Ok(()),
-        false => Err(defects),
-    }
+    let defects = gauss.map(|(name, _)| {
+        Defect::new(
+            format!("fracture `{name}`"),
+            "it is integrated at Gauss points, where flow cannot follow its walls",
+            "integrate it at its nodes (facets = \"nodal\")",
+        )
+    });
+    defects.collect()
 }

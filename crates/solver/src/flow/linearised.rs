@@ -42,7 +42,7 @@ impl<'a> Coupling<'a> {
         (increment, load): (&FlowIncrement, &Load),
     ) -> LinearisedFlow<'s, 'a> {
         let compressibility = self.topology.flow.fluid.compressibility;
-        let rate = increment.duration.map_or(0.0, |duration| 1.0 / duration);
+        let rate = increment.duration(load).map_or(0.0, f64::recip);
         let stored = |row: usize| rate * compressibility * flow.spaces[row];
         LinearisedFlow {
             matrix: flow.operator.free_matrix(&self.topology, stored),

@@ -28,8 +28,8 @@ pub(super) struct Loaded<'s, 'a> {
     load: &'s Load,
     /// What potentials are counted from in each network (Pa).
     pub(super) references: Vec<f64>,
-    /// How long the increment takes that ends here (s); none in steady flow.
-    pub(super) duration: Option<f64>,
+    /// What the increment begins with that ends here; none in steady flow.
+    pub(super) from: Option<&'s Load>,
     /// What is stored at each row (m^3/s), if the flow takes time.
     pub(super) stored: Option<Stored>,
     /// What networks that keep what they hold drive out, if there are any.
@@ -61,7 +61,7 @@ impl<'s, 'a> Loaded<'s, 'a> {
             references: vec![0.0; topology.networks.len()],
             topology,
             load,
-            duration: None,
+            from: None,
             stored: None,
             kept: None,
         }
@@ -184,7 +184,7 @@ impl<'s, 'a> Loaded<'s, 'a> {
         }
         for entry in &operator.conditions {
             let condition = self.condition(entry);
-            let rate = nodal::rate(condition, self.load, self.duration);
+            let rate = self.mean_rate(condition);
             match &entry.nodal {
                 Nodal::Given(_) => {}
                 Nodal::PerArea(areas) => {
@@ -205,6 +205,13 @@ impl<'s, 'a> Loaded<'s, 'a> {
             }
         }
         missing
+    }
+
+    fn mean_rate(&self, condition: &FlowCondition) -> f64 {
+        match self.from {
+            Some(from) => nodal::mean_rate(condition, [from, self.load]),
+            None => nodal::rate(condition, self.load, true),
+        }
     }
 
     fn stored_rates(&self) -> &[f64] {
@@ -230,7 +237,7 @@ impl<'s, 'a> Loaded<'s, 'a> {
             within = kept.moved;
             terms += kept.terms;
         }
-        let entering = conditions.iter().map(|flow| flow.rate);
+        let entering = conditions.iter().map(|flow| flow.mean_rate);
         let stored = (self.stored_rates(), within);
         let balance = FlowBalance::of(entering, stored, [missed, terms]);
         FlowState {
@@ -251,22 +258,22 @@ impl<'s, 'a> Loaded<'s, 'a> {
         missing: &mut [f64],
     ) -> ConditionFlow {
         let condition = self.condition(entry);
-        let rate = nodal::rate(condition, self.load, self.duration);
+        let rate = nodal::rate(condition, self.load, self.from.is_none());
+        let mean_rate = self.mean_rate(condition);
         match &entry.nodal {
             Nodal::Given(rows) => {
                 let sum: f64 = rows.iter().map(|&row| pressures[row]).sum();
                 let entering = rows.iter().map(|&row| -std::mem::take(&mut missing[row]));
-                ConditionFlow {
-                    pressure: sum / rows.len() as f64,
-                    // An empty sum of floats is -0.0.
-                    rate: entering.fold(0.0, |sum, rate| sum + rate),
-                }
+                // An empty sum of floats is -0.0.
+                let entering = entering.fold(0.0, |sum, rate| sum + rate);
+                ConditionFlow::steady(sum / rows.len() as f64, entering)
             }
             Nodal::Shared(shares) => {
                 let parts = shares.iter().map(|&(row, share)| share * pressures[row]);
                 ConditionFlow {
                     pressure: parts.sum(),
                     rate,
+                    mean_rate,
                 }
             }
             Nodal::PerArea(areas) => {
@@ -275,18 +282,18 @@ impl<'s, 'a> Loaded<'s, 'a> {
                 ConditionFlow {
                     pressure: parts.sum::<f64>() / area,
                     rate: area * rate,
+                    mean_rate: area * mean_rate,
                 }
             }
             Nodal::WellRate(well) => ConditionFlow {
                 pressure: pressures[well.row] + rate / well.conductance,
                 rate,
+                mean_rate,
             },
             Nodal::WellPressure(well) => {
                 let wall = self.driven(condition, well.row) + self.weight(well.row);
-                ConditionFlow {
-                    pressure: wall,
-                    rate: well.conductance * (wall - pressures[well.row]),
-                }
+                let entering = well.conductance * (wall - pressures[well.row]);
+                ConditionFlow::steady(wall, entering)
             }
         }
     }

@@ -58,7 +58,7 @@ mod walls;
 mod wells;
 
 pub use balance::{ConditionFlow, FlowBalance};
-pub use coupling::{Coupling, FluidState};
+pub use coupling::{Coupling, FluidState, unfit_walls};
 pub(crate) use coupling::{FlowAtWalls, FlowIncrement};
 pub use fields::FlowFields;
 pub(crate) use linearised::LinearisedFlow;

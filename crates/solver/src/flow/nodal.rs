@@ -70,14 +70,22 @@ fn nodal(place: &Place, drive: &FlowDrive, transmissivity: &[f64]) -> Nodal {
     }
 }
 
-/// The rate that a condition drives under a load at the end of an increment of some duration (s;
-/// none in steady flow), in m^3/s, or in m/s if it is one per area; 0 if it gives a pressure.
-pub(super) fn rate(entry: &FlowCondition, load: &Load, duration: Option<f64>) -> f64 {
-    match (&entry.drive, duration) {
-        (FlowDrive::Rate(rate), _) => load.factor(entry.case) * rate,
-        (FlowDrive::Leakoff(leakoff), Some(duration)) => {
-            leakoff.mean_rate(load.time - duration, load.time)
-        }
-        (FlowDrive::Leakoff(_), None) | (FlowDrive::Pressure(_), _) => 0.0,
+/// The rate that a condition drives under a load, in m^3/s, or in m/s if it is one per area; 0 if
+/// it gives a pressure, and in steady flow for what leaks off.
+pub(super) fn rate(entry: &FlowCondition, load: &Load, is_steady: bool) -> f64 {
+    match &entry.drive {
+        FlowDrive::Rate(rate) => load.factor(entry.case) * rate,
+        FlowDrive::Leakoff(leakoff) if !is_steady => leakoff.rate(load.time),
+        FlowDrive::Leakoff(_) | FlowDrive::Pressure(_) => 0.0,
+    }
+}
+
+/// The mean of that rate over an increment between two loads, which change linearly in time: what
+/// has entered then is exact, however long the increment.
+pub(super) fn mean_rate(entry: &FlowCondition, [from, to]: [&Load; 2]) -> f64 {
+    match &entry.drive {
+        FlowDrive::Rate(rate) => 0.5 * (from.factor(entry.case) + to.factor(entry.case)) * rate,
+        FlowDrive::Leakoff(leakoff) => leakoff.mean_rate(from.time, to.time),
+        FlowDrive::Pressure(_) => 0.0,
     }
 }

@@ -77,6 +77,14 @@ impl From<LinearFailure> for NoPermeability {
 }
 
 impl EquivalentPermeability {
+    /// The volume that a permeability is that of (m^3).
+    ///
+    /// # Errors
+    /// If it is not known, because the outer surface of a mesh without cells does not close.
+    pub fn volume_of(mesh: &Mesh) -> Result<f64, Defect> {
+        mesh.volume().ok_or_else(|| not_closed(mesh))
+    }
+
     /// That of the fractures of a mesh at these apertures (m), one for each entry of the flat node
     /// list of its facets. Conditions of the flow do not count.
     ///
@@ -89,7 +97,8 @@ impl EquivalentPermeability {
             inactive: Vec::new(),
             ..flow.clone()
         };
-        let volume = mesh.volume().ok_or_else(|| not_closed(mesh))?;
+        let volume =
+            Self::volume_of(mesh).map_err(|defect| NoPermeability::Defects(vec![defect]))?;
         let nodes = FlowNodes::of(mesh, &flow);
         let transmissivity = transmissivities(mesh, &flow, &nodes, apertures);
         let conductance = Conductance::of(&nodes, &stencils(mesh, &nodes), transmissivity);
@@ -118,13 +127,13 @@ impl EquivalentPermeability {
     }
 }
 
-fn not_closed(mesh: &Mesh) -> NoPermeability {
-    NoPermeability::Defects(vec![Defect::new(
+fn not_closed(mesh: &Mesh) -> Defect {
+    Defect::new(
         &mesh.source,
         "the parts of the outer surface do not close around the fractures, so that the volume for an \
          equivalent permeability is not known",
         "give all of the outer surface Physical Surfaces, or mesh the volume as well",
-    )])
+    )
 }
 
 impl PermeabilityTensor {

@@ -188,7 +188,7 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
         let (topology, operator) = (&self.system.topology, &self.system.operator);
         let before = from.pressures.iter().copied();
         let mut loaded = Loaded::of(topology, end).counted_from_means_of(before);
-        loaded.duration = Some(duration);
+        loaded.from = Some(start);
         let rows = from.pressures.iter().enumerate();
         let mut potentials: Vec<f64> = rows.map(|(row, p)| p - loaded.weight(row)).collect();
         loaded.set_given(&mut potentials);
@@ -214,7 +214,7 @@ impl<'s, 'a> TransientFlow<'s, 'a> {
         loaded.stored = Some(stored(&loaded, &potentials));
         let state = loaded.state(operator, potentials);
         let entering = from.entered.iter().zip(&state.conditions);
-        let entered = entering.map(|(so_far, flow)| so_far + flow.rate * duration);
+        let entered = entering.map(|(so_far, flow)| so_far + flow.mean_rate * duration);
         let reached = TransientState {
             pressures: state.pressures.clone(),
             entered: entered.collect(),

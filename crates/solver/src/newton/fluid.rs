@@ -57,7 +57,8 @@ fn first(
     [from, guess]: [&State; 2],
     fluid: &mut FluidState,
 ) -> (FlowIncrement, FlowAtWalls) {
-    let increment = coupling.increment(fluid, &from.load, &guess.load);
+    let begins = system.problem.schedule.walked_from(&from.load);
+    let increment = coupling.increment(fluid, begins);
     if let Some(steady) = coupling.steady(fluid, &guess.load) {
         fluid.potentials = steady;
     }
@@ -143,9 +144,9 @@ impl FlowIterate {
         coupling.linearised(&self.at, fluid, (&self.increment, load))
     }
 
-    /// Makes a converged flow the one that the next increment starts from.
-    pub(super) fn commit(&self, coupling: &Coupling<'_>, fluid: &mut FluidState) {
-        coupling.commit(fluid, &self.at, &self.increment);
+    /// Makes a flow that has converged under a load the one that the next increment starts from.
+    pub(super) fn commit(&self, coupling: &Coupling<'_>, fluid: &mut FluidState, load: &Load) {
+        coupling.commit(fluid, &self.at, (&self.increment, load));
     }
 
     /// Largest difference of a pressure of the fluid under a load from what the increment began

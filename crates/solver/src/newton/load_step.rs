@@ -105,7 +105,7 @@ impl Newton {
         let mut state = iterate.state;
         let flow = iterate.flow.as_ref().zip(state.fluid.as_mut());
         if let (Some(coupling), Some((flow, fluid))) = (system.coupling(), flow) {
-            flow.commit(coupling, fluid);
+            flow.commit(coupling, fluid, &state.load);
         }
         facet_points::commit(system, &mut state);
         state.reached = iterate.sizes.or_share(1.0, state.reached);

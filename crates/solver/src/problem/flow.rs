@@ -79,6 +79,14 @@ pub struct Leakoff {
 }
 
 impl Leakoff {
+    /// What enters through both walls at a time (m/s), which is negative; 0 up to the exposure.
+    pub fn rate(&self, time: f64) -> f64 {
+        match time > self.exposed {
+            true => -2.0 * self.coefficient / (time - self.exposed).sqrt(),
+            false => 0.0,
+        }
+    }
+
     /// What enters through both walls in the mean of a time (m/s), which is negative: the integral
     /// is exact, also where it begins with the exposure.
     pub fn mean_rate(&self, from: f64, to: f64) -> f64 {

@@ -5,6 +5,7 @@ mod coupled;
 mod leakoff;
 mod permeability;
 mod push;
+mod ramped;
 mod refusals;
 mod transient;
 mod undrained;
