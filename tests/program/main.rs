@@ -56,6 +56,7 @@ mod soak;
 mod solver_choice;
 mod stages;
 mod stimulation;
+mod stopped_flow;
 mod strangers;
 mod studies;
 mod study;
