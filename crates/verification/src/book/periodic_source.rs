@@ -124,7 +124,7 @@ const IN_SPACE: Shown = Shown {
 
 fn run(effort: Effort) -> Finding {
     let (cells, steps): (&[usize], &[usize]) = match effort {
-        Effort::Quick => (&[20, 40], &[40, 80]),
+        Effort::Quick => (&[20, 40], &[80, 160]),
         Effort::Full => (&[20, 40, 80, 160], &[20, 40, 80, 160]),
     };
     let (most, last) = (cells[cells.len() - 1], steps[steps.len() - 1]);
