@@ -40,13 +40,19 @@ impl Orientation {
     pub fn of_normal(normal: DVec3) -> Self {
         let up = if normal.z < 0.0 { -normal } else { normal };
         let dip = libm::atan2(up.truncate().length(), up.z).to_degrees();
-        let direction = libm::atan2(up.x, up.y).to_degrees().rem_euclid(360.0);
+        let direction = libm::atan2(up.x, up.y).to_degrees();
         Self {
             dip,
-            // Of an angle just below 0 the remainder is 360 by rounding.
-            dip_direction: if direction < 360.0 { direction } else { 0.0 },
+            dip_direction: below_360(direction),
         }
     }
+}
+
+/// The same direction (degrees) from 0 to below 360.
+pub(crate) fn below_360(direction: f64) -> f64 {
+    let positive = direction.rem_euclid(360.0);
+    // Of an angle just below 0 the remainder is 360 by rounding.
+    if positive < 360.0 { positive } else { 0.0 }
 }
 
 #[cfg(test)]

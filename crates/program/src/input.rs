@@ -13,7 +13,8 @@ use crate::printing::shell_path;
 const HEAD: u64 = 4096;
 
 /// Files by the ends of their names, small letters: what they are.
-const KINDS: [(&[&str], FileKind); 6] = [
+const KINDS: [(&[&str], FileKind); 7] = [
+    (&EXODUS, FileKind::OtherMesh),
     (&["msh"], FileKind::Mesh),
     (
         &[
@@ -33,9 +34,7 @@ const KINDS: [(&[&str], FileKind); 6] = [
         FileKind::Vtk,
     ),
     (
-        &[
-            "inp", "exo", "e", "ex2", "exii", "g", "med", "unv", "stl", "bdf", "obj", "ply", "mesh",
-        ],
+        &["inp", "med", "unv", "stl", "bdf", "obj", "ply", "mesh"],
         FileKind::OtherMesh,
     ),
     (&["csv", "dat"], FileKind::List),

@@ -2,6 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::orientation::below_360;
+
 /// Mean orientation of a fracture, by area.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeanOrientation {
@@ -44,9 +46,7 @@ pub(super) fn of_fractures(
 
 /// Direction of a vector clockwise from north (degrees, from 0 on and below 360).
 pub fn bearing(east: f64, north: f64) -> f64 {
-    let bearing = east.atan2(north).to_degrees().rem_euclid(360.0);
-    // Of an angle just below 0 the remainder is 360 by rounding.
-    if bearing < 360.0 { bearing } else { 0.0 }
+    below_360(east.atan2(north).to_degrees())
 }
 
 fn of_tensor(tensor: DMat3) -> MeanOrientation {
