@@ -123,7 +123,8 @@ fn by_cholesky(system: &System<'_>, right: &[DVec3]) {
     let order = NodeOrder::of(graph, first_unknown);
     let order = order.expect("ordered").all(first_unknown);
     let rows = system.rock_rows();
-    let analysis = Analysis::of(rows.row_offset, rows.columns, order).expect("analysed");
+    let analysis =
+        Analysis::of(&rows.pattern.row_offset, &rows.pattern.columns, order).expect("analysed");
     let mut solver = Cholesky::new(analysis, rows);
     solver.factorise().expect("positive definite");
     let setup = start.elapsed().as_secs_f64();

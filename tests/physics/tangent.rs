@@ -141,7 +141,8 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
         let order = NodeOrder::of(&pattern.neighbours, &points.offset).expect("ordering");
         let rows = tangent.rows(&pattern.blocks);
         let order = order.all(&points.offset);
-        let analysis = Analysis::of(rows.row_offset, rows.columns, order).expect("analysis");
+        let analysis =
+            Analysis::of(&rows.pattern.row_offset, &rows.pattern.columns, order).expect("analysis");
         let mut solver = Cholesky::new(analysis, rows);
         assert_eq!(solver.factorise(), Ok(()), "closed to {closure}");
     }

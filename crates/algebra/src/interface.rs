@@ -88,18 +88,18 @@ impl<'a> FixedPart<'a> {
         InterfaceBlocks { pattern, blocks }.add_product(vector, product);
     }
 
-    /// Entries `rows` of that product, to the same bits.
+    /// Entries `rows`, ascending, of that product, to the same bits.
     pub fn products(&self, blocks: &[DMat3], rows: &[u32], vector: &[DVec3]) -> Vec<DVec3> {
         let pattern = self.interface;
         let added = InterfaceBlocks { pattern, blocks };
-        let product = |&row: &u32| {
-            let own = self.matrix.row_product(row as usize, vector);
-            let Ok(index) = pattern.rows.binary_search(&row) else {
-                return own;
-            };
-            own + added.product(index, vector)
-        };
-        rows.par_iter().map(product).collect()
+        let mut products = self.matrix.products(rows, vector);
+        let pairs = products.par_iter_mut().zip(rows);
+        pairs.for_each(|(product, row)| {
+            if let Ok(index) = pattern.rows.binary_search(row) {
+                *product += added.product(index, vector);
+            }
+        });
+        products
     }
 
     /// Where the blocks of the interface belong in the matrix: block row and number of the block in
@@ -108,14 +108,8 @@ impl<'a> FixedPart<'a> {
     /// # Panics
     /// If the fixed matrix has no block somewhere.
     pub fn places(&self) -> Vec<(usize, usize)> {
-        let BlockRows {
-            row_offset,
-            columns,
-            ..
-        } = self.matrix;
         let place = |row: usize, column: u32| {
-            let own = &columns[row_offset[row]..row_offset[row + 1]];
-            let place = own.binary_search(&column);
+            let place = self.matrix.pattern.place(row, column as usize);
             (row, place.expect("the fixed matrix has a block there"))
         };
         let InterfacePattern { rows, columns } = self.interface;
@@ -134,13 +128,8 @@ impl<'a> FixedPart<'a> {
         places: &[(usize, usize)],
         blocks: &[DMat3],
     ) -> impl Iterator<Item = (usize, usize, DMat3)> {
-        let BlockRows {
-            row_offset,
-            blocks: fixed,
-            ..
-        } = self.matrix;
         places.iter().zip(blocks).map(|(&(row, place), block)| {
-            let sum = fixed[row_offset[row] + place] + *block;
+            let sum = self.matrix.block(row, place) + *block;
             (row, place, sum)
         })
     }

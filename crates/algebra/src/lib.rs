@@ -10,7 +10,7 @@
 //! | files | what they hold |
 //! |---|---|
 //! | `lists`, `ownership`, `division`, `thread_ranks`, `vectors`, `small`, `dense_kernels` | compressed rows, who owns which rows, rows of processes, processes for tests, sums over vectors, small dense blocks, dense kernels on threads of their own |
-//! | `block_matrix`, `block_rows`, `interface` | a block matrix, its view row by row, and what an interface adds to it |
+//! | `block_pattern`, `block_matrix`, `block_rows`, `interface` | a block matrix, its pattern, its view row by row, and what an interface adds to it |
 //! | `conjugate_gradients`, `gmres` | iterations, with any preconditioner |
 //! | `cholesky/`, `schur` | nested dissection, symbolic analysis, factor, substitution, of blocks and of scalars; the dense problem that is left of it |
 //! | `multigrid/` | smoothed aggregation, a preconditioner |
@@ -28,10 +28,7 @@
 //!
 //! let beside: Vec<Vec<u32>> = vec![vec![0, 1], vec![0, 1, 2], vec![1, 2]];
 //! let graph = Lists::collect(&beside);
-//! let pattern = BlockPattern {
-//!     row_offset: graph.offset.clone(),
-//!     columns: graph.entries.clone(),
-//! };
+//! let pattern = BlockPattern::new(graph.offset.clone(), graph.entries.clone());
 //! let (own, other) = (2.0 * DMat3::IDENTITY, -DMat3::IDENTITY);
 //! let matrix = BlockMatrix {
 //!     blocks: vec![own, other, other, own, other, other, own],
@@ -41,7 +38,8 @@
 //!
 //! // Every node has one row.
 //! let order = NodeOrder::of(&graph, &[0, 1, 2, 3])?.all(&[0, 1, 2, 3]);
-//! let mut cholesky = Cholesky::new(Analysis::of(rows.row_offset, rows.columns, order)?, rows);
+//! let analysis = Analysis::of(&pattern.row_offset, &pattern.columns, order)?;
+//! let mut cholesky = Cholesky::new(analysis, rows);
 //! cholesky.factorise()?;
 //! let direct = cholesky.solve(&rhs);
 //! assert!((direct[1] - DVec3::X).length() < 1e-14);
@@ -63,6 +61,7 @@
 //! ```
 
 mod block_matrix;
+mod block_pattern;
 mod block_rows;
 mod cholesky;
 mod conjugate_gradients;
@@ -79,7 +78,8 @@ pub mod small;
 pub mod thread_ranks;
 mod vectors;
 
-pub use block_matrix::{BlockMatrix, BlockPattern};
+pub use block_matrix::BlockMatrix;
+pub use block_pattern::BlockPattern;
 pub use block_rows::BlockRows;
 pub use cholesky::{Analysis, Cholesky, NodeOrder, ScalarCholesky, ScalarMatrix};
 pub use conjugate_gradients::{

@@ -35,8 +35,11 @@ impl Cholesky {
             analysis,
         };
         for row in 0..cholesky.analysis.order.len() {
-            for (place, (_, block)) in matrix.row(row).enumerate() {
-                cholesky.set_block(row, place, *block);
+            let left = matrix
+                .row(row)
+                .take(cholesky.analysis.lower_blocks[row] + 1);
+            for (place, (_, block)) in left.enumerate() {
+                cholesky.set_block(row, place, block);
             }
         }
         cholesky

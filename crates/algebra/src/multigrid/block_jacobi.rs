@@ -189,20 +189,17 @@ impl Factors {
 
 /// The lower triangle of a cluster's block.
 fn gather(rows: &SumRows<'_>, clusters: &Clusters, cluster: usize, triangle: &mut [f64]) {
-    for (at, &row) in clusters.members.of(cluster).iter().enumerate() {
-        rows.for_each(row as usize, |column, value| {
-            let (other, place) = clusters.place[column as usize];
-            if other as usize != cluster || place as usize > at {
-                return;
-            }
-            let place = place as usize;
+    let members = clusters.members.of(cluster);
+    for (at, &row) in members.iter().enumerate() {
+        for (place, &column) in members[..=at].iter().enumerate() {
+            let value = rows.block(row as usize, column);
             for (r, c) in (0..3).flat_map(|r| (0..3).map(move |c| (r, c))) {
                 let line = 3 * at + r;
                 if 3 * place + c <= line {
                     triangle[line * (line + 1) / 2 + 3 * place + c] = value.col(c)[r];
                 }
             }
-        });
+        }
     }
 }
 
@@ -223,7 +220,11 @@ pub(super) fn set_matrix(
             if !is_wanted(row) {
                 return 0;
             }
-            if let Some(count) = single_neighbours(rows, clusters, row) {
+            if is_among_single(rows, clusters, row) {
+                let mut count = 0;
+                rows.for_each(row, |column, _| {
+                    count += usize::from(column as usize != row)
+                });
                 return count;
             }
             coupled(rows, clusters, row, |_, _, other, place| {
@@ -239,7 +240,7 @@ pub(super) fn set_matrix(
             }
             let (own, at) = clusters.place[row];
             let left = factors.inverse_of(own);
-            if single_neighbours(rows, clusters, row).is_some() {
+            if is_among_single(rows, clusters, row) {
                 let left = block(left, 0, 0);
                 let mut targets = columns.iter_mut().zip(blocks);
                 rows.for_each(row, |column, value| {
@@ -302,15 +303,12 @@ fn product_transposed(b: &[[f64; 3]; 3], l: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     product(l, &transpose(b))
 }
 
-/// Number of other clusters beside a row, if they and its own are single rows.
-fn single_neighbours(rows: &SumRows<'_>, clusters: &Clusters, row: usize) -> Option<usize> {
-    let (mut count, mut others) = (0, 0);
-    rows.for_each(row, |column, _| {
+/// Whether a row's cluster and those beside it are single rows.
+fn is_among_single(rows: &SumRows<'_>, clusters: &Clusters, row: usize) -> bool {
+    rows.columns(row).all(|column| {
         let (cluster, _) = clusters.place[column as usize];
-        others += clusters.members.of(cluster as usize).len() - 1;
-        count += usize::from(column as usize != row);
-    });
-    (others == 0).then_some(count)
+        clusters.members.of(cluster as usize).len() == 1
+    })
 }
 
 /// Sets `prolongator` to that of scaled unknowns, `L^T P'`, after a block Jacobi step on the

@@ -4,15 +4,16 @@ use rayon::prelude::*;
 
 use super::coarsest::Dense;
 use super::smoother::{Smoother, Work, residual};
-use super::sparse::{Sparse, rows_per_task};
+use super::sparse::{Sparse, Transpose, rows_per_task};
+use super::symmetric::SymmetricMatrix;
 
 /// Smoothings of a coarsest level that is too large to invert, as after disconnected bodies.
 const LAST_SMOOTHINGS: usize = 2;
 
-/// A level and the way to the next.
+/// A level and the way to the next. While others are made of it, its matrix has all blocks.
 #[derive(Debug, Clone)]
-pub(super) struct Level<const N: usize> {
-    pub(super) matrix: Sparse<N, N>,
+pub(super) struct Level<const N: usize, A = SymmetricMatrix<N>> {
+    pub(super) matrix: A,
     pub(super) smoother: Smoother,
     pub(super) below: Below<N>,
 }
@@ -32,8 +33,8 @@ pub(super) enum Below<const N: usize> {
 #[derive(Debug, Clone)]
 pub(super) struct Transfer<const N: usize> {
     pub(super) prolongator: Sparse<N, 6>,
-    /// Its blocks once more, aggregate by aggregate.
-    pub(super) restrictor: Sparse<N, 6>,
+    /// Its blocks, aggregate by aggregate.
+    pub(super) transpose: Transpose,
 }
 
 impl<const N: usize> Transfer<N> {
@@ -51,9 +52,10 @@ impl<const N: usize> Transfer<N> {
 
     fn restricted(&self, aggregate: usize, residual: &[[f32; N]]) -> [f32; 6] {
         let mut sum = [0.0; 6];
-        for (row, block) in self.restrictor.row(aggregate) {
+        for &(row, position) in self.transpose.column(aggregate) {
+            let block = &self.prolongator.blocks[position as usize];
             let mut part = [0.0; 6];
-            for (line, &entry) in block.iter().zip(&residual[row]) {
+            for (line, &entry) in block.iter().zip(&residual[row as usize]) {
                 for (part, &weight) in part.iter_mut().zip(line) {
                     *part += weight * entry;
                 }
@@ -82,7 +84,18 @@ impl<const N: usize> Transfer<N> {
     }
 
     fn bytes(&self) -> usize {
-        self.prolongator.bytes() + self.restrictor.bytes()
+        self.prolongator.bytes() + self.transpose.bytes()
+    }
+}
+
+impl<const N: usize> Level<N, Sparse<N, N>> {
+    /// As the cycle keeps it.
+    pub(super) fn compact(self) -> Level<N> {
+        Level {
+            matrix: SymmetricMatrix::of(self.matrix),
+            smoother: self.smoother,
+            below: self.below,
+        }
     }
 }
 
@@ -90,7 +103,7 @@ impl<const N: usize> Level<N> {
     /// A level without unknowns.
     pub(super) fn empty() -> Self {
         Self {
-            matrix: Sparse::empty(),
+            matrix: SymmetricMatrix::of(Sparse::empty()),
             smoother: Smoother::new(1.0),
             below: Below::Nothing,
         }

@@ -19,7 +19,7 @@ use super::sparse::{Sparse, Transpose};
 use super::spectrum;
 use super::sum_rows::SumRows;
 use super::triple_product::PartialProduct;
-use crate::block_matrix::BlockPattern;
+use crate::block_pattern::BlockPattern;
 use crate::block_rows::BlockRows;
 use crate::division::{Communicator, Division};
 use crate::failure::MultigridFailure;

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::block_jacobi::{Factors, InverseFactors};
 use super::clusters::Clusters;
 use super::sparse::{Sparse, rows_per_task};
+use super::symmetric::{SymmetricMatrix, rows_per_run};
 use super::unit;
 use crate::lists::Lists;
 use crate::small::{transpose, widen};
@@ -16,7 +17,7 @@ use crate::small::{transpose, widen};
 #[derive(Debug, Clone)]
 pub struct LevelRows<const N: usize> {
     /// Columns are places among the rows, then among the ghosts.
-    matrix: Sparse<N, N>,
+    matrix: SymmetricMatrix<N>,
     ghosts: Vec<u32>,
 }
 
@@ -26,7 +27,10 @@ impl<const N: usize> LevelRows<N> {
         let columns = matrix.rows();
         let mut matrix = matrix.only(own);
         let ghosts = number_by_place(&mut matrix.columns, own, columns);
-        Self { matrix, ghosts }
+        Self {
+            matrix: SymmetricMatrix::of(matrix),
+            ghosts,
+        }
     }
 
     /// Number of rows.
@@ -45,7 +49,7 @@ impl<const N: usize> LevelRows<N> {
         let identity =
             std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
         let others = self.matrix.row(row);
-        let others = others.map(|(place, block)| (place, transpose(&widen(block))));
+        let others = others.map(|(place, block)| (place, transpose(&widen(&block))));
         std::iter::once((row, identity)).chain(others)
     }
 
@@ -67,12 +71,16 @@ impl<const N: usize> LevelRows<N> {
         let narrowed = |entry: &[f64; N]| entry.map(|x| (x / unit) as f32);
         room.clear();
         room.extend(own.iter().chain(ghosts).map(narrowed));
-        let rows = rows_per_task::<N>();
-        let tasks = product.par_chunks_mut(rows).enumerate();
-        tasks.for_each(|(task, chunk)| {
-            for (place, target) in chunk.iter_mut().enumerate() {
-                let sum = self.matrix.times(task * rows + place, room);
-                *target = sum.map(|x| unit * f64::from(x));
+        room.resize(room.len() + product.len(), [0.0; N]);
+        let (x, narrow) = room.split_at_mut(own.len() + ghosts.len());
+        let rows = rows_per_run::<N>();
+        let tasks = product
+            .par_chunks_mut(rows)
+            .zip(narrow.par_chunks_mut(rows));
+        tasks.enumerate().for_each(|(run, (targets, narrow))| {
+            self.matrix.run_product(run, x, narrow);
+            for (target, entry) in targets.iter_mut().zip(narrow) {
+                *target = entry.map(|x| unit * f64::from(x));
             }
         });
     }

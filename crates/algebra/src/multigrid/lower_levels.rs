@@ -3,10 +3,10 @@
 //! it owns.
 
 use super::block_list::BlockList;
-use super::cycle::{Below, Level};
+use super::cycle::Below;
 use super::galerkin::{self, CoarseNodes};
 use super::level_rows::{LevelRows, ProlongatorRows};
-use super::setup;
+use super::setup::{self, FullLevel};
 use super::sparse::Sparse;
 use super::triple_product::{Block6, PartialProduct};
 use crate::division::Communicator;
@@ -19,7 +19,7 @@ pub struct LowerLevels {
     /// Nodes of each level.
     nodes: Vec<usize>,
     /// What is left of them.
-    levels: Vec<Level<6>>,
+    levels: Vec<FullLevel<6>>,
 }
 
 /// What stands for the inverse of the coarsest matrix.

@@ -28,6 +28,7 @@ mod smoother;
 mod sparse;
 mod spectrum;
 mod sum_rows;
+mod symmetric;
 mod tentative;
 #[cfg(test)]
 mod tests;
@@ -40,8 +41,8 @@ use block_jacobi::InverseFactors;
 use cycle::Level;
 use setup::{FixedHierarchy, LevelBuffers, NodeMatrix};
 use smoother::Work;
-use sparse::Sparse;
 use sum_rows::SumRows;
+use symmetric::SymmetricMatrix;
 
 use crate::block_rows::BlockRows;
 use crate::division::Communicator;
@@ -175,7 +176,7 @@ impl Multigrid {
         let mut coarser = Vec::new();
         while let Some(coarse) = next {
             let (level, below) = setup::level(coarse, &Communicator::alone())?;
-            coarser.push(level);
+            coarser.push(level.compact());
             next = below;
         }
         (self.factors, self.finest, self.coarser) = (factors, finest, coarser);
@@ -266,12 +267,12 @@ pub fn rigid_modes(position: DVec3, centre: DVec3, free: DMat3) -> [DVec3; 6] {
     ]
 }
 
-fn size<const N: usize>(matrix: &Sparse<N, N>) -> LevelSize {
+fn size<const N: usize>(matrix: &SymmetricMatrix<N>) -> LevelSize {
     let nodes = matrix.rows();
     LevelSize {
         nodes,
         unknowns: N * nodes,
-        entries: N * N * (nodes + matrix.blocks.len()),
+        entries: N * N * (nodes + matrix.block_count()),
     }
 }
 

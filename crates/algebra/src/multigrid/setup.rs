@@ -14,6 +14,7 @@ use super::prolongation::Unsmoothed;
 use super::smoother::Smoother;
 use super::sparse::{Sparse, Transpose};
 use super::sum_rows::{RowSubset, SumRows};
+use super::symmetric::SymmetricMatrix;
 use super::triple_product::PartialProduct;
 use super::{parts, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
@@ -27,6 +28,9 @@ const STAGNATION: f64 = 0.8;
 
 /// With more than this share of the rows near to the interface, the others are not worth keeping.
 const MOST_NEAR: f64 = 0.5;
+
+/// A level whose matrix has all blocks.
+pub(super) type FullLevel<const N: usize> = Level<N, Sparse<N, N>>;
 
 /// What stays when the blocks of the interface change.
 #[derive(Debug, Clone, Default)]
@@ -48,25 +52,22 @@ pub(super) struct NodeMatrix<'a> {
     pub(super) modes: &'a [[DVec3; 6]],
 }
 
-/// What is large of a finest level.
+/// What is large of a finest level and made anew.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LevelBuffers {
     matrix: Sparse<3, 3>,
     prolongator: Sparse<3, 6>,
-    restrictor: Sparse<3, 6>,
 }
 
 impl LevelBuffers {
     /// That of a level which is needed no more.
     pub(super) fn of(level: Level<3>) -> Self {
-        let (prolongator, restrictor) = match level.below {
-            Below::Level(transfer) => (transfer.prolongator, transfer.restrictor),
-            _ => Default::default(),
-        };
         Self {
-            matrix: level.matrix,
-            prolongator,
-            restrictor,
+            matrix: Sparse::default(),
+            prolongator: match level.below {
+                Below::Level(transfer) => transfer.prolongator,
+                _ => Sparse::default(),
+            },
         }
     }
 }
@@ -140,7 +141,6 @@ impl FixedHierarchy {
         let LevelBuffers {
             mut matrix,
             mut prolongator,
-            restrictor,
         } = buffers;
         let factors = Factors::of(rows, &self.clusters)?;
         block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors, |_| true);
@@ -148,7 +148,7 @@ impl FixedHierarchy {
         if !bound.is_finite() {
             return Err(MultigridFailure::NotFinite);
         }
-        let (below, next) = if self.has_next(matrix.rows()) {
+        let (matrix, below, next) = if self.has_next(matrix.rows()) {
             let columns = self.basis.modes.len();
             block_jacobi::smooth_by_blocks(
                 &mut prolongator,
@@ -159,19 +159,20 @@ impl FixedHierarchy {
             );
             let transpose = Transpose::of(&prolongator, columns);
             let product = self.product(rows, &matrix, &prolongator, &transpose, |_| true);
-            let way = Way {
-                prolongator,
-                transpose: &transpose,
-                restrictor,
-            };
+            // Before the next level asks for memory.
+            let matrix = SymmetricMatrix::of(matrix);
             let nodes = (self.basis.nodes(), &Communicator::alone());
-            let (transfer, next) = way.down_to(product, nodes);
-            (Below::Level(transfer), Some(next))
+            let next = galerkin::coarse(product, &mut prolongator, nodes);
+            let transfer = Transfer {
+                prolongator,
+                transpose,
+            };
+            (matrix, Below::Level(transfer), Some(next))
         } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
-            (Below::Nothing, None)
+            (SymmetricMatrix::of(matrix), Below::Nothing, None)
         } else {
             let dense = Dense::new(&matrix).ok_or(MultigridFailure::NotFinite)?;
-            (Below::Inverse(dense), None)
+            (SymmetricMatrix::of(matrix), Below::Inverse(dense), None)
         };
         let level = Level {
             matrix,
@@ -233,7 +234,7 @@ impl FixedHierarchy {
 pub(super) fn level(
     level: Coarse,
     ranks: &Communicator,
-) -> Result<(Level<6>, Option<Coarse>), MultigridFailure> {
+) -> Result<(FullLevel<6>, Option<Coarse>), MultigridFailure> {
     let bound = spectrum::largest_eigenvalue(&level.matrix);
     if !bound.is_finite() {
         return Err(MultigridFailure::NotFinite);
@@ -277,44 +278,18 @@ fn below(
     let own = division.own();
     let is_own = |row: usize| own.contains(&row);
     let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue, is_own);
-    let prolongator = prolongator.completed(&division);
+    let mut prolongator = prolongator.completed(&division);
     let transpose = Transpose::of(&prolongator, aggregates.count);
     let parts = PartialProduct::of_rows(matrix, &prolongator, &transpose, is_own);
     let product = PartialProduct::sum(aggregates.count, &parts).completed(ranks);
-    let way = Way {
-        prolongator,
-        transpose: &transpose,
-        restrictor: Sparse::default(),
-    };
     let nodes = CoarseNodes {
         modes: &tentative.modes,
         continuity: &continuity.of_aggregates(&aggregates, matrix),
     };
-    let (transfer, coarse) = way.down_to(product, (nodes, ranks));
+    let coarse = galerkin::coarse(product, &mut prolongator, (nodes, ranks));
+    let transfer = Transfer {
+        prolongator,
+        transpose,
+    };
     Ok((Below::Level(transfer), Some(coarse)))
-}
-
-/// A prolongator and storage for its transpose.
-struct Way<'a, const N: usize> {
-    prolongator: Sparse<N, 6>,
-    transpose: &'a Transpose,
-    restrictor: Sparse<N, 6>,
-}
-
-impl<const N: usize> Way<'_, N> {
-    /// The way to the level of `P^T A P`, whose nodes are these, and that level.
-    fn down_to(
-        mut self,
-        product: PartialProduct,
-        nodes: (CoarseNodes<'_>, &Communicator),
-    ) -> (Transfer<N>, Coarse) {
-        let coarse = galerkin::coarse(product, &mut self.prolongator, nodes);
-        self.transpose
-            .arrange(&self.prolongator, &mut self.restrictor);
-        let transfer = Transfer {
-            prolongator: self.prolongator,
-            restrictor: self.restrictor,
-        };
-        (transfer, coarse)
-    }
 }

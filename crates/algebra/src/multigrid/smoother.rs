@@ -3,7 +3,8 @@
 
 use rayon::prelude::*;
 
-use super::sparse::{Sparse, rows_per_task};
+use super::sparse::rows_per_task;
+use super::symmetric::{SymmetricMatrix, rows_per_run};
 
 /// Number of products with the matrix in one smoothing.
 const DEGREE: usize = 2;
@@ -91,7 +92,7 @@ impl Smoother {
     }
 
     /// Smooths from zero.
-    pub(super) fn start<const N: usize>(&self, matrix: &Sparse<N, N>, work: &mut Work<N>) {
+    pub(super) fn start<const N: usize>(&self, matrix: &SymmetricMatrix<N>, work: &mut Work<N>) {
         let factor = self.steps[0].residual;
         let rows = rows_per_task::<N>();
         let targets = work.solution.par_chunks_mut(rows);
@@ -109,26 +110,26 @@ impl Smoother {
     }
 
     /// Smooths what the solution is so far.
-    pub(super) fn resume<const N: usize>(&self, matrix: &Sparse<N, N>, work: &mut Work<N>) {
+    pub(super) fn resume<const N: usize>(&self, matrix: &SymmetricMatrix<N>, work: &mut Work<N>) {
         for &step in &self.steps {
             advance(matrix, work, step);
         }
     }
 }
 
-fn advance<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>, by: ChebyshevStep) {
+fn advance<const N: usize>(matrix: &SymmetricMatrix<N>, work: &mut Work<N>, by: ChebyshevStep) {
     let (a, b, [last, own]) = (by.before, by.residual, by.weights);
-    let rows = rows_per_task::<N>();
+    let rows = rows_per_run::<N>();
     let (rhs, old) = (&work.rhs, &work.solution);
     let targets = work.next.par_chunks_mut(rows);
     let tasks = targets.zip(work.step.par_chunks_mut(rows)).enumerate();
-    tasks.for_each(|(task, (next, step))| {
+    tasks.for_each(|(run, (next, step))| {
+        matrix.run_product(run, old, next);
         for (place, (next, step)) in next.iter_mut().zip(step).enumerate() {
-            let row = task * rows + place;
-            let product = matrix.times(row, old);
+            let row = run * rows + place;
             for i in 0..N {
                 let before = step[i];
-                step[i] = a * step[i] + b * (rhs[row][i] - product[i]);
+                step[i] = a * step[i] + b * (rhs[row][i] - next[i]);
                 next[i] = old[row][i] + last * before + own * step[i];
             }
         }
@@ -137,15 +138,15 @@ fn advance<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>, by: Chebys
 }
 
 /// Writes the residual where the last step was.
-pub(super) fn residual<const N: usize>(matrix: &Sparse<N, N>, work: &mut Work<N>) {
-    let rows = rows_per_task::<N>();
+pub(super) fn residual<const N: usize>(matrix: &SymmetricMatrix<N>, work: &mut Work<N>) {
+    let rows = rows_per_run::<N>();
     let (rhs, solution) = (&work.rhs, &work.solution);
     let tasks = work.step.par_chunks_mut(rows).enumerate();
-    tasks.for_each(|(task, residual)| {
+    tasks.for_each(|(run, residual)| {
+        matrix.run_product(run, solution, residual);
         for (place, residual) in residual.iter_mut().enumerate() {
-            let row = task * rows + place;
-            let product = matrix.times(row, solution);
-            *residual = std::array::from_fn(|i| rhs[row][i] - product[i]);
+            let rhs = rhs[run * rows + place];
+            *residual = std::array::from_fn(|i| rhs[i] - residual[i]);
         }
     });
 }

@@ -269,24 +269,9 @@ impl Transpose {
         &self.entries[self.offset[column]..self.offset[column + 1]]
     }
 
-    /// Sets `columns` to the blocks of a matrix column by column, with the rows they stand in.
-    pub(super) fn arrange<const M: usize, const L: usize>(
-        &self,
-        matrix: &Sparse<M, L>,
-        columns: &mut Sparse<M, L>,
-    ) {
-        columns.rebuild(
-            self.columns(),
-            rows_per_task::<6>(),
-            || (),
-            |(), column| self.column(column).len(),
-            |(), column, rows, blocks| {
-                let targets = rows.iter_mut().zip(blocks);
-                for (&(at, position), (row, block)) in self.column(column).iter().zip(targets) {
-                    (*row, *block) = (at, matrix.blocks[position as usize]);
-                }
-            },
-        );
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.offset[..]) + size_of_val(&self.entries[..])
     }
 
     /// Number of columns.

@@ -61,22 +61,48 @@ impl<'a> SumRows<'a> {
     #[inline]
     pub(super) fn for_each(&self, row: usize, mut treat: impl FnMut(u32, &DMat3)) {
         if let Some(subset) = self.subset {
-            for (column, block) in self.fixed.row(subset.rows[row] as usize) {
-                let column = subset.number[column as usize];
-                if column != DROPPED && *block != DMat3::ZERO {
-                    treat(column, block);
-                }
-            }
+            self.fixed
+                .row(subset.rows[row] as usize)
+                .for_each(|(column, block)| {
+                    let column = subset.number[column as usize];
+                    if column != DROPPED && block != DMat3::ZERO {
+                        treat(column, &block);
+                    }
+                });
             return;
         }
         let mut added = self.added_to(row).peekable();
-        for (column, block) in self.fixed.row(row) {
+        self.fixed.row(row).for_each(|(column, block)| {
             match added.next_if(|(at, _)| *at == column) {
-                Some((_, other)) => treat(column, &(*block + *other)),
-                None if *block != DMat3::ZERO => treat(column, block),
+                Some((_, other)) => treat(column, &(block + *other)),
+                None if block != DMat3::ZERO => treat(column, &block),
                 None => {}
             }
-        }
+        });
+    }
+
+    /// Columns of a row, those of blocks that are zero included.
+    pub(super) fn columns(&self, row: usize) -> impl Iterator<Item = u32> {
+        let subset = self.subset;
+        let row = subset.map_or(row, |subset| subset.rows[row] as usize);
+        let pattern = self.fixed.pattern;
+        let columns = pattern.columns[pattern.row(row)].iter();
+        let columns = columns.map(move |&column| match subset {
+            Some(subset) => subset.number[column as usize],
+            None => column,
+        });
+        columns.filter(|&column| column != DROPPED)
+    }
+
+    /// The block at a row and a column, zero if there is none.
+    pub(super) fn block(&self, row: usize, column: u32) -> DMat3 {
+        let outer = |row: usize| self.subset.map_or(row, |subset| subset.rows[row] as usize);
+        let (at, other) = (outer(row), outer(column as usize));
+        let place = self.fixed.pattern.place(at, other);
+        let own = place.map_or(DMat3::ZERO, |place| self.fixed.block(at, place));
+        let mut added = self.added_to(row);
+        let added = added.find(|(column, _)| *column as usize == other);
+        added.map_or(own, |(_, added)| own + *added)
     }
 
     fn added_to(&self, row: usize) -> impl Iterator<Item = (u32, &'a DMat3)> + use<'a> {

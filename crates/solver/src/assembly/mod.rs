@@ -6,6 +6,7 @@ pub(crate) mod facet_point;
 mod facet_values;
 pub(crate) mod interface;
 pub(crate) mod loads;
+mod node_blocks;
 pub(crate) mod rock;
 pub(crate) mod rock_spring;
 pub(crate) mod shared_walls;

@@ -11,13 +11,14 @@
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
-use kluft_algebra::{BlockMatrix, RowOwnership, sum_up, trace};
+use kluft_algebra::{BlockMatrix, BlockPattern, RowOwnership, trace};
 use kluft_mesh::Shape;
 use lie_core::enrichment::coefficient;
 use lie_core::kernel::{self, MAX_NODES};
 use lie_core::{Elasticity, Rock};
 use rayon::prelude::*;
 
+use crate::assembly::node_blocks::NodeBlocks;
 use crate::assembly::tetrahedra::{self, Tetrahedra};
 use crate::space::Space;
 use crate::space::cell;
@@ -36,22 +37,27 @@ const MOST_WAVES: usize = 32;
 /// Stiffness of the rock over all unknowns, held directions included: there the diagonal keeps the
 /// scale of the rock, so the matrix stays positive definite.
 ///
-/// With `u = g + P T y` it is `T^T (P K P + s (I - P)) T`. Only the rows of nodes that are
-/// `is_wanted` are there, one behind the other.
-pub(crate) fn rock_stiffness(space: Space<'_>, is_wanted: &[bool]) -> BlockMatrix {
-    assemble(space, (is_wanted, &tetrahedra::nodes(space)))
+/// With `u = g + P T y` it is `T^T (P K P + s (I - P)) T`. The pattern has the rows of the nodes
+/// that are `is_wanted`, the others are empty there.
+pub(crate) fn rock_stiffness(
+    space: Space<'_>,
+    is_wanted: &[bool],
+    pattern: &BlockPattern,
+) -> BlockMatrix {
+    assemble(space, (is_wanted, &tetrahedra::nodes(space)), pattern)
 }
 
 /// The stiffness, where [`Tetrahedra`] serves the nodes `in_tetrahedra`.
-fn assemble(space: Space<'_>, (is_wanted, in_tetrahedra): (&[bool], &[bool])) -> BlockMatrix {
+fn assemble(
+    space: Space<'_>,
+    (is_wanted, in_tetrahedra): (&[bool], &[bool]),
+    pattern: &BlockPattern,
+) -> BlockMatrix {
     let is_plain = plain(space);
-    let lengths = is_wanted.iter().enumerate().map(|(node, is_wanted)| {
-        let rows = space.points.of_node(node);
-        let blocks = &space.pattern.blocks.row_offset;
-        usize::from(*is_wanted) * (blocks[rows.end] - blocks[rows.start])
-    });
-    let mut first_block: Vec<usize> = std::iter::once(0).chain(lengths).collect();
-    sum_up(&mut first_block);
+    let firsts = space.points.offset.par_iter();
+    let first_block: Vec<usize> = firsts
+        .map(|&row| pattern.stored_offset(row as usize))
+        .collect();
     // Zeros of the allocator: memory that nobody has touched, as touching it costs more than all
     // sums.
     let mut blocks: Vec<DMat3> = bytemuck::zeroed_vec(first_block[is_wanted.len()]);
@@ -61,14 +67,20 @@ fn assemble(space: Space<'_>, (is_wanted, in_tetrahedra): (&[bool], &[bool])) ->
     let tetrahedra = Tetrahedra::of(space, nodes, &is_plain);
     shares.par_iter_mut().for_each_init(
         || tetrahedra.scratch(),
-        |scratch, (nodes, rows)| tetrahedra.set_share(nodes.clone(), rows, scratch),
+        |scratch, (nodes, blocks)| {
+            let target = NodeBlocks::of(space.points, pattern, nodes.clone(), blocks);
+            tetrahedra.set_share(target, scratch);
+        },
     );
     let mut matrices = CellMatrices::of(space, nodes, &is_plain);
     for cells in matrices.waves() {
         matrices.compute(cells);
         shares.par_iter_mut().for_each_init(
             || RowScratch::of(space),
-            |scratch, (nodes, rows)| matrices.add_to_share(nodes.clone(), rows, scratch),
+            |scratch, (nodes, blocks)| {
+                let target = NodeBlocks::of(space.points, pattern, nodes.clone(), blocks);
+                matrices.add_to_share(target, scratch);
+            },
         );
     }
     BlockMatrix { blocks }
@@ -195,41 +207,46 @@ impl<'a> CellMatrices<'a> {
     }
 
     /// Adds what the cells of the wave contribute to the rows of consecutive nodes.
-    fn add_to_share(&self, nodes: Range<usize>, rows: &mut [DMat3], scratch: &mut RowScratch) {
+    fn add_to_share(&self, mut target: NodeBlocks<'_>, scratch: &mut RowScratch) {
         let Space {
             points, pattern, ..
         } = self.space;
-        let RowScratch { place, visits } = scratch;
+        let RowScratch {
+            place,
+            visits,
+            rows,
+        } = scratch;
         // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
         // them.
         visits.clear();
         let is_served = |node: &usize| self.is_wanted[*node] && !self.in_tetrahedra[*node];
-        for node in nodes.clone().filter(is_served) {
+        for node in target.nodes().filter(is_served) {
             let slots = self.space.slots(node, &self.slots).iter();
             visits.extend(slots.map(|&slot| self.visit(slot)));
         }
-        let (mut rest, mut visits) = (rows, visits.as_slice());
-        for node in nodes.filter(|&node| self.is_wanted[node]) {
+        let mut visits = visits.as_slice();
+        for node in target.nodes().filter(is_served) {
+            let slots = self.space.slots(node, &self.slots);
+            if slots.is_empty() {
+                continue;
+            }
+            let (own, others) = visits.split_at(slots.len());
+            visits = others;
             let neighbours = pattern.neighbours.of(node);
             let mut length = 0;
             for &other in neighbours {
                 place[other as usize] = length;
                 length += points.of_node(other as usize).len() as u32;
             }
-            let (rows, tail) = rest.split_at_mut(points.of_node(node).len() * length as usize);
-            rest = tail;
-            if self.in_tetrahedra[node] {
-                continue;
-            }
-            let slots = self.space.slots(node, &self.slots);
-            let (own, others) = visits.split_at(slots.len());
-            visits = others;
+            rows.clear();
+            rows.resize(points.of_node(node).len() * length as usize, DMat3::ZERO);
             let is_plain = |&other: &u32| self.is_plain[other as usize];
             if neighbours.iter().all(is_plain) {
                 self.add_plain(slots, own, rows, place);
             } else {
                 self.add_general(node, slots, own, rows, place);
             }
+            target.add(node, rows);
         }
     }
 
@@ -302,6 +319,8 @@ struct RowScratch {
     /// For the neighbours of a node, where their blocks start in its rows.
     place: Vec<u32>,
     visits: Vec<CellRow>,
+    /// Rows of a node, those blocks included that are not stored.
+    rows: Vec<DMat3>,
 }
 
 impl RowScratch {
@@ -309,6 +328,7 @@ impl RowScratch {
         Self {
             place: vec![0; space.problem.mesh.nodes.len()],
             visits: Vec::new(),
+            rows: Vec::new(),
         }
     }
 }
@@ -421,8 +441,9 @@ mod tests {
         let largest = |block: DMat3| block.to_cols_array().map(f64::abs).into_iter();
         with_space(problem, |space| {
             let all = vec![true; problem.mesh.nodes.len()];
-            let fast = rock_stiffness(space, &all).blocks;
-            let general = assemble(space, (&all, &vec![false; all.len()])).blocks;
+            let pattern = &space.pattern.blocks;
+            let fast = rock_stiffness(space, &all, pattern).blocks;
+            let general = assemble(space, (&all, &vec![false; all.len()]), pattern).blocks;
             let pairs = std::iter::zip(&fast, &general);
             let apart = pairs.flat_map(|(fast, general)| largest(*fast - *general));
             let all = general.iter().flat_map(|block| largest(*block));
@@ -458,7 +479,11 @@ mod tests {
         let all = vec![true; problem.mesh.nodes.len()];
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let blocks = || with_space(&problem, |space| rock_stiffness(space, &all).blocks);
+            let blocks = || {
+                with_space(&problem, |space| {
+                    rock_stiffness(space, &all, &space.pattern.blocks).blocks
+                })
+            };
             pool.expect("threads").install(blocks)
         };
         let one = with(1);

@@ -108,16 +108,17 @@ fn scatter(
     let (first, other_first) = (a - sector as usize, b - other as usize);
     for k in 0..sectors {
         let row = first + k as usize;
-        let start = pattern.row_offset[row];
-        let columns = &pattern.columns[start..pattern.row_offset[row + 1]];
+        let columns = &pattern.columns[pattern.row(row)];
         if columns.is_empty() {
             return;
         }
         // The unknowns of one node stand side by side.
-        let at = start + columns.partition_point(|&column| (column as usize) < other_first);
+        let start = columns.partition_point(|&column| (column as usize) < other_first);
         let weight = coefficient(sectors, sector, k);
         for l in 0..others {
-            matrix.blocks[at + l as usize] += weight * coefficient(others, other, l) * block;
+            if let Some(address) = pattern.address(row, start + l as usize) {
+                matrix.blocks[address] += weight * coefficient(others, other, l) * block;
+            }
         }
     }
 }

@@ -16,6 +16,7 @@ use lie_core::enrichment::coefficient;
 use lie_core::{Elasticity, Rock, kernel};
 use rayon::prelude::*;
 
+use crate::assembly::node_blocks::NodeBlocks;
 use crate::space::Space;
 
 /// Nodes of a linear tetrahedron.
@@ -75,6 +76,8 @@ pub(crate) struct CellScratch {
     visits: Vec<Corner>,
     /// For the points around a node, the number of their blocks in its rows.
     place: Vec<u32>,
+    /// Rows of a node, those blocks included that are not stored.
+    rows: Vec<DMat3>,
 }
 
 impl<'a> Tetrahedra<'a> {
@@ -100,39 +103,33 @@ impl<'a> Tetrahedra<'a> {
             cells: Vec::new(),
             visits: Vec::new(),
             place: vec![0; self.space.points.len()],
+            rows: Vec::new(),
         }
     }
 
-    /// Writes the rows of those of consecutive nodes that are in tetrahedra only, and zeros into
-    /// the others, of nodes that are wanted.
-    pub(crate) fn set_share(
-        &self,
-        nodes: Range<usize>,
-        rows: &mut [DMat3],
-        scratch: &mut CellScratch,
-    ) {
+    /// Writes the rows of those of consecutive nodes that are wanted and in tetrahedra only, and
+    /// zeros into the others.
+    pub(crate) fn set_share(&self, mut target: NodeBlocks<'_>, scratch: &mut CellScratch) {
         let Space {
             points, pattern, ..
         } = self.space;
         let is_served = |node: &usize| self.is_wanted[*node] && self.in_tetrahedra[*node];
-        let served = nodes.clone().filter(is_served);
+        if target.nodes().any(|node| !self.in_tetrahedra[node]) {
+            // Written before it is read: untouched memory would be mapped twice.
+            target.clear();
+        }
         // Apart from the sums, because the cells lie anywhere in memory: here nothing waits for
         // them.
-        scratch.gather(self, served);
-        let (mut rest, mut visits) = (rows, scratch.visits.as_slice());
-        for node in nodes.filter(|&node| self.is_wanted[node]) {
+        scratch.gather(self, target.nodes().filter(is_served));
+        let mut visits = scratch.visits.as_slice();
+        for node in target.nodes().filter(is_served) {
             let own = points.of_node(node);
-            let columns = match own.is_empty() {
-                true => &[],
-                false => &pattern.blocks.columns[pattern.blocks.row(own.start)],
-            };
-            let (rows, tail) = rest.split_at_mut(own.len() * columns.len());
-            rest = tail;
-            // Written before it is read: untouched memory would be mapped twice.
-            rows.fill(DMat3::ZERO);
-            if !self.in_tetrahedra[node] || rows.is_empty() {
+            if own.is_empty() {
                 continue;
             }
+            let columns = &pattern.blocks.columns[pattern.blocks.row(own.start)];
+            scratch.rows.clear();
+            scratch.rows.resize(own.len() * columns.len(), DMat3::ZERO);
             for (number, &column) in columns.iter().enumerate() {
                 scratch.place[column as usize] = number as u32;
             }
@@ -141,7 +138,7 @@ impl<'a> Tetrahedra<'a> {
             let mut rows = Rows {
                 first: own.start,
                 length: columns.len(),
-                blocks: rows,
+                blocks: &mut scratch.rows,
                 place: &scratch.place,
             };
             self.sum(&scratch.cells, here, &mut rows);
@@ -150,6 +147,7 @@ impl<'a> Tetrahedra<'a> {
                     self.enrich(node, other as usize, &mut rows);
                 }
             }
+            target.set(node, &scratch.rows);
         }
     }
 

@@ -54,7 +54,7 @@ impl CellOfSlot {
     }
 }
 
-/// The pattern of the block matrix, symmetric and stored whole. It is fixed for a run.
+/// The pattern of the block matrix, which is symmetric. It is fixed for a run.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Pattern {
@@ -187,8 +187,5 @@ fn block_pattern(neighbours: &Lists, points: &SectorNodes) -> BlockPattern {
             *column = unknown as u32;
         }
     });
-    BlockPattern {
-        row_offset,
-        columns,
-    }
+    BlockPattern::new(row_offset, columns).halved(0..points.len())
 }

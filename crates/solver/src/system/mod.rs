@@ -411,10 +411,12 @@ impl<'a> System<'a> {
             blocks: self.rock_rows().blocks.to_vec(),
         };
         let stiffness = self.discretisation.interface.stiffness(tangents);
-        let row_offset = &self.discretisation.pattern.blocks.row_offset;
+        let pattern = &self.discretisation.pattern.blocks;
         let fixed = self.fixed_part();
         for (row, place, block) in fixed.blocks(&fixed.places(), &stiffness) {
-            whole.blocks[row_offset[row] + place] = block;
+            if let Some(address) = pattern.address(row, place) {
+                whole.blocks[address] = block;
+            }
         }
         whole
     }

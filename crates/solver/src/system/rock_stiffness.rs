@@ -1,5 +1,7 @@
 //! The stiffness of rock and springs: all rows, or those that one of many ranks needs.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 use kluft_algebra::{
     BlockMatrix, BlockPattern, BlockRows, Communicator, Division, RowOwnership, sum_up,
@@ -26,8 +28,10 @@ impl RockStiffness {
     pub(super) fn of(space: Space<'_>, beside: &[u32], communicator: &Communicator) -> Self {
         let division = divided(space, communicator);
         if division.is_whole() {
-            let mut matrix = rock::rock_stiffness(space, &vec![true; nodes(space)]);
-            springs::add(space, &space.pattern.blocks, &mut matrix);
+            let all = vec![true; nodes(space)];
+            let pattern = &space.pattern.blocks;
+            let mut matrix = rock::rock_stiffness(space, &all, pattern);
+            springs::add(space, pattern, &mut matrix);
             return Self {
                 division,
                 pattern: None,
@@ -37,7 +41,7 @@ impl RockStiffness {
         }
         let own = division.own();
         let is_own = |node: usize| own.contains(&(space.points.offset[node] as usize));
-        let (pattern, matrix) = some(space, is_own);
+        let (pattern, matrix) = some(space, is_own, own.clone());
         let rows = matrix.rows(&pattern);
         let of_beside = division.of_kept(beside);
         let diagonal = of_beside.map(|index| rows.diagonal(beside[index] as usize));
@@ -66,14 +70,15 @@ impl RockStiffness {
         {
             is_new[space.points.node[row as usize] as usize] = true;
         }
-        let (pattern, matrix) = some(space, |node| is_new[node]);
-        let (pattern, matrix) = joined([self.matrix.rows(held), matrix.rows(&pattern)]);
+        let (pattern, matrix) = some(space, |node| is_new[node], 0..0);
+        let parts = [self.matrix.rows(held), matrix.rows(&pattern)];
+        let (pattern, matrix) = joined(parts, self.division.own());
         (self.pattern, self.matrix) = (Some(pattern), matrix);
     }
 
     /// The rows that are held, the others being empty; `whole` is the pattern of all.
     pub(super) fn rows<'a>(&'a self, whole: &'a BlockPattern) -> BlockRows<'a> {
-        self.matrix.rows(self.pattern.as_ref().unwrap_or(whole))
+        self.matrix.rows(self.held(whole))
     }
 
     /// Diagonal blocks of the rows beside fractures, if not all rows are held.
@@ -83,19 +88,21 @@ impl RockStiffness {
 
     /// `K y`.
     pub(super) fn times(&self, whole: &BlockPattern, vector: &[DVec3]) -> Vec<DVec3> {
-        match self.division.is_whole() {
-            true => self.matrix.times(whole, vector),
-            false => {
-                let rows = self.rows(whole);
-                self.division.map(|row| rows.row_product(row, vector))
-            }
-        }
+        let mut product = self.matrix.times(self.held(whole), vector);
+        self.division.complete(&mut product);
+        product
     }
 
     /// `|K| |y|`, both entry by entry.
     pub(super) fn absolute_times(&self, whole: &BlockPattern, vector: &[DVec3]) -> Vec<DVec3> {
-        let rows = self.rows(whole);
-        self.division.map(|row| rows.absolute_product(row, vector))
+        let mut product = vec![DVec3::ZERO; vector.len()];
+        self.rows(whole).multiply_absolute(vector, &mut product);
+        self.division.complete(&mut product);
+        product
+    }
+
+    fn held<'a>(&'a self, whole: &'a BlockPattern) -> &'a BlockPattern {
+        self.pattern.as_ref().unwrap_or(whole)
     }
 }
 
@@ -115,8 +122,13 @@ fn divided(space: Space<'_>, communicator: &Communicator) -> Division {
     communicator.divide(RowOwnership::of_starts(starts.collect()))
 }
 
-/// The rows of some nodes and their pattern, in which the others are empty.
-fn some(space: Space<'_>, is_wanted: impl Fn(usize) -> bool) -> (BlockPattern, BlockMatrix) {
+/// The rows of some nodes and their pattern, in which the others are empty; blocks between the rows
+/// `halved` are stored once.
+fn some(
+    space: Space<'_>,
+    is_wanted: impl Fn(usize) -> bool,
+    halved: Range<usize>,
+) -> (BlockPattern, BlockMatrix) {
     let whole = &space.pattern.blocks;
     let is_wanted: Vec<bool> = (0..nodes(space)).map(is_wanted).collect();
     let is_held = |row: &usize| is_wanted[space.points.node[*row] as usize];
@@ -129,32 +141,26 @@ fn some(space: Space<'_>, is_wanted: impl Fn(usize) -> bool) -> (BlockPattern, B
     sum_up(&mut row_offset);
     let columns = rows.filter(is_held);
     let columns = columns.flat_map(|row| &whole.columns[whole.row(row)]);
-    let pattern = BlockPattern {
-        columns: columns.copied().collect(),
-        row_offset,
-    };
-    let mut matrix = rock::rock_stiffness(space, &is_wanted);
+    let pattern = BlockPattern::new(row_offset, columns.copied().collect()).halved(halved);
+    let mut matrix = rock::rock_stiffness(space, &is_wanted, &pattern);
     springs::add(space, &pattern, &mut matrix);
     (pattern, matrix)
 }
 
-/// Rows of which each is empty in one of two matrices.
-fn joined(parts: [BlockRows<'_>; 2]) -> (BlockPattern, BlockMatrix) {
-    let count = parts.iter().map(|part| part.columns.len()).sum();
-    let mut pattern = BlockPattern {
-        row_offset: vec![0],
-        columns: Vec::with_capacity(count),
-    };
-    let mut blocks = Vec::with_capacity(count);
+/// Rows of which each is empty in one of two matrices; blocks between the rows `halved` are stored
+/// once, as in the one that has them.
+fn joined(parts: [BlockRows<'_>; 2], halved: Range<usize>) -> (BlockPattern, BlockMatrix) {
+    let count = |of: fn(&BlockPattern) -> usize| parts.iter().map(|part| of(part.pattern)).sum();
+    let mut row_offset = vec![0];
+    let mut columns = Vec::with_capacity(count(|pattern| pattern.columns.len()));
+    let mut blocks = Vec::with_capacity(count(BlockPattern::stored_count));
     for row in 0..parts[0].rows() {
         for part in &parts {
-            let range = part.row_offset[row]..part.row_offset[row + 1];
-            pattern
-                .columns
-                .extend_from_slice(&part.columns[range.clone()]);
-            blocks.extend_from_slice(&part.blocks[range]);
+            columns.extend_from_slice(&part.pattern.columns[part.pattern.row(row)]);
+            blocks.extend_from_slice(&part.blocks[part.pattern.stored(row)]);
         }
-        pattern.row_offset.push(blocks.len());
+        row_offset.push(columns.len());
     }
+    let pattern = BlockPattern::new(row_offset, columns).halved(halved);
     (pattern, BlockMatrix { blocks })
 }
