@@ -122,13 +122,14 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
             .collect();
         let tangent = system.tangent(&tangents);
         let points = system.discretisation().points();
+        let rows = tangent.rows(&pattern.blocks);
         for row in 0..points.len() {
-            for address in pattern.blocks.row(row) {
-                let column = pattern.blocks.columns[address] as usize;
-                let twin = pattern.blocks.address(column, row);
-                let twin = tangent.blocks[twin.expect("symmetric")].transpose();
-                let difference = tangent.blocks[address] - twin;
-                let size = tangent.blocks[address].to_cols_array().map(f64::abs);
+            for (column, block) in rows.row(row) {
+                let mut twins = rows.row(column as usize);
+                let twin = twins.find(|(at, _)| *at as usize == row);
+                let (_, twin) = twin.expect("symmetric");
+                let difference = block - twin.transpose();
+                let size = block.to_cols_array().map(f64::abs);
                 let size = size.into_iter().fold(0.0, f64::max);
                 let worst = difference
                     .to_cols_array()
@@ -139,10 +140,9 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
             }
         }
         let order = NodeOrder::of(&pattern.neighbours, &points.offset).expect("ordering");
-        let rows = tangent.rows(&pattern.blocks);
         let order = order.all(&points.offset);
-        let analysis =
-            Analysis::of(&rows.pattern.row_offset, &rows.pattern.columns, order).expect("analysis");
+        let blocks = &pattern.blocks;
+        let analysis = Analysis::of(&blocks.row_offset, &blocks.columns, order).expect("analysis");
         let mut solver = Cholesky::new(analysis, rows);
         assert_eq!(solver.factorise(), Ok(()), "closed to {closure}");
     }

@@ -166,6 +166,30 @@ impl Factors {
         sum
     }
 
+    /// Sets columns and blocks of a row of the scaled matrix among clusters of single rows.
+    #[inline(always)]
+    fn scale_single(
+        &self,
+        rows: &SumRows<'_>,
+        clusters: &Clusters,
+        row: usize,
+        (columns, blocks): (&mut [u32], &mut [[[f32; 3]; 3]]),
+    ) {
+        let (own, _) = clusters.place[row];
+        let left = block(self.inverse_of(own), 0, 0);
+        let mut targets = columns.iter_mut().zip(blocks);
+        rows.for_each(row, |column, value| {
+            let (other, _) = clusters.place[column as usize];
+            if other != own
+                && let Some((target, scaled)) = targets.next()
+            {
+                *target = column;
+                let right = block(self.inverse_of(other), 0, 0);
+                *scaled = narrow(&product_transposed(&times(&left, value), &right));
+            }
+        });
+    }
+
     /// The inverses as they are kept for the cycle.
     pub(super) fn compact(self) -> InverseFactors {
         InverseFactors {
@@ -221,11 +245,7 @@ pub(super) fn set_matrix(
                 return 0;
             }
             if is_among_single(rows, clusters, row) {
-                let mut count = 0;
-                rows.for_each(row, |column, _| {
-                    count += usize::from(column as usize != row)
-                });
-                return count;
+                return others(rows, row);
             }
             coupled(rows, clusters, row, |_, _, other, place| {
                 let members = clusters.members.of(other as usize);
@@ -241,19 +261,7 @@ pub(super) fn set_matrix(
             let (own, at) = clusters.place[row];
             let left = factors.inverse_of(own);
             if is_among_single(rows, clusters, row) {
-                let left = block(left, 0, 0);
-                let mut targets = columns.iter_mut().zip(blocks);
-                rows.for_each(row, |column, value| {
-                    let (other, _) = clusters.place[column as usize];
-                    if other != own
-                        && let Some((target, sum)) = targets.next()
-                    {
-                        *target = column;
-                        let right = block(factors.inverse_of(other), 0, 0);
-                        *sum = narrow(&product_transposed(&times(&left, value), &right));
-                    }
-                });
-                return;
+                return factors.scale_single(rows, clusters, row, (columns, blocks));
             }
             coupled(rows, clusters, row, |member, value, other, place| {
                 let scaled = times(&block(left, at as usize, member), value);
@@ -301,6 +309,15 @@ fn times(left: &[[f64; 3]; 3], value: &DMat3) -> [[f64; 3]; 3] {
 #[inline(always)]
 fn product_transposed(b: &[[f64; 3]; 3], l: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     product(l, &transpose(b))
+}
+
+/// Number of blocks of a row that are not zero, without its diagonal.
+fn others(rows: &SumRows<'_>, row: usize) -> usize {
+    let mut count = 0;
+    rows.for_each(row, |column, _| {
+        count += usize::from(column as usize != row)
+    });
+    count
 }
 
 /// Whether a row's cluster and those beside it are single rows.

@@ -144,11 +144,7 @@ impl FixedHierarchy {
         } = buffers;
         let factors = Factors::of(rows, &self.clusters)?;
         block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors, |_| true);
-        let bound = spectrum::largest_eigenvalue(&matrix);
-        if !bound.is_finite() {
-            return Err(MultigridFailure::NotFinite);
-        }
-        let (matrix, below, next) = if self.has_next(matrix.rows()) {
+        let ((matrix, smoother), below, next) = if self.has_next(matrix.rows()) {
             let columns = self.basis.modes.len();
             block_jacobi::smooth_by_blocks(
                 &mut prolongator,
@@ -160,23 +156,23 @@ impl FixedHierarchy {
             let transpose = Transpose::of(&prolongator, columns);
             let product = self.product(rows, &matrix, &prolongator, &transpose, |_| true);
             // Before the next level asks for memory.
-            let matrix = SymmetricMatrix::of(matrix);
+            let half = halved(matrix)?;
             let nodes = (self.basis.nodes(), &Communicator::alone());
             let next = galerkin::coarse(product, &mut prolongator, nodes);
             let transfer = Transfer {
                 prolongator,
                 transpose,
             };
-            (matrix, Below::Level(transfer), Some(next))
+            (half, Below::Level(transfer), Some(next))
         } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
-            (SymmetricMatrix::of(matrix), Below::Nothing, None)
+            (halved(matrix)?, Below::Nothing, None)
         } else {
             let dense = Dense::new(&matrix).ok_or(MultigridFailure::NotFinite)?;
-            (SymmetricMatrix::of(matrix), Below::Inverse(dense), None)
+            (halved(matrix)?, Below::Inverse(dense), None)
         };
         let level = Level {
             matrix,
-            smoother: Smoother::new(bound),
+            smoother,
             below,
         };
         Ok((factors.compact(), level, next))
@@ -227,6 +223,16 @@ impl FixedHierarchy {
         self.clusters.bytes()
             + self.basis.bytes()
             + self.far.as_ref().map_or(0, PartialProduct::bytes)
+    }
+}
+
+/// The finest matrix as the cycle keeps it, and its smoother.
+fn halved(matrix: Sparse<3, 3>) -> Result<(SymmetricMatrix<3>, Smoother), MultigridFailure> {
+    let matrix = SymmetricMatrix::of(matrix);
+    let bound = spectrum::largest_eigenvalue_of_halves(&matrix);
+    match bound.is_finite() {
+        true => Ok((matrix, Smoother::new(bound))),
+        false => Err(MultigridFailure::NotFinite),
     }
 }
 

@@ -5,6 +5,7 @@ use faer::{Mat, Side};
 use rayon::prelude::*;
 
 use super::sparse::{Sparse, rows_per_task};
+use super::symmetric::{SymmetricMatrix, rows_per_run};
 use crate::dense_kernels::apart;
 
 /// Lanczos steps; the bound is a few per cent too large after them.
@@ -17,6 +18,22 @@ const INVARIANT: f64 = 1e-6;
 /// of a matrix with unit diagonal never falls below.
 pub(super) fn largest_eigenvalue<const N: usize>(matrix: &Sparse<N, N>) -> f64 {
     largest_eigenvalue_of_rows(matrix, |_| {})
+}
+
+/// The same of a matrix as the cycle keeps it.
+pub(super) fn largest_eigenvalue_of_halves<const N: usize>(matrix: &SymmetricMatrix<N>) -> f64 {
+    largest_eigenvalue_by(matrix.rows(), |vector, before, factor| {
+        let mut image = vec![[0.0; N]; vector.len()];
+        let rows = rows_per_run::<N>();
+        let runs = image.par_chunks_mut(rows).zip(before.par_chunks(rows));
+        runs.enumerate().for_each(|(run, (image, before))| {
+            matrix.run_product(run, vector, image);
+            for (image, before) in image.iter_mut().zip(before) {
+                *image = std::array::from_fn(|i| image[i] - factor as f32 * before[i]);
+            }
+        });
+        image
+    })
 }
 
 /// The same of a matrix of which some rows are known; `complete` replaces the entries of a vector

@@ -474,6 +474,37 @@ mod tests {
     }
 
     #[test]
+    fn what_is_not_stored_is_the_transpose_of_what_is() {
+        let with_prisms = |cube: [usize; 3]| match cube[2] {
+            0 => Cut::Prisms,
+            _ => Cut::Tetrahedra,
+        };
+        for problem in [problem(with_prisms), problem(|_| Cut::Hexahedron)] {
+            compare_halves(&problem);
+        }
+    }
+
+    fn compare_halves(problem: &Problem) {
+        let all = vec![true; problem.mesh.nodes.len()];
+        with_space(problem, |space| {
+            let half = &space.pattern.blocks;
+            let whole = BlockPattern::new(half.row_offset.clone(), half.columns.clone());
+            let rows = rock_stiffness(space, &all, half);
+            let expected = rock_stiffness(space, &all, &whole).blocks;
+            assert!(rows.blocks.len() < 2 * expected.len() / 3);
+            let rows = rows.rows(half);
+            let found = (0..half.rows()).flat_map(|row| rows.row(row));
+            let size = |block: DMat3| block.to_cols_array().map(f64::abs);
+            let largest = |block: DMat3| size(block).into_iter().fold(0.0, f64::max);
+            let scale = expected.iter().map(|block| largest(*block));
+            let scale = scale.fold(0.0, f64::max);
+            for ((_, block), expected) in found.zip(&expected) {
+                assert!(largest(block - *expected) < 1e-14 * scale);
+            }
+        });
+    }
+
+    #[test]
     fn threads_do_not_change_a_bit() {
         let problem = problem(|_| Cut::Tetrahedra);
         let all = vec![true; problem.mesh.nodes.len()];
