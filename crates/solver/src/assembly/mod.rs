@@ -1,6 +1,7 @@
 //! Matrices and forces of a problem over its space.
 
 pub(crate) mod cell_forces;
+mod cell_matrices;
 mod drawing;
 pub(crate) mod facet_point;
 mod facet_values;
