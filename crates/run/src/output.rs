@@ -373,15 +373,15 @@ impl Output {
         self.write(TOGETHER, |path| write_vtm(path, &blocks))
     }
 
-    /// Writes the piece of this rank of the grids of one load step; the first rank gives all pieces
-    /// their places, and lists them.
+    /// Writes the piece of this rank of the grids of one load step, rock and fractures; the first
+    /// rank gives all pieces their places, and lists them.
     ///
     /// # Errors
     /// If a file cannot be written, here or by another rank.
     pub fn write_pieces(
         &mut self,
         time: f64,
-        grids: [&Grid; 2],
+        [rock, fractures]: [&dyn Fn() -> Grid; 2],
         piece: &Piece,
         ranks: Ranks<'_>,
     ) -> Result<(), Vec<Defect>> {
@@ -390,26 +390,28 @@ impl Output {
         }
         let names = names(self.rock.len() + 1, self.pieces);
         self.about.time = Some(time);
-        let own = [piece.of_rock(grids[0]), piece.of_fractures(grids[1])];
-        let mut written = Vec::new();
-        for (name, grid) in names.iter().zip(own) {
-            let name = &parts(name, self.pieces)[ranks.rank()];
-            let encoded = self.encoded(name, grid);
-            written.push(encoded.and_then(|grid| self.write_grid(name, &grid)));
-        }
-        let written: Result<Vec<u128>, Defect> = written.into_iter().collect();
-        ranks.agree(written.map_err(|defect| vec![defect]))?;
+        // One after the other, and no field twice: all ranks of a machine share its memory.
+        let mut rock = rock();
+        let first = self.write_piece(&names[0], piece.take_rock(&mut rock), ranks);
+        let mut fractures = fractures();
+        self.shown = (self.shows && self.is_kept()).then(|| Shown {
+            surface: Surface::of(&fractures, &page::fields()),
+            body: box_of(&rock.points),
+        });
+        let second = self.write_piece(&names[1], piece.take_fractures(&mut fractures), ranks);
+        ranks.agree(first.and(second).map_err(|defect| vec![defect]))?;
         if !self.is_kept() {
             self.rock.push((time, String::new()));
             return Ok(());
         }
-        let [rock, fractures] = grids;
-        self.shown = self.shows.then(|| Shown {
-            surface: Surface::of(fractures, &page::fields()),
-            body: box_of(&rock.points),
-        });
-        let placed = self.place_pieces(time, grids, names);
+        let placed = self.place_pieces(time, [&rock, &fractures], names);
         placed.map_err(|defect| vec![defect])
+    }
+
+    fn write_piece(&self, name: &str, grid: Grid, ranks: Ranks<'_>) -> Result<(), Defect> {
+        let name = &parts(name, self.pieces)[ranks.rank()];
+        let grid = self.encoded(name, grid)?;
+        self.write_grid(name, &grid).map(|_| ())
     }
 
     fn place_pieces(

@@ -31,19 +31,20 @@ impl Piece {
         }
     }
 
-    /// Its cells of a grid of the rock.
-    pub fn of_rock(&self, grid: &Grid) -> Grid {
+    /// Takes its cells out of a grid of the rock, whose fields are empty then.
+    pub fn take_rock(&self, grid: &mut Grid) -> Grid {
         taken(grid, &self.cells)
     }
 
-    /// Its facets of a grid of the fractures.
-    pub fn of_fractures(&self, grid: &Grid) -> Grid {
+    /// Takes its facets out of a grid of the fractures, whose fields are empty then.
+    pub fn take_fractures(&self, grid: &mut Grid) -> Grid {
         taken(grid, &self.facets)
     }
 }
 
-/// The cells that are wanted, with the points that they have.
-fn taken(grid: &Grid, is_wanted: &[bool]) -> Grid {
+/// The cells that are wanted, with the points that they have; the fields of the grid are empty
+/// then.
+fn taken(grid: &mut Grid, is_wanted: &[bool]) -> Grid {
     let mut number = vec![LEFT_OUT; grid.points.len()];
     let mut points = Vec::new();
     let mut piece = Grid {
@@ -72,24 +73,32 @@ fn taken(grid: &Grid, is_wanted: &[bool]) -> Grid {
         piece.offsets.push(piece.nodes.len() as u32);
     }
     piece.points = points.iter().map(|&point| grid.points[point]).collect();
-    piece.point_fields = fields(&grid.point_fields, &points);
-    piece.cell_fields = fields(&grid.cell_fields, &cells);
+    piece.point_fields = fields(&mut grid.point_fields, &points);
+    piece.cell_fields = fields(&mut grid.cell_fields, &cells);
     piece
 }
 
-fn fields(all: &[Field], items: &[usize]) -> Vec<Field> {
-    let of = |field: &Field| {
+fn fields(all: &mut [Field], items: &[usize]) -> Vec<Field> {
+    let of = |field: &mut Field| {
         let width = field.components as usize;
-        let at = items
-            .iter()
-            .flat_map(|&item| width * item..width * (item + 1));
-        let values = match &field.values {
-            Values::Real(values) => Values::Real(at.map(|at| values[at]).collect()),
-            Values::Integer(values) => Values::Integer(at.map(|at| values[at]).collect()),
+        let values = match &mut field.values {
+            Values::Real(values) => Values::Real(picked(std::mem::take(values), width, items)),
+            Values::Integer(values) => {
+                Values::Integer(picked(std::mem::take(values), width, items))
+            }
         };
         Field { values, ..*field }
     };
-    all.iter().map(of).collect()
+    all.iter_mut().map(of).collect()
+}
+
+/// Records of so many numbers, those of some items.
+fn picked<T: Copy>(all: Vec<T>, width: usize, items: &[usize]) -> Vec<T> {
+    let mut own = Vec::with_capacity(width * items.len());
+    for &item in items {
+        own.extend_from_slice(&all[width * item..width * (item + 1)]);
+    }
+    own
 }
 
 #[cfg(test)]
@@ -99,7 +108,7 @@ mod tests {
 
     #[test]
     fn pieces_hold_every_cell_once_with_its_values() {
-        let grid = Grid {
+        let mut grid = Grid {
             points: (0..6).map(|i| [f64::from(i), 0.0, 1.0]).collect(),
             shapes: vec![Shape::Tri3; 3],
             offsets: vec![0, 3, 6, 9],
@@ -110,7 +119,7 @@ mod tests {
             )],
             cell_fields: vec![crate::grids::integer_field("c", 0..3)],
         };
-        let piece = taken(&grid, &[false, true, true]);
+        let piece = taken(&mut grid, &[false, true, true]);
         assert_eq!(piece.offsets, [0, 3, 6]);
         let at = |node: usize| piece.points[piece.nodes[node] as usize][0];
         let places: Vec<f64> = (0..6).map(at).collect();
@@ -125,6 +134,6 @@ mod tests {
             panic!("whole numbers");
         };
         assert_eq!(cells, &[1, 2]);
-        assert!(taken(&grid, &[false; 3]).shapes.is_empty());
+        assert!(taken(&mut grid, &[false; 3]).shapes.is_empty());
     }
 }

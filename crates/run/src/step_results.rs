@@ -167,7 +167,7 @@ impl Run<'_> {
             if let Some(ranks) = ranks {
                 meanwhile();
                 let piece = Piece::of(system, &(ranks.owner)(), ranks.rank());
-                let grids = [&rock(), &fractures()];
+                let grids: [&dyn Fn() -> Grid; 2] = [&rock, &fractures];
                 return run.output.write_pieces(time, grids, &piece, ranks);
             }
             let of_one = |defect| vec![defect];
