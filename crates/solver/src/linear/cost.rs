@@ -146,7 +146,7 @@ pub(super) fn predict(
 pub(super) fn iterative(unknowns: Unknowns<'_>, workload: Workload) -> Prediction {
     const SETUP_BYTES: f64 = 8_500.0;
     const ITERATION_BYTES: f64 = 400.0;
-    const MEMORY_BYTES: f64 = 190.0;
+    const MEMORY_BYTES: f64 = 200.0;
     let blocks = unknowns.pattern.blocks.columns.len() as f64;
     let set_up = match workload.present {
         Some(LinearMethod::Iterative) => 0.0,
