@@ -312,7 +312,7 @@ impl PreparedRock<'_, '_, '_> {
             summary,
             fractures,
             rock: match with_rock {
-                true => in_plane(mesh, rock_grid(system, &solution, None)),
+                true => in_plane(mesh, rock_grid(system, &solution, None, None)),
                 false => Grid {
                     offsets: vec![0],
                     ..Grid::default()

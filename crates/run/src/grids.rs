@@ -7,41 +7,57 @@ use kluft_solver::{FacetResult, Solution, System, principal};
 use rayon::prelude::*;
 
 use crate::accuracy::Accuracy;
+use crate::pieces::{Cells, Part};
 
-/// The rock, with one copy of a node for each of its sectors.
-pub fn rock_grid(system: &System<'_>, solution: &Solution, accuracy: Option<&Accuracy>) -> Grid {
+/// The rock, with one copy of a node for each of its sectors: of some of its cells, of all if none
+/// are named.
+pub fn rock_grid(
+    system: &System<'_>,
+    solution: &Solution,
+    accuracy: Option<&Accuracy>,
+    cells: Option<&[u32]>,
+) -> Grid {
     let mesh = &system.problem().mesh;
     let points = &system.discretisation().points();
-    let rocks = system
-        .problem()
-        .material_of_cell()
-        .iter()
-        .map(|&rock| rock as i32);
-    let displacements = solution.displacements.iter().map(|u| u.to_array());
+    let all = Cells {
+        shapes: &mesh.cells.shapes,
+        offsets: &mesh.cells.offsets,
+        nodes: &points.of_cell_node,
+    };
+    let part = Part::of(all, points.node.len(), cells);
+    let nodes: Vec<u32> = part.of_points(&points.node).collect();
+    let rocks = part.of_cells(system.problem().material_of_cell());
+    let displacements = part.of_points(&solution.displacements);
     let errors = accuracy.map(|accuracy| {
-        let errors = accuracy.stress_errors.iter();
-        real_field("stress_error", errors.map(|&error| [error]))
+        let errors = part.of_cells(&accuracy.stress_errors);
+        real_field("stress_error", errors.map(|error| [error]))
     });
-    let stresses = || real_field("stress", solution.stresses.iter().copied());
+    let stresses = || real_field("stress", part.of_cells(&solution.stresses));
     let principals = || {
-        let principals: Vec<[f64; 3]> = solution.stresses.par_iter().map(principal).collect();
+        let cells = (0..part.cell_count()).into_par_iter();
+        let principals = cells.map(|i| principal(&solution.stresses[part.cell(i)]));
+        let principals: Vec<[f64; 3]> = principals.collect();
         real_field("principal_stress", principals.into_iter())
     };
     let (stresses, principals) = rayon::join(stresses, principals);
     let mut grid = Grid {
-        points: points
-            .node
+        points: nodes
             .iter()
             .map(|&node| mesh.nodes[node as usize].to_array())
             .collect(),
-        shapes: mesh.cells.shapes.clone(),
-        offsets: mesh.cells.offsets.clone(),
-        nodes: points.of_cell_node.clone(),
-        point_fields: [real_field("displacement", displacements)]
-            .into_iter()
-            .chain(tags(mesh, &points.node))
-            .collect(),
-        cell_fields: vec![stresses, principals, integer_field("rock", rocks)],
+        point_fields: [real_field(
+            "displacement",
+            displacements.map(|u| u.to_array()),
+        )]
+        .into_iter()
+        .chain(tags(mesh, &nodes))
+        .collect(),
+        cell_fields: vec![
+            stresses,
+            principals,
+            integer_field("rock", rocks.map(|rock| rock as i32)),
+        ],
+        ..part.grid()
     };
     grid.cell_fields.extend(errors);
     grid

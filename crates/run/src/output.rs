@@ -17,7 +17,7 @@ use crate::flow::SOURCES;
 use crate::former::{self, TOGETHER};
 use crate::history;
 use crate::page::{self, Shown};
-use crate::pieces::Piece;
+use crate::pieces::{Piece, some_of};
 use crate::probes;
 use crate::ranks::Ranks;
 use crate::step_files::{names, parts};
@@ -381,7 +381,7 @@ impl Output {
     pub fn write_pieces(
         &mut self,
         time: f64,
-        [rock, fractures]: [&dyn Fn() -> Grid; 2],
+        (rock, fractures): (impl FnOnce() -> Grid, impl FnOnce() -> Grid),
         piece: &Piece,
         ranks: Ranks<'_>,
     ) -> Result<(), Vec<Defect>> {
@@ -390,21 +390,23 @@ impl Output {
         }
         let names = names(self.rock.len() + 1, self.pieces);
         self.about.time = Some(time);
-        // One after the other, and no field twice: all ranks of a machine share its memory.
-        let mut rock = rock();
-        let first = self.write_piece(&names[0], piece.take_rock(&mut rock), ranks);
-        let mut fractures = fractures();
+        // One after the other: all ranks of a machine share its memory.
+        let rock = rock();
+        let corners = ranks.communicator.gathered(&box_of(&rock.points));
+        let fields = some_of(&rock, &[]);
+        let first = self.write_piece(&names[0], rock, ranks);
+        let fractures = fractures();
         self.shown = (self.shows && self.is_kept()).then(|| Shown {
             surface: Surface::of(&fractures, &page::fields()),
-            body: box_of(&rock.points),
+            body: box_of(&corners),
         });
-        let second = self.write_piece(&names[1], piece.take_fractures(&mut fractures), ranks);
+        let second = self.write_piece(&names[1], some_of(&fractures, &piece.facets), ranks);
         ranks.agree(first.and(second).map_err(|defect| vec![defect]))?;
         if !self.is_kept() {
             self.rock.push((time, String::new()));
             return Ok(());
         }
-        let placed = self.place_pieces(time, [&rock, &fractures], names);
+        let placed = self.place_pieces(time, [&fields, &fractures], names);
         placed.map_err(|defect| vec![defect])
     }
 

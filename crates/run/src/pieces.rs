@@ -1,15 +1,18 @@
-//! The part of a grid that one rank writes.
+//! A part of the cells of a grid, such as the piece that one rank writes.
 
 use kluft_io::{Field, Grid, Values};
+use kluft_mesh::Shape;
 use kluft_solver::System;
 
-/// Number of a point that no cell of the piece has.
+/// Number of a point that no cell of the part has.
 const LEFT_OUT: u32 = u32::MAX;
 
 /// Which cells and facets are those of one rank: the ones whose first point it owns.
 pub struct Piece {
-    cells: Vec<bool>,
-    facets: Vec<bool>,
+    /// Cells of the rock, ascending.
+    pub cells: Vec<u32>,
+    /// Facets of the fractures, ascending.
+    pub facets: Vec<u32>,
 }
 
 impl Piece {
@@ -18,87 +21,166 @@ impl Piece {
         let mesh = &system.problem().mesh;
         let points = system.discretisation().points();
         let is_own = |point: u32| owner[point as usize] as usize == rank;
-        let starts = mesh.cells.offsets.windows(2).map(|pair| pair[0] as usize);
-        let cells = starts.map(|start| is_own(points.of_cell_node[start]));
+        let cells = mesh.cells.offsets.windows(2);
+        let cells = cells.map(|pair| is_own(points.of_cell_node[pair[0] as usize]));
         let facets = mesh.facets.elements.offsets.windows(2);
         let facets = facets.map(|pair| {
             let node = mesh.facets.elements.nodes[pair[0] as usize];
             is_own(points.of_node(node as usize).start as u32)
         });
         Self {
-            cells: cells.collect(),
-            facets: facets.collect(),
+            cells: numbers(cells),
+            facets: numbers(facets),
         }
-    }
-
-    /// Takes its cells out of a grid of the rock, whose fields are empty then.
-    pub fn take_rock(&self, grid: &mut Grid) -> Grid {
-        taken(grid, &self.cells)
-    }
-
-    /// Takes its facets out of a grid of the fractures, whose fields are empty then.
-    pub fn take_fractures(&self, grid: &mut Grid) -> Grid {
-        taken(grid, &self.facets)
     }
 }
 
-/// The cells that are wanted, with the points that they have; the fields of the grid are empty
-/// then.
-fn taken(grid: &mut Grid, is_wanted: &[bool]) -> Grid {
-    let mut number = vec![LEFT_OUT; grid.points.len()];
-    let mut points = Vec::new();
-    let mut piece = Grid {
-        offsets: vec![0],
-        ..Grid::default()
+/// Some cells of a grid, with their points and values.
+pub fn some_of(grid: &Grid, cells: &[u32]) -> Grid {
+    let all = Cells {
+        shapes: &grid.shapes,
+        offsets: &grid.offsets,
+        nodes: &grid.nodes,
     };
-    let wanted = |list: &[bool]| -> Vec<usize> {
-        let numbered = list.iter().enumerate();
-        numbered
-            .filter(|(_, wanted)| **wanted)
-            .map(|(cell, _)| cell)
-            .collect()
-    };
-    let cells = wanted(is_wanted);
-    for &cell in &cells {
-        let own = grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize;
-        for &point in &grid.nodes[own] {
-            let number = &mut number[point as usize];
-            if *number == LEFT_OUT {
-                *number = points.len() as u32;
-                points.push(point as usize);
+    let part = Part::of(all, grid.points.len(), Some(cells));
+    Grid {
+        points: part.of_points(&grid.points).collect(),
+        point_fields: fields(&grid.point_fields, part.points.as_deref()),
+        cell_fields: fields(&grid.cell_fields, part.cells),
+        ..part.grid()
+    }
+}
+
+/// The numbers of what is wanted.
+fn numbers(wanted: impl Iterator<Item = bool>) -> Vec<u32> {
+    let numbered = wanted.zip(0..).filter(|(wanted, _)| *wanted);
+    numbered.map(|(_, number)| number).collect()
+}
+
+/// Cells and their points, as a grid has them.
+#[derive(Clone, Copy)]
+pub struct Cells<'a> {
+    /// The shape of every cell.
+    pub shapes: &'a [Shape],
+    /// Where the points of every cell start in `nodes`, and after the last cell the end.
+    pub offsets: &'a [u32],
+    /// Points of all cells, one cell after the other.
+    pub nodes: &'a [u32],
+}
+
+/// Some cells, or all, with the points that they have.
+pub struct Part<'a> {
+    of: Cells<'a>,
+    cells: Option<&'a [u32]>,
+    /// Points of the cells, in the order in which these name them first; all if none are named.
+    points: Option<Vec<u32>>,
+    nodes: Vec<u32>,
+}
+
+impl<'a> Part<'a> {
+    /// The part of cells on so many points that consists of some of them, all of them if none are
+    /// named.
+    pub fn of(of: Cells<'a>, point_count: usize, cells: Option<&'a [u32]>) -> Self {
+        let Some(chosen) = cells else {
+            return Self {
+                nodes: of.nodes.to_vec(),
+                points: None,
+                of,
+                cells,
+            };
+        };
+        let mut number = vec![LEFT_OUT; point_count];
+        let (mut points, mut nodes) = (Vec::new(), Vec::new());
+        for &cell in chosen {
+            for &point in of.nodes_of(cell) {
+                let number = &mut number[point as usize];
+                if *number == LEFT_OUT {
+                    *number = points.len() as u32;
+                    points.push(point);
+                }
+                nodes.push(*number);
             }
-            piece.nodes.push(*number);
         }
-        piece.shapes.push(grid.shapes[cell]);
-        piece.offsets.push(piece.nodes.len() as u32);
+        Self {
+            of,
+            cells,
+            points: Some(points),
+            nodes,
+        }
     }
-    piece.points = points.iter().map(|&point| grid.points[point]).collect();
-    piece.point_fields = fields(&mut grid.point_fields, &points);
-    piece.cell_fields = fields(&mut grid.cell_fields, &cells);
-    piece
+
+    /// Its records among those of all points.
+    pub fn of_points<T: Copy>(&self, all: &[T]) -> impl Iterator<Item = T> {
+        picked(all, self.points.as_deref())
+    }
+
+    /// Its records among those of all cells.
+    pub fn of_cells<T: Copy>(&self, all: &[T]) -> impl Iterator<Item = T> {
+        picked(all, self.cells)
+    }
+
+    /// How many cells it has.
+    pub fn cell_count(&self) -> usize {
+        self.cells.map_or(self.of.shapes.len(), <[u32]>::len)
+    }
+
+    /// The number of one of its cells among all.
+    pub fn cell(&self, i: usize) -> usize {
+        self.cells.map_or(i, |cells| cells[i] as usize)
+    }
+
+    /// Its cells as a grid without coordinates and fields.
+    pub fn grid(self) -> Grid {
+        let shapes: Vec<Shape> = self.of_cells(self.of.shapes).collect();
+        let offsets = match self.cells {
+            None => self.of.offsets.to_vec(),
+            Some(_) => {
+                let mut end = 0;
+                let ends = shapes.iter().map(|shape| {
+                    end += shape.node_count() as u32;
+                    end
+                });
+                std::iter::once(0).chain(ends).collect()
+            }
+        };
+        Grid {
+            shapes,
+            offsets,
+            nodes: self.nodes,
+            ..Grid::default()
+        }
+    }
 }
 
-fn fields(all: &mut [Field], items: &[usize]) -> Vec<Field> {
-    let of = |field: &mut Field| {
+impl Cells<'_> {
+    fn nodes_of(&self, cell: u32) -> &[u32] {
+        let cell = cell as usize;
+        &self.nodes[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
+    }
+}
+
+fn fields(all: &[Field], items: Option<&[u32]>) -> Vec<Field> {
+    let of = |field: &Field| {
         let width = field.components as usize;
-        let values = match &mut field.values {
-            Values::Real(values) => Values::Real(picked(std::mem::take(values), width, items)),
-            Values::Integer(values) => {
-                Values::Integer(picked(std::mem::take(values), width, items))
-            }
+        let values = match &field.values {
+            Values::Real(values) => Values::Real(rows(values, width, items)),
+            Values::Integer(values) => Values::Integer(rows(values, width, items)),
         };
         Field { values, ..*field }
     };
-    all.iter_mut().map(of).collect()
+    all.iter().map(of).collect()
 }
 
 /// Records of so many numbers, those of some items.
-fn picked<T: Copy>(all: Vec<T>, width: usize, items: &[usize]) -> Vec<T> {
-    let mut own = Vec::with_capacity(width * items.len());
-    for &item in items {
-        own.extend_from_slice(&all[width * item..width * (item + 1)]);
-    }
-    own
+fn rows<T: Copy>(all: &[T], width: usize, items: Option<&[u32]>) -> Vec<T> {
+    let records: Vec<&[T]> = all.chunks(width).collect();
+    picked(&records, items).flatten().copied().collect()
+}
+
+/// Some records, all if none are named.
+fn picked<T: Copy>(all: &[T], items: Option<&[u32]>) -> impl Iterator<Item = T> {
+    let count = items.map_or(all.len(), <[u32]>::len);
+    (0..count).map(move |i| all[items.map_or(i, |items| items[i] as usize)])
 }
 
 #[cfg(test)]
@@ -108,7 +190,7 @@ mod tests {
 
     #[test]
     fn pieces_hold_every_cell_once_with_its_values() {
-        let mut grid = Grid {
+        let grid = Grid {
             points: (0..6).map(|i| [f64::from(i), 0.0, 1.0]).collect(),
             shapes: vec![Shape::Tri3; 3],
             offsets: vec![0, 3, 6, 9],
@@ -119,7 +201,7 @@ mod tests {
             )],
             cell_fields: vec![crate::grids::integer_field("c", 0..3)],
         };
-        let piece = taken(&mut grid, &[false, true, true]);
+        let piece = some_of(&grid, &[1, 2]);
         assert_eq!(piece.offsets, [0, 3, 6]);
         let at = |node: usize| piece.points[piece.nodes[node] as usize][0];
         let places: Vec<f64> = (0..6).map(at).collect();
@@ -134,6 +216,6 @@ mod tests {
             panic!("whole numbers");
         };
         assert_eq!(cells, &[1, 2]);
-        assert!(taken(&mut grid, &[false; 3]).shapes.is_empty());
+        assert!(some_of(&grid, &[]).shapes.is_empty());
     }
 }

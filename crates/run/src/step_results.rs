@@ -155,7 +155,10 @@ impl Run<'_> {
         let time = prepared.state.load.time;
         let ranks = self.request.ranks.filter(|ranks| ranks.count() > 1);
         self.stage(Stage::Write, |run| {
-            let rock = || in_plane(&problem.mesh, rock_grid(system, solution, Some(accuracy)));
+            let rock_of = |cells: Option<&[u32]>| {
+                let grid = rock_grid(system, solution, Some(accuracy), cells);
+                in_plane(&problem.mesh, grid)
+            };
             let fractures = || {
                 let mut grid = fracture_grid(system, nodes, Some(accuracy));
                 grid.cell_fields.extend(facets.map(undetermined::field));
@@ -167,9 +170,11 @@ impl Run<'_> {
             if let Some(ranks) = ranks {
                 meanwhile();
                 let piece = Piece::of(system, &(ranks.owner)(), ranks.rank());
-                let grids: [&dyn Fn() -> Grid; 2] = [&rock, &fractures];
+                let rock = || rock_of(Some(&piece.cells));
+                let grids = (rock, fractures);
                 return run.output.write_pieces(time, grids, &piece, ranks);
             }
+            let rock = || rock_of(None);
             let of_one = |defect| vec![defect];
             if !run.request.keep_results {
                 let written = run.output.write_step(time, rock, fractures, meanwhile);

@@ -220,7 +220,7 @@ impl Run<'_> {
     ) -> Result<(), Interruption> {
         let mesh = &system.problem().mesh;
         let nodes = solution.facet_nodes(system.problem(), system.discretisation().interface());
-        let mut rock = rock_grid(system, solution, None);
+        let mut rock = rock_grid(system, solution, None, None);
         let field = real_field("moved", moved.iter().map(|u| u.to_array()));
         rock.point_fields.push(field);
         let fractures = in_plane(mesh, fracture_grid(system, &nodes, None));
