@@ -7,7 +7,7 @@ use kluft_solver::{FacetResult, Solution, System, principal};
 use rayon::prelude::*;
 
 use crate::accuracy::Accuracy;
-use crate::pieces::{Cells, Part};
+use crate::pieces::{CellSelection, GridCells};
 
 /// The rock, with one copy of a node for each of its sectors: of some of its cells, of all if none
 /// are named.
@@ -19,23 +19,23 @@ pub fn rock_grid(
 ) -> Grid {
     let mesh = &system.problem().mesh;
     let points = &system.discretisation().points();
-    let all = Cells {
+    let all = GridCells {
         shapes: &mesh.cells.shapes,
         offsets: &mesh.cells.offsets,
         nodes: &points.of_cell_node,
     };
-    let part = Part::of(all, points.node.len(), cells);
-    let nodes: Vec<u32> = part.of_points(&points.node).collect();
-    let rocks = part.of_cells(system.problem().material_of_cell());
-    let displacements = part.of_points(&solution.displacements);
+    let chosen = CellSelection::of(all, points.node.len(), cells);
+    let nodes: Vec<u32> = chosen.of_points(&points.node).collect();
+    let rocks = chosen.of_cells(system.problem().material_of_cell());
+    let displacements = chosen.of_points(&solution.displacements);
     let errors = accuracy.map(|accuracy| {
-        let errors = part.of_cells(&accuracy.stress_errors);
+        let errors = chosen.of_cells(&accuracy.stress_errors);
         real_field("stress_error", errors.map(|error| [error]))
     });
-    let stresses = || real_field("stress", part.of_cells(&solution.stresses));
+    let stresses = || real_field("stress", chosen.of_cells(&solution.stresses));
     let principals = || {
-        let cells = (0..part.cell_count()).into_par_iter();
-        let principals = cells.map(|i| principal(&solution.stresses[part.cell(i)]));
+        let cells = (0..chosen.cell_count()).into_par_iter();
+        let principals = cells.map(|i| principal(&solution.stresses[chosen.cell(i)]));
         let principals: Vec<[f64; 3]> = principals.collect();
         real_field("principal_stress", principals.into_iter())
     };
@@ -57,7 +57,7 @@ pub fn rock_grid(
             principals,
             integer_field("rock", rocks.map(|rock| rock as i32)),
         ],
-        ..part.grid()
+        ..chosen.grid()
     };
     grid.cell_fields.extend(errors);
     grid

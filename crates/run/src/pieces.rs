@@ -1,10 +1,10 @@
-//! A part of the cells of a grid, such as the piece that one rank writes.
+//! Some of the cells of a grid, such as the piece that one rank writes.
 
 use kluft_io::{Field, Grid, Values};
 use kluft_mesh::Shape;
 use kluft_solver::System;
 
-/// Number of a point that no cell of the part has.
+/// Number of a point that no chosen cell has.
 const LEFT_OUT: u32 = u32::MAX;
 
 /// Which cells and facets are those of one rank: the ones whose first point it owns.
@@ -37,17 +37,17 @@ impl Piece {
 
 /// Some cells of a grid, with their points and values.
 pub fn some_of(grid: &Grid, cells: &[u32]) -> Grid {
-    let all = Cells {
+    let all = GridCells {
         shapes: &grid.shapes,
         offsets: &grid.offsets,
         nodes: &grid.nodes,
     };
-    let part = Part::of(all, grid.points.len(), Some(cells));
+    let chosen = CellSelection::of(all, grid.points.len(), Some(cells));
     Grid {
-        points: part.of_points(&grid.points).collect(),
-        point_fields: fields(&grid.point_fields, part.points.as_deref()),
-        cell_fields: fields(&grid.cell_fields, part.cells),
-        ..part.grid()
+        points: chosen.of_points(&grid.points).collect(),
+        point_fields: fields(&grid.point_fields, chosen.points.as_deref()),
+        cell_fields: fields(&grid.cell_fields, chosen.cells),
+        ..chosen.grid()
     }
 }
 
@@ -59,7 +59,7 @@ fn numbers(wanted: impl Iterator<Item = bool>) -> Vec<u32> {
 
 /// Cells and their points, as a grid has them.
 #[derive(Clone, Copy)]
-pub struct Cells<'a> {
+pub struct GridCells<'a> {
     /// The shape of every cell.
     pub shapes: &'a [Shape],
     /// Where the points of every cell start in `nodes`, and after the last cell the end.
@@ -69,18 +69,18 @@ pub struct Cells<'a> {
 }
 
 /// Some cells, or all, with the points that they have.
-pub struct Part<'a> {
-    of: Cells<'a>,
+pub struct CellSelection<'a> {
+    of: GridCells<'a>,
     cells: Option<&'a [u32]>,
     /// Points of the cells, in the order in which these name them first; all if none are named.
     points: Option<Vec<u32>>,
     nodes: Vec<u32>,
 }
 
-impl<'a> Part<'a> {
-    /// The part of cells on so many points that consists of some of them, all of them if none are
+impl<'a> CellSelection<'a> {
+    /// Some of the cells on so many points, all of them if none are
     /// named.
-    pub fn of(of: Cells<'a>, point_count: usize, cells: Option<&'a [u32]>) -> Self {
+    pub fn of(of: GridCells<'a>, point_count: usize, cells: Option<&'a [u32]>) -> Self {
         let Some(chosen) = cells else {
             return Self {
                 nodes: of.nodes.to_vec(),
@@ -152,7 +152,7 @@ impl<'a> Part<'a> {
     }
 }
 
-impl Cells<'_> {
+impl GridCells<'_> {
     fn nodes_of(&self, cell: u32) -> &[u32] {
         let cell = cell as usize;
         &self.nodes[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
