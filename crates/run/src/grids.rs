@@ -7,7 +7,7 @@ use kluft_solver::{FacetResult, Solution, System, principal};
 use rayon::prelude::*;
 
 use crate::accuracy::Accuracy;
-use crate::pieces::{CellSelection, GridCells};
+use crate::pieces::{CellSelection, GridCells, fields_at};
 
 /// The rock, with one copy of a node for each of its sectors: of some of its cells, of all if none
 /// are named.
@@ -186,32 +186,9 @@ pub fn in_plane(mesh: &Mesh, grid: Grid) -> Grid {
     let number = |point: &u32| kept.partition_point(|other| other < point) as u32;
     flat.nodes = flat.nodes.iter().map(number).collect();
     flat.points = kept.iter().map(|&p| grid.points[p as usize]).collect();
-    flat.point_fields = grid
-        .point_fields
-        .into_iter()
-        .map(|f| taken(f, &kept))
-        .collect();
+    flat.point_fields = fields_at(&grid.point_fields, Some(&kept));
     flat.cell_fields = grid.cell_fields;
     flat
-}
-
-/// A field at some of its points.
-fn taken(field: Field, points: &[u32]) -> Field {
-    fn chosen<T: Copy>(values: &[T], width: usize, points: &[u32]) -> Vec<T> {
-        let rows = points.iter().flat_map(|&point| {
-            let first = point as usize * width;
-            &values[first..first + width]
-        });
-        rows.copied().collect()
-    }
-    let width = field.components as usize;
-    Field {
-        values: match &field.values {
-            Values::Real(values) => Values::Real(chosen(values, width, points)),
-            Values::Integer(values) => Values::Integer(chosen(values, width, points)),
-        },
-        ..field
-    }
 }
 
 /// A field of `N` numbers a point or cell.

@@ -45,8 +45,8 @@ pub fn some_of(grid: &Grid, cells: &[u32]) -> Grid {
     let chosen = CellSelection::of(all, grid.points.len(), Some(cells));
     Grid {
         points: chosen.of_points(&grid.points).collect(),
-        point_fields: fields(&grid.point_fields, chosen.points.as_deref()),
-        cell_fields: fields(&grid.cell_fields, chosen.cells),
+        point_fields: fields_at(&grid.point_fields, chosen.points.as_deref()),
+        cell_fields: fields_at(&grid.cell_fields, chosen.cells),
         ..chosen.grid()
     }
 }
@@ -78,8 +78,7 @@ pub struct CellSelection<'a> {
 }
 
 impl<'a> CellSelection<'a> {
-    /// Some of the cells on so many points, all of them if none are
-    /// named.
+    /// Some of the cells on so many points, all of them if none are named.
     pub fn of(of: GridCells<'a>, point_count: usize, cells: Option<&'a [u32]>) -> Self {
         let Some(chosen) = cells else {
             return Self {
@@ -132,17 +131,11 @@ impl<'a> CellSelection<'a> {
     /// Its cells as a grid without coordinates and fields.
     pub fn grid(self) -> Grid {
         let shapes: Vec<Shape> = self.of_cells(self.of.shapes).collect();
-        let offsets = match self.cells {
-            None => self.of.offsets.to_vec(),
-            Some(_) => {
-                let mut end = 0;
-                let ends = shapes.iter().map(|shape| {
-                    end += shape.node_count() as u32;
-                    end
-                });
-                std::iter::once(0).chain(ends).collect()
-            }
-        };
+        let ends = shapes.iter().scan(0, |end, shape| {
+            *end += shape.node_count() as u32;
+            Some(*end)
+        });
+        let offsets = std::iter::once(0).chain(ends).collect();
         Grid {
             shapes,
             offsets,
@@ -159,28 +152,36 @@ impl GridCells<'_> {
     }
 }
 
-fn fields(all: &[Field], items: Option<&[u32]>) -> Vec<Field> {
-    let of = |field: &Field| {
-        let width = field.components as usize;
-        let values = match &field.values {
-            Values::Real(values) => Values::Real(rows(values, width, items)),
-            Values::Integer(values) => Values::Integer(rows(values, width, items)),
-        };
-        Field { values, ..*field }
-    };
-    all.iter().map(of).collect()
+/// Fields at some of their points or cells, at all if none are named.
+pub fn fields_at(all: &[Field], items: Option<&[u32]>) -> Vec<Field> {
+    all.iter().map(|field| field_at(field, items)).collect()
 }
 
-/// Records of so many numbers, those of some items.
-fn rows<T: Copy>(all: &[T], width: usize, items: Option<&[u32]>) -> Vec<T> {
-    let records: Vec<&[T]> = all.chunks(width).collect();
-    picked(&records, items).flatten().copied().collect()
+fn field_at(field: &Field, items: Option<&[u32]>) -> Field {
+    fn rows<T: Copy>(all: &[T], width: usize, items: Option<&[u32]>) -> Vec<T> {
+        let places = places(all.len() / width, items);
+        let rows = places.flat_map(|place| &all[width * place..width * (place + 1)]);
+        rows.copied().collect()
+    }
+    let width = field.components as usize;
+    Field {
+        values: match &field.values {
+            Values::Real(values) => Values::Real(rows(values, width, items)),
+            Values::Integer(values) => Values::Integer(rows(values, width, items)),
+        },
+        ..*field
+    }
 }
 
 /// Some records, all if none are named.
 fn picked<T: Copy>(all: &[T], items: Option<&[u32]>) -> impl Iterator<Item = T> {
-    let count = items.map_or(all.len(), <[u32]>::len);
-    (0..count).map(move |i| all[items.map_or(i, |items| items[i] as usize)])
+    places(all.len(), items).map(|place| all[place])
+}
+
+/// Where some of so many records stand, all if none are named.
+fn places(count: usize, items: Option<&[u32]>) -> impl Iterator<Item = usize> {
+    let count = items.map_or(count, <[u32]>::len);
+    (0..count).map(move |i| items.map_or(i, |items| items[i] as usize))
 }
 
 #[cfg(test)]
