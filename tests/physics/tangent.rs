@@ -139,7 +139,7 @@ fn tangent_is_symmetric_and_positive_definite_in_closed_states() {
                 assert!(worst <= 1e-12 * size);
             }
         }
-        let order = NodeOrder::of(&pattern.neighbours, &points.offset).expect("ordering");
+        let order = NodeOrder::of(&pattern.node_graph(points), &points.offset).expect("ordering");
         let order = order.all(&points.offset);
         let blocks = &pattern.blocks;
         let analysis = Analysis::of(&blocks.row_offset, &blocks.columns, order).expect("analysis");

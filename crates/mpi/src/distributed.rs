@@ -40,9 +40,9 @@ pub struct Distributed {
     /// Clusters of this rank in the matrix that the levels were made of.
     clusters: Option<Arc<OwnClusters>>,
     /// Stiffness of the fractures, one block for each of the interface's columns.
-    stiffness: Option<Vec<DMat3>>,
+    stiffness: Option<Arc<[DMat3]>>,
     /// The one that the levels were made with.
-    built_for: Option<Vec<DMat3>>,
+    built_for: Option<Arc<[DMat3]>>,
     /// By how much the spectrum turned out to reach further than it was taken for.
     margin: f64,
 }
@@ -79,7 +79,7 @@ impl Distributed {
     fn rebuild_for(
         &mut self,
         fixed: FixedPart<'_>,
-        stiffness: Vec<DMat3>,
+        stiffness: Arc<[DMat3]>,
     ) -> Result<(), LinearFailure> {
         (self.built_for, self.solver) = (None, None);
         let blocks = InterfaceBlocks {
@@ -244,23 +244,20 @@ impl Distributed {
         self.all(bytemuck::cast_slice(&alone))
     }
 
-    /// The correction for a residual, and its iterations.
+    /// The correction for a residual, whose entries of this rank are given, and its iterations.
     fn correction(
         &mut self,
         fixed: FixedPart<'_>,
-        residual: &[DVec3],
+        own: &[[f64; 3]],
         wanted: f64,
     ) -> Result<(Vec<DVec3>, usize), LinearFailure> {
-        let own = self.own(residual);
         let stiffness = self.stiffness.clone().unwrap_or_default();
         let ghosts = Arc::clone(&self.ghosts);
         let partition = Arc::clone(&self.partition);
         let mut iterations = 0;
         for attempt in 0..=MOST_WIDENINGS {
             let product = Box::new(product(fixed, &stiffness, [&partition.own, &ghosts]));
-            let (solution, solved) = self
-                .solver()?
-                .solve(product, &own, wanted, MAX_ITERATIONS)?;
+            let (solution, solved) = self.solver()?.solve(product, own, wanted, MAX_ITERATIONS)?;
             iterations += solved.iterations;
             if !solved.residual.is_finite() {
                 return Err(LinearFailure::NotFinite);
@@ -325,9 +322,10 @@ fn scaling(clusters: Arc<OwnClusters>, rows: usize) -> [LocalMap<'static>; 2] {
 
 impl TangentSolver for Distributed {
     fn update(&mut self, fixed: FixedPart<'_>, stiffness: Vec<DMat3>) -> Result<(), LinearFailure> {
+        let stiffness: Arc<[DMat3]> = stiffness.into();
         let built_for = self.built_for.as_deref();
         if !built_for.is_some_and(|built_for| serves(fixed, built_for, &stiffness)) {
-            self.rebuild_for(fixed, stiffness.clone())?;
+            self.rebuild_for(fixed, Arc::clone(&stiffness))?;
         }
         self.stiffness = Some(stiffness);
         Ok(())
@@ -354,7 +352,9 @@ impl TangentSolver for Distributed {
                 iterations: 0,
             });
         }
-        let (correction, iterations) = self.correction(fixed, &residual, wanted)?;
+        let own = self.own(&residual);
+        drop(residual);
+        let (correction, iterations) = self.correction(fixed, &own, wanted)?;
         for (unknown, change) in unknowns.iter_mut().zip(&correction) {
             *unknown += *change;
         }
@@ -366,8 +366,8 @@ impl TangentSolver for Distributed {
 
     fn history(&self) -> SolverHistory {
         SolverHistory {
-            stiffness: self.stiffness.clone(),
-            preconditioned: self.built_for.clone(),
+            stiffness: self.stiffness.as_deref().map(<[DMat3]>::to_vec),
+            preconditioned: self.built_for.as_deref().map(<[DMat3]>::to_vec),
             margin: Some(self.margin),
             ..SolverHistory::default()
         }
@@ -380,7 +380,7 @@ impl TangentSolver for Distributed {
     ) -> Result<(), LinearFailure> {
         self.margin = history.margin.unwrap_or(1.0);
         if let Some(stiffness) = history.preconditioned {
-            self.rebuild_for(fixed, stiffness)?;
+            self.rebuild_for(fixed, stiffness.into())?;
         }
         match history.stiffness {
             Some(stiffness) => self.update(fixed, stiffness),

@@ -6,7 +6,7 @@ const OF_BLOCK: usize = 36 + 4;
 const OF_ROW: usize = 1_300;
 /// The second level, which every rank has while levels are made, and states of facets, for each
 /// row.
-const OF_ROW_ON_EACH: usize = 1_800;
+const OF_ROW_ON_EACH: usize = 1_500;
 
 /// Bytes for `rows` block rows with `blocks` blocks on each of so many ranks.
 pub fn solver_bytes(rows: usize, blocks: usize, ranks: usize) -> usize {

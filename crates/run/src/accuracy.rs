@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use kluft_solver::{
-    Deformation, Estimator, FacetResult, MeanError, Newton, Solution, StressError, System,
-    dual_solution,
+    Deformation, Estimator, MeanError, Newton, Solution, State, StressError, System, dual_solution,
 };
 use rayon::prelude::*;
 
@@ -54,26 +53,32 @@ pub struct Duals {
     slip: Option<Vec<DVec3>>,
 }
 
-/// What errors of jumps are estimated by; none without fractures, or if a linear solve fails.
-pub fn duals(system: &System<'_>, newton: &mut Newton, solution: &Solution) -> Option<Duals> {
+/// What errors of jumps in a state are estimated by; none without fractures, or if a linear solve
+/// fails.
+pub fn duals(system: &System<'_>, newton: &mut Newton, state: &State) -> Option<Duals> {
     let points = system.discretisation().interface().points();
-    let results = &solution.facet_points;
-    if results.is_empty() {
+    if points.is_empty() {
         return None;
     }
     let mut dual = |directions: &[DVec3]| dual_solution(system, newton, directions).ok();
     let normals: Vec<DVec3> = points.iter().map(|point| point.normal).collect();
     let opening = dual(&normals)?;
-    let slips = largest(results, |result| result.slip) > SLIPS * largest(results, |r| r.jump);
-    let along: Vec<DVec3> = results.iter().map(|r| r.slip.normalize_or_zero()).collect();
+    let mut along = system.total_jumps(state);
+    let jump = longest(&along);
+    for (jump, normal) in along.iter_mut().zip(&normals) {
+        *jump -= jump.dot(*normal) * *normal;
+    }
+    let slips = longest(&along) > SLIPS * jump;
+    for slip in &mut along {
+        *slip = slip.normalize_or_zero();
+    }
     let slip = if slips { Some(dual(&along)?) } else { None };
     Some(Duals { opening, slip })
 }
 
-/// Largest length of a vector of the results.
-fn largest(results: &[FacetResult], of: impl Fn(&FacetResult) -> DVec3) -> f64 {
-    let lengths = results.iter().map(|result| of(result).length());
-    lengths.fold(0.0, f64::max)
+/// Largest length of a vector.
+fn longest(vectors: &[DVec3]) -> f64 {
+    vectors.iter().map(|v| v.length()).fold(0.0, f64::max)
 }
 
 /// Estimates the errors of a step; those of the jumps if there is something to estimate them by.
@@ -152,7 +157,8 @@ fn of_all_jumps(
     } else {
         SAFETY
     };
-    let floor = ITERATION * largest(results, |result| result.jump);
+    let jumps = results.iter().map(|result| result.jump.length());
+    let floor = ITERATION * jumps.fold(0.0, f64::max);
     let mean_error = |dual: &StressError| estimator.mean_error(system, dual, stress);
     let opening = mean_error(&duals.opening);
     let slip = duals.slip.as_ref().map(mean_error);

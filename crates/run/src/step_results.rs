@@ -6,7 +6,7 @@ use std::path::Path;
 use kluft_io::{Grid, write_atomically};
 use kluft_solver::{Determinacy, Estimator, FacetResult, Solution, System, determinacy, solution};
 
-use crate::accuracy::{self, Accuracy};
+use crate::accuracy::{self, Accuracy, Duals};
 use crate::doubts;
 use crate::flow::SolvedFlow;
 use crate::flow_history::FlowEntry;
@@ -42,8 +42,9 @@ impl Run<'_> {
     ) -> Result<(), Interruption> {
         let system = prepared.system;
         let is_last = self.finished.len() == system.problem().schedule.steps.len();
+        let duals = self.last_solves(prepared, is_last);
         let solution = solution(system, &prepared.state);
-        let accuracy = self.estimate(prepared, &solution, is_last);
+        let accuracy = self.estimate(prepared, &solution, duals);
         let interface = system.discretisation().interface();
         let nodes = solution.facet_nodes(system.problem(), interface);
         let mut fractures = fractures(system.problem(), interface, &solution, &nodes);
@@ -103,33 +104,45 @@ impl Run<'_> {
             .extend(unresolved.into_iter().flatten());
     }
 
-    /// Estimates the error of a load step; of the last one those of the jumps too.
+    /// What the errors of the jumps of the last load step are estimated by. To estimate and to
+    /// write takes memory too: that of the solver is given back once nothing is solved any more.
+    fn last_solves(&mut self, prepared: &mut Prepared<'_, '_>, is_last: bool) -> Option<Duals> {
+        let Prepared {
+            system,
+            newton,
+            state,
+            ..
+        } = prepared;
+        let duals = self.stage(Stage::Estimate, |_| {
+            let duals = || accuracy::duals(system, newton, state);
+            is_last.then(duals).flatten()
+        });
+        if self.is_over(system) {
+            newton.release();
+        }
+        duals
+    }
+
+    /// Whether nothing is solved any more.
+    fn is_over(&self, system: &System<'_>) -> bool {
+        !self.has_more_to_solve(system.problem().schedule.steps.len())
+    }
+
+    /// Estimates the error of a load step, and those of the jumps by their duals.
     fn estimate(
         &mut self,
         prepared: &mut Prepared<'_, '_>,
         solution: &Solution,
-        is_last: bool,
+        duals: Option<Duals>,
     ) -> Accuracy {
         let Prepared {
-            system,
-            newton,
-            estimator,
-            ..
+            system, estimator, ..
         } = prepared;
-        let duals = self.stage(Stage::Estimate, |_| {
-            let duals = || accuracy::duals(system, newton, solution);
-            is_last.then(duals).flatten()
-        });
-        let is_over = !self.has_more_to_solve(system.problem().schedule.steps.len());
-        if is_over {
-            // Nothing is solved any more; to estimate and to write takes memory too.
-            newton.release();
-        }
         let accuracy = self.stage(Stage::Estimate, |_| {
             let estimator = estimator.get_or_insert_with(|| Estimator::of(system));
             accuracy::of(system, estimator, solution, duals.as_ref())
         });
-        if is_over {
+        if self.is_over(system) {
             *estimator = None;
         }
         accuracy

@@ -66,10 +66,10 @@ impl Run<'_> {
         for index in 0..problem.schedule.steps.len() {
             self.solve_step(&mut prepared, index)?;
         }
-        let solution = solution(&system, &prepared.state);
         let unknowns = system.discretisation().unknown_count();
-        let duals = accuracy::duals(&system, &mut prepared.newton, &solution);
+        let duals = accuracy::duals(&system, &mut prepared.newton, &prepared.state);
         prepared.newton.release();
+        let solution = solution(&system, &prepared.state);
         let estimator = Estimator::of(&system);
         let accuracy = accuracy::of(&system, &estimator, &solution, duals.as_ref());
         Ok((unknowns, accuracy))

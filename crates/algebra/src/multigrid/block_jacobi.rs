@@ -15,7 +15,7 @@ use crate::division::Division;
 use crate::failure::MultigridFailure;
 use crate::lists::sum_up;
 use crate::ownership::RowOwnership;
-use crate::small::{Modes, Packed, add, add_columns, narrow, product, rows_of, transpose, widen};
+use crate::small::{Modes, Packed, add, narrow, product, rows_of, transpose, widen};
 
 /// Clusters that one task factorises.
 const PER_TASK: usize = 1024;
@@ -138,7 +138,7 @@ impl Factors {
     }
 
     /// Whether a cluster was factorised.
-    fn has(&self, cluster: u32) -> bool {
+    pub(super) fn has(&self, cluster: u32) -> bool {
         !self.inverse_of(cluster).is_empty()
     }
 
@@ -149,7 +149,7 @@ impl Factors {
 
     /// Block of `L^-1 R` of a cluster, as columns.
     #[inline(always)]
-    fn smoothing_block(&self, cluster: u32, row: usize, column: usize) -> [[f64; 3]; 3] {
+    pub(super) fn smoothing_block(&self, cluster: u32, row: usize, column: usize) -> [[f64; 3]; 3] {
         let inverse = self.inverse_of(cluster);
         let cluster = cluster as usize;
         let fixed = &self.fixed[self.offset[cluster]..self.offset[cluster + 1]];
@@ -326,55 +326,6 @@ fn is_among_single(rows: &SumRows<'_>, clusters: &Clusters, row: usize) -> bool 
         let (cluster, _) = clusters.place[column as usize];
         clusters.members.of(cluster as usize).len() == 1
     })
-}
-
-/// Sets `prolongator` to that of scaled unknowns, `L^T P'`, after a block Jacobi step on the
-/// interface.
-///
-/// What `P` moves, it moves as if the interface had no stiffness `S`. The step is that of the
-/// unknowns of each cluster, those of all others being held: `P' = P - A^-1 S P = A^-1 R P`, with
-/// `A = R + S = L L^T` and `R` of the fixed matrix, hence `L^T P' = L^-1 R P`. Motions that would
-/// strain a stiff interface strain what lies beside it instead, so that the next level is as stiff
-/// as the fixed matrix, however stiff the interface is. Rigid motions, where `S P = 0`, stay.
-///
-/// Rows of clusters that were not factorised are empty.
-pub(super) fn smooth_by_blocks(
-    prolongator: &mut Sparse<3, 6>,
-    basis: &Sparse<3, 6>,
-    columns: usize,
-    clusters: &Clusters,
-    factors: &Factors,
-) {
-    prolongator.rebuild(
-        basis.rows(),
-        rows_per_task::<3>(),
-        || Accumulator::<3, 6>::new(columns),
-        |sums, row| {
-            let (own, _) = clusters.place[row];
-            if !factors.has(own) {
-                return 0;
-            }
-            for &member in clusters.members.of(own as usize) {
-                let columns = &basis.columns[basis.range(member as usize)];
-                columns.iter().for_each(|&column| sums.touch(column));
-            }
-            sums.take_count()
-        },
-        #[inline(always)]
-        |sums, row, columns, blocks| {
-            if columns.is_empty() {
-                return;
-            }
-            let (own, at) = clusters.place[row];
-            for (place, &member) in clusters.members.of(own as usize).iter().enumerate() {
-                let left = factors.smoothing_block(own, at as usize, place);
-                for (column, value) in basis.row(member as usize) {
-                    add_columns(sums.at(column as u32), &left, &widen(value));
-                }
-            }
-            sums.take(columns, blocks);
-        },
-    );
 }
 
 /// Modes in scaled unknowns, `L^T B = L^-1 R B`, where every cluster is a single row of the fixed

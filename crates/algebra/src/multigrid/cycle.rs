@@ -1,5 +1,7 @@
 //! The V-cycle.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::coarsest::Dense;
@@ -29,31 +31,31 @@ pub(super) enum Below<const N: usize> {
     Nothing,
 }
 
-/// The way down to the next level and up again.
-#[derive(Debug, Clone)]
-pub(super) struct Transfer<const N: usize> {
-    pub(super) prolongator: Sparse<N, 6>,
-    /// Its blocks, aggregate by aggregate.
+/// A prolongator `P`, and its blocks aggregate by aggregate.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Prolongator<const N: usize> {
+    pub(super) rows: Sparse<N, 6>,
     pub(super) transpose: Transpose,
 }
 
-impl<const N: usize> Transfer<N> {
-    /// `r_c = P^T r`.
-    fn restrict(&self, residual: &[[f32; N]], coarse: &mut [[f32; 6]]) {
-        let rows = rows_per_task::<6>();
-        let tasks = coarse.par_chunks_mut(rows).enumerate();
-        tasks.for_each(|(task, chunk)| {
-            for (place, sum) in chunk.iter_mut().enumerate() {
-                let aggregate = task * rows + place;
-                *sum = self.restricted(aggregate, residual);
-            }
-        });
+impl<const N: usize> Prolongator<N> {
+    pub(super) fn of(rows: Sparse<N, 6>, aggregates: usize) -> Self {
+        Self {
+            transpose: Transpose::of(&rows, aggregates),
+            rows,
+        }
     }
 
+    /// Bytes of storage.
+    pub(super) fn bytes(&self) -> usize {
+        self.rows.bytes() + self.transpose.bytes()
+    }
+
+    /// An entry of `P^T r`.
     fn restricted(&self, aggregate: usize, residual: &[[f32; N]]) -> [f32; 6] {
         let mut sum = [0.0; 6];
         for &(row, position) in self.transpose.column(aggregate) {
-            let block = &self.prolongator.blocks[position as usize];
+            let block = &self.rows.blocks[position as usize];
             let mut part = [0.0; 6];
             for (line, &entry) in block.iter().zip(&residual[row as usize]) {
                 for (part, &weight) in part.iter_mut().zip(line) {
@@ -66,14 +68,52 @@ impl<const N: usize> Transfer<N> {
         }
         sum
     }
+}
 
-    /// `z += P z_c`.
-    fn prolong(&self, coarse: &[[f32; 6]], solution: &mut [[f32; N]]) {
+/// The way down to the next level, whose unknowns are scaled by `L`, and up again.
+#[derive(Debug, Clone)]
+pub(super) struct Transfer<const N: usize> {
+    pub(super) prolongator: Arc<Prolongator<N>>,
+    /// `L^-1` of each aggregate, as rows.
+    pub(super) scaling: Vec<[[f32; 6]; 6]>,
+}
+
+impl<const N: usize> Transfer<N> {
+    /// `r_c = L^-1 P^T r`.
+    fn restrict(&self, residual: &[[f32; N]], coarse: &mut [[f32; 6]]) {
+        let rows = rows_per_task::<6>();
+        let tasks = coarse.par_chunks_mut(rows).enumerate();
+        tasks.for_each(|(task, chunk)| {
+            for (place, target) in chunk.iter_mut().enumerate() {
+                let aggregate = task * rows + place;
+                let sum = self.prolongator.restricted(aggregate, residual);
+                *target = self.scaling[aggregate].map(|line| {
+                    let both = line.iter().zip(&sum);
+                    both.map(|(weight, entry)| weight * entry).sum()
+                });
+            }
+        });
+    }
+
+    /// `z += P L^-T z_c`, where `z_c` becomes `L^-T z_c`.
+    fn prolong(&self, coarse: &mut [[f32; 6]], solution: &mut [[f32; N]]) {
+        let pairs = coarse.par_iter_mut().zip(&self.scaling);
+        let pairs = pairs.with_min_len(rows_per_task::<6>());
+        pairs.for_each(|(entries, scaling)| {
+            let mut sum = [0.0; 6];
+            for (line, &entry) in scaling.iter().zip(&*entries) {
+                for (sum, weight) in sum.iter_mut().zip(line) {
+                    *sum += weight * entry;
+                }
+            }
+            *entries = sum;
+        });
+        let coarse = &*coarse;
         let rows = rows_per_task::<N>();
         let tasks = solution.par_chunks_mut(rows).enumerate();
         tasks.for_each(|(task, chunk)| {
             for (place, sum) in chunk.iter_mut().enumerate() {
-                for (column, block) in self.prolongator.row(task * rows + place) {
+                for (column, block) in self.prolongator.rows.row(task * rows + place) {
                     for (sum, line) in sum.iter_mut().zip(block) {
                         let both = line.iter().zip(&coarse[column]);
                         *sum += both.map(|(weight, entry)| weight * entry).sum::<f32>();
@@ -84,7 +124,7 @@ impl<const N: usize> Transfer<N> {
     }
 
     fn bytes(&self) -> usize {
-        self.prolongator.bytes() + self.transpose.bytes()
+        self.prolongator.bytes() + size_of_val(&self.scaling[..])
     }
 }
 
@@ -133,7 +173,7 @@ impl<const N: usize> Level<N> {
                 residual(&self.matrix, work);
                 transfer.restrict(&work.step, &mut next_work.rhs);
                 next.cycle(next_work, coarser, coarser_work);
-                transfer.prolong(&next_work.solution, &mut work.solution);
+                transfer.prolong(&mut next_work.solution, &mut work.solution);
                 self.smoother.resume(&self.matrix, work);
             }
             _ => {

@@ -10,15 +10,16 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::block_jacobi::{self, Factors};
+use super::cycle::Prolongator;
 use super::galerkin;
 use super::level_rows::{LevelRows, OwnClusters, ProlongatorRows};
 use super::lower_levels::LowerLevels;
 use super::mean_field::{CoarseBasis, MeanField};
 use super::setup::{FixedHierarchy, NodeMatrix};
-use super::sparse::{Sparse, Transpose};
-use super::spectrum;
+use super::sparse::Sparse;
 use super::sum_rows::SumRows;
 use super::triple_product::PartialProduct;
+use super::{block_step, spectrum};
 use crate::block_pattern::BlockPattern;
 use crate::block_rows::BlockRows;
 use crate::division::{Communicator, Division};
@@ -114,6 +115,12 @@ impl FirstCoarsening {
             .collect()
     }
 
+    /// Whether two rows are those of one cluster.
+    pub fn is_within_cluster(&self, row: u32, column: u32) -> bool {
+        let cluster = |row: u32| self.fixed.clusters.place[row as usize].0;
+        cluster(row) == cluster(column)
+    }
+
     /// The motions of the next level as if the interface had no stiffness.
     pub fn basis(&self) -> &CoarseBasis {
         &self.fixed.basis
@@ -125,7 +132,7 @@ impl FirstCoarsening {
     }
 
     /// Factorises the clusters of the rows `own`, ascending, and those that they couple to. The
-    /// matrix needs the blocks of these clusters' rows.
+    /// matrix needs these rows, and of those that they couple to the blocks within their clusters.
     ///
     /// # Errors
     /// If a diagonal block is not positive definite.
@@ -160,23 +167,23 @@ impl FirstCoarsening {
     /// other rows by what their owners have there.
     pub fn part(&mut self, rows: &OwnRows<'_>, complete: impl FnMut(&mut [[f32; 3]])) -> LevelPart {
         let columns = self.fixed.basis.modes.len();
-        let mut prolongator = Sparse::default();
-        block_jacobi::smooth_by_blocks(
-            &mut prolongator,
+        let rows_of_it = block_step::smoothed_by_blocks(
             &self.fixed.basis.prolongator,
             columns,
             &self.fixed.clusters,
             &rows.factors,
         );
+        let prolongator = Prolongator::of(rows_of_it, columns);
         let mut matrix = Sparse::default();
         let is_own = |row: usize| rows.is_own[row];
         let clusters = &self.fixed.clusters;
         block_jacobi::set_matrix(&mut matrix, &rows.rows, clusters, &rows.factors, is_own);
-        let transpose = Transpose::of(&prolongator, columns);
         let next = self
             .fixed
-            .product(&rows.rows, &matrix, &prolongator, &transpose, is_own);
-        drop(transpose);
+            .product(&rows.rows, &matrix, &prolongator, is_own);
+        let Prolongator {
+            rows: prolongator, ..
+        } = prolongator;
         let largest_eigenvalue = spectrum::largest_eigenvalue_of_rows(&matrix, complete);
         LevelPart {
             clusters: OwnClusters::of(&self.fixed.clusters, &rows.factors, rows.own),
@@ -204,7 +211,7 @@ impl FirstCoarsening {
 impl FirstProlongator {
     /// The prolongator from the levels below, of whose first one this process has the nodes `own`.
     pub fn from(mut self, lower: &LowerLevels, own: &[u32]) -> ProlongatorRows<3> {
-        galerkin::scale_prolongator(&mut self.0, lower.factors());
+        galerkin::scale_prolongator(&mut self.0, lower.scaling());
         ProlongatorRows::of(self.0, own, lower.nodes(0))
     }
 }

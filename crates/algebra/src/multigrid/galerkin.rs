@@ -27,16 +27,15 @@ pub(super) struct CoarseNodes<'a> {
     pub(super) continuity: &'a Continuity,
 }
 
-/// The next level of `P^T A P`, whose nodes are these; scales the columns of `P` to its
-/// unknowns. The ranks divide the work.
-pub(super) fn coarse<const N: usize>(
+/// The next level of `P^T A P`, whose nodes are these, and `L^-1` of the diagonal blocks of this,
+/// which scales its unknowns. The ranks divide the work.
+pub(super) fn coarse(
     whole: PartialProduct,
-    prolongator: &mut Sparse<N, 6>,
     nodes: (CoarseNodes<'_>, &Communicator),
-) -> Coarse {
+) -> (Coarse, Vec<[[f32; 6]; 6]>) {
     let factors = factors(&whole);
-    scale_prolongator(prolongator, &factors);
-    scaled(whole, &factors, nodes)
+    let scaling = factors.par_iter().map(narrow).collect();
+    (scaled(whole, &factors, nodes), scaling)
 }
 
 /// `L^-1` of the diagonal blocks.
@@ -68,14 +67,14 @@ pub(super) fn scaled(
     }
 }
 
-/// `P L^-T`.
+/// `P L^-T`, with `L^-1` of each aggregate.
 pub(super) fn scale_prolongator<const N: usize>(
     prolongator: &mut Sparse<N, 6>,
-    factors: &[Block6],
+    scaling: &[[[f32; 6]; 6]],
 ) {
     let blocks = prolongator.blocks.par_iter_mut().zip(&prolongator.columns);
     blocks.for_each(|(block, &column)| {
-        let right = transpose(&factors[column as usize]);
+        let right = transpose(&widen(&scaling[column as usize]));
         *block = narrow(&product(&widen(block), &right));
     });
 }

@@ -2,20 +2,23 @@
 //! every process has all of them, alike; it makes its part of their rows, and works with those that
 //! it owns.
 
+use std::sync::Arc;
+
 use super::block_list::BlockList;
 use super::cycle::Below;
 use super::galerkin::{self, CoarseNodes};
 use super::level_rows::{LevelRows, ProlongatorRows};
 use super::setup::{self, FullLevel};
 use super::sparse::Sparse;
-use super::triple_product::{Block6, PartialProduct};
+use super::triple_product::PartialProduct;
 use crate::division::Communicator;
 use crate::failure::MultigridFailure;
 
 /// All levels but the finest, the largest of them first; never none.
 #[derive(Debug, Clone)]
 pub struct LowerLevels {
-    factors: Vec<Block6>,
+    /// `L^-1` of the diagonal blocks of the first level before it was scaled.
+    scaling: Vec<[[f32; 6]; 6]>,
     /// Nodes of each level.
     nodes: Vec<usize>,
     /// What is left of them.
@@ -41,8 +44,8 @@ impl LowerLevels {
     ) -> Result<Self, MultigridFailure> {
         let whole = PartialProduct::sum(nodes.modes.len(), &parts);
         drop(parts);
-        let factors = galerkin::factors(&whole);
-        let mut next = Some(galerkin::scaled(whole, &factors, (nodes, ranks)));
+        let (first, scaling) = galerkin::coarse(whole, (nodes, ranks));
+        let mut next = Some(first);
         let mut levels = Vec::new();
         while let Some(coarse) = next {
             let (level, below) = setup::level(coarse, ranks)?;
@@ -51,7 +54,7 @@ impl LowerLevels {
         }
         let nodes = levels.iter().map(|level| level.matrix.rows()).collect();
         Ok(Self {
-            factors,
+            scaling,
             nodes,
             levels,
         })
@@ -64,8 +67,8 @@ impl LowerLevels {
 
     /// `L^-1` of the diagonal blocks of the first level before it was scaled: the prolongator to it
     /// is `P L^-T`.
-    pub(super) fn factors(&self) -> &[Block6] {
-        &self.factors
+    pub(super) fn scaling(&self) -> &[[[f32; 6]; 6]] {
+        &self.scaling
     }
 
     /// Number of nodes of a level.
@@ -90,7 +93,8 @@ impl LowerLevels {
     pub fn movers(&self, level: usize, node: usize) -> &[u32] {
         match &self.levels[level].below {
             Below::Level(transfer) => {
-                &transfer.prolongator.columns[transfer.prolongator.range(node)]
+                let rows = &transfer.prolongator.rows;
+                &rows.columns[rows.range(node)]
             }
             _ => &[],
         }
@@ -112,8 +116,9 @@ impl LowerLevels {
     ) -> ProlongatorRows<6> {
         match &mut self.levels[level].below {
             Below::Level(transfer) => {
-                let rows = std::mem::replace(&mut transfer.prolongator, Sparse::empty());
-                let rows = rows.only(own);
+                let prolongator = Arc::unwrap_or_clone(std::mem::take(&mut transfer.prolongator));
+                let mut rows = prolongator.rows.only(own);
+                galerkin::scale_prolongator(&mut rows, &transfer.scaling);
                 ProlongatorRows::of(rows, below, self.nodes[level + 1])
             }
             _ => ProlongatorRows::of(Sparse::empty(), below, below.len()),

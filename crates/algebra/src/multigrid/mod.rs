@@ -11,6 +11,7 @@
 mod aggregation;
 mod block_jacobi;
 mod block_list;
+mod block_step;
 mod clusters;
 mod coarsest;
 mod continuity;
@@ -39,8 +40,9 @@ use rayon::prelude::*;
 
 use block_jacobi::InverseFactors;
 use cycle::Level;
-use setup::{FixedHierarchy, LevelBuffers, NodeMatrix};
+use setup::{FixedHierarchy, NodeMatrix};
 use smoother::Work;
+use sparse::Sparse;
 use sum_rows::SumRows;
 use symmetric::SymmetricMatrix;
 
@@ -60,8 +62,8 @@ pub use mean_field::{CoarseBasis, MeanField};
 #[derive(Debug, Clone)]
 pub struct Multigrid {
     fixed: FixedHierarchy,
-    /// For the first finest level.
-    spare: LevelBuffers,
+    /// Storage for the matrix of the first finest level.
+    spare: Sparse<3, 3>,
     factors: InverseFactors,
     finest: Level<3>,
     coarser: Vec<Level<6>>,
@@ -103,9 +105,9 @@ impl Multigrid {
             offset: &offset,
             modes,
         };
-        let (fixed, buffers) = FixedHierarchy::of(nodes, MeanField::into_basis)?;
-        let mut multigrid = Self::prepared(fixed, LevelBuffers::default());
-        multigrid.set_levels(&SumRows::of_fixed(matrix), buffers)?;
+        let (fixed, spare) = FixedHierarchy::of(nodes, MeanField::into_basis)?;
+        let mut multigrid = Self::prepared(fixed, Sparse::default());
+        multigrid.set_levels(&SumRows::of_fixed(matrix), spare)?;
         multigrid.fixed.forget_basis();
         Ok(multigrid)
     }
@@ -133,7 +135,7 @@ impl Multigrid {
     }
 
     /// Without levels.
-    fn prepared(fixed: FixedHierarchy, spare: LevelBuffers) -> Self {
+    fn prepared(fixed: FixedHierarchy, spare: Sparse<3, 3>) -> Self {
         Self {
             fixed,
             spare,
@@ -154,25 +156,22 @@ impl Multigrid {
         interface: InterfaceBlocks<'_>,
     ) -> Result<(), MultigridFailure> {
         // The old levels make room for the new ones.
-        let former = std::mem::replace(&mut self.finest, Level::empty());
+        self.finest = Level::empty();
         self.coarser.clear();
-        let buffers = match former.matrix.rows() {
-            0 => std::mem::take(&mut self.spare),
-            _ => LevelBuffers::of(former),
-        };
+        let spare = std::mem::take(&mut self.spare);
         let rows = SumRows {
             interface: Some(interface),
             ..SumRows::of_fixed(matrix)
         };
-        self.set_levels(&rows, buffers)
+        self.set_levels(&rows, spare)
     }
 
     fn set_levels(
         &mut self,
         rows: &SumRows<'_>,
-        buffers: LevelBuffers,
+        spare: Sparse<3, 3>,
     ) -> Result<(), MultigridFailure> {
-        let (factors, finest, mut next) = self.fixed.finest(rows, buffers)?;
+        let (factors, finest, mut next) = self.fixed.finest(rows, spare)?;
         let mut coarser = Vec::new();
         while let Some(coarse) = next {
             let (level, below) = setup::level(coarse, &Communicator::alone())?;

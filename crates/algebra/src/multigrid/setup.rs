@@ -1,5 +1,7 @@
 //! How levels come about.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -7,16 +9,16 @@ use super::aggregation::{self, Reach};
 use super::block_jacobi::{self, Factors, InverseFactors};
 use super::clusters::Clusters;
 use super::coarsest::Dense;
-use super::cycle::{Below, Level, Transfer};
+use super::cycle::{Below, Level, Prolongator, Transfer};
 use super::galerkin::{self, Coarse, CoarseNodes};
 use super::mean_field::{CoarseBasis, MeanField};
 use super::prolongation::Unsmoothed;
 use super::smoother::Smoother;
-use super::sparse::{Sparse, Transpose};
+use super::sparse::Sparse;
 use super::sum_rows::{RowSubset, SumRows};
 use super::symmetric::SymmetricMatrix;
 use super::triple_product::PartialProduct;
-use super::{parts, spectrum, tentative};
+use super::{block_step, parts, spectrum, tentative};
 use crate::block_rows::{BlockRows, numbers};
 use crate::division::{Communicator, Division};
 use crate::failure::MultigridFailure;
@@ -36,7 +38,10 @@ pub(super) type FullLevel<const N: usize> = Level<N, Sparse<N, N>>;
 #[derive(Debug, Clone, Default)]
 pub(super) struct FixedHierarchy {
     pub(super) clusters: Clusters,
+    /// Once there is a prolongator, with the rows that the interface changes alone.
     pub(super) basis: CoarseBasis,
+    /// To the unknowns of the last finest level. Where the interface changes nothing it stays.
+    prolongator: Option<Arc<Prolongator<3>>>,
     /// What the rows far from the interface give to the matrix of the next level, once that is
     /// known.
     far: Option<PartialProduct>,
@@ -52,41 +57,17 @@ pub(super) struct NodeMatrix<'a> {
     pub(super) modes: &'a [[DVec3; 6]],
 }
 
-/// What is large of a finest level and made anew.
-#[derive(Debug, Clone, Default)]
-pub(super) struct LevelBuffers {
-    matrix: Sparse<3, 3>,
-    prolongator: Sparse<3, 6>,
-}
-
-impl LevelBuffers {
-    /// That of a level which is needed no more.
-    pub(super) fn of(level: Level<3>) -> Self {
-        Self {
-            matrix: Sparse::default(),
-            prolongator: match level.below {
-                Below::Level(transfer) => transfer.prolongator,
-                _ => Sparse::default(),
-            },
-        }
-    }
-}
-
 impl FixedHierarchy {
     /// Prepares the hierarchy of a fixed matrix, with the basis that `split` makes of the mean
-    /// motions.
+    /// motions; and storage for the matrix of the first finest level.
     pub(super) fn of(
         nodes: NodeMatrix<'_>,
         split: impl FnOnce(MeanField) -> CoarseBasis,
-    ) -> Result<(Self, LevelBuffers), MultigridFailure> {
+    ) -> Result<(Self, Sparse<3, 3>), MultigridFailure> {
         let whole = Division::whole(nodes.matrix.rows());
         let (mut hierarchy, means, scaled) = Self::without_basis(nodes, &whole)?;
         hierarchy.basis = split(means);
-        let buffers = LevelBuffers {
-            matrix: scaled,
-            ..LevelBuffers::default()
-        };
-        Ok((hierarchy, buffers))
+        Ok((hierarchy, scaled))
     }
 
     /// The clusters of a matrix, the mean motions and their scaled matrix. Each rank needs the rows
@@ -131,37 +112,25 @@ impl FixedHierarchy {
         3 * rows > LARGEST_INVERSE && next > 0 && next as f64 <= STAGNATION * rows as f64
     }
 
-    /// The finest level of a sum, in the buffers of a former one, and the next one if it is worth
-    /// having.
+    /// The finest level of a sum, its matrix in storage that is needed no more, and the next one if
+    /// it is worth having.
     pub(super) fn finest(
         &mut self,
         rows: &SumRows<'_>,
-        buffers: LevelBuffers,
+        mut matrix: Sparse<3, 3>,
     ) -> Result<(InverseFactors, Level<3>, Option<Coarse>), MultigridFailure> {
-        let LevelBuffers {
-            mut matrix,
-            mut prolongator,
-        } = buffers;
         let factors = Factors::of(rows, &self.clusters)?;
         block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors, |_| true);
         let ((matrix, smoother), below, next) = if self.has_next(matrix.rows()) {
-            let columns = self.basis.modes.len();
-            block_jacobi::smooth_by_blocks(
-                &mut prolongator,
-                &self.basis.prolongator,
-                columns,
-                &self.clusters,
-                &factors,
-            );
-            let transpose = Transpose::of(&prolongator, columns);
-            let product = self.product(rows, &matrix, &prolongator, &transpose, |_| true);
+            let prolongator = self.prolongator(rows, &factors);
+            let product = self.product(rows, &matrix, &prolongator, |_| true);
             // Before the next level asks for memory.
             let half = halved(matrix)?;
             let nodes = (self.basis.nodes(), &Communicator::alone());
-            let next = galerkin::coarse(product, &mut prolongator, nodes);
+            let (next, scaling) = galerkin::coarse(product, nodes);
             let transfer = Transfer {
                 prolongator,
-                transpose,
+                scaling,
             };
             (half, Below::Level(transfer), Some(next))
         } else if matrix.rows() == 0 || 3 * matrix.rows() > LARGEST_INVERSE {
@@ -178,27 +147,52 @@ impl FixedHierarchy {
         Ok((factors.compact(), level, next))
     }
 
+    /// Whether the interface adds to a row of each cluster.
+    fn changed(&self, rows: &SumRows<'_>) -> Vec<bool> {
+        (0..self.clusters.count())
+            .into_par_iter()
+            .map(|cluster| rows.is_changed(self.clusters.members.of(cluster)))
+            .collect()
+    }
+
+    /// The prolongator to the unknowns of a finest level. Levels that have the former one must be
+    /// gone, or it is copied.
+    fn prolongator(&mut self, rows: &SumRows<'_>, factors: &Factors) -> Arc<Prolongator<3>> {
+        let is_changed = self.changed(rows);
+        let clusters = &self.clusters;
+        let is_changed = |row: usize| is_changed[clusters.place[row].0 as usize];
+        let columns = self.basis.modes.len();
+        let basis = &mut self.basis.prolongator;
+        if let Some(former) = &mut self.prolongator {
+            let all = &mut Arc::make_mut(former).rows;
+            let of_clusters = (clusters, factors);
+            block_step::smooth_again(all, basis, columns, of_clusters, is_changed);
+            return Arc::clone(former);
+        }
+        let all = block_step::smoothed_by_blocks(basis, columns, clusters, factors);
+        *basis = std::mem::take(basis).kept(is_changed);
+        let all = Arc::new(Prolongator::of(all, columns));
+        self.prolongator = Some(Arc::clone(&all));
+        all
+    }
+
     /// What the rows of `A` that are `is_own` give to `P^T A P`.
     pub(super) fn product(
         &mut self,
         rows: &SumRows<'_>,
         matrix: &Sparse<3, 3>,
-        prolongator: &Sparse<3, 6>,
-        transpose: &Transpose,
+        prolongator: &Prolongator<3>,
         is_own: impl Fn(usize) -> bool + Sync,
     ) -> PartialProduct {
-        let is_changed: Vec<bool> = (0..self.clusters.count())
-            .into_par_iter()
-            .map(|cluster| rows.is_changed(self.clusters.members.of(cluster)))
-            .collect();
+        let is_changed = self.changed(rows);
         let is_changed = |row: usize| is_changed[self.clusters.place[row].0 as usize];
         let is_near =
             |row| is_own(row) && (is_changed(row) || matrix.row(row).any(|(at, _)| is_changed(at)));
         let is_near: Vec<bool> = (0..matrix.rows()).into_par_iter().map(is_near).collect();
         let near = is_near.iter().filter(|near| **near).count();
-        let aggregates = transpose.columns();
+        let aggregates = prolongator.transpose.columns();
         let of_rows = |is_wanted: &(dyn Fn(usize) -> bool + Sync)| {
-            PartialProduct::of_rows(matrix, prolongator, transpose, is_wanted)
+            PartialProduct::of_rows(matrix, prolongator, is_wanted)
         };
         if near == 0 || near as f64 > MOST_NEAR * matrix.rows() as f64 {
             return PartialProduct::sum(aggregates, &of_rows(&is_own));
@@ -220,6 +214,7 @@ impl FixedHierarchy {
 
     /// Bytes of storage.
     pub(super) fn bytes(&self) -> usize {
+        // The prolongator counts as part of the finest level.
         self.clusters.bytes()
             + self.basis.bytes()
             + self.far.as_ref().map_or(0, PartialProduct::bytes)
@@ -284,18 +279,17 @@ fn below(
     let own = division.own();
     let is_own = |row: usize| own.contains(&row);
     let prolongator = unsmoothed.smoothed(matrix, largest_eigenvalue, is_own);
-    let mut prolongator = prolongator.completed(&division);
-    let transpose = Transpose::of(&prolongator, aggregates.count);
-    let parts = PartialProduct::of_rows(matrix, &prolongator, &transpose, is_own);
+    let prolongator = Prolongator::of(prolongator.completed(&division), aggregates.count);
+    let parts = PartialProduct::of_rows(matrix, &prolongator, is_own);
     let product = PartialProduct::sum(aggregates.count, &parts).completed(ranks);
     let nodes = CoarseNodes {
         modes: &tentative.modes,
         continuity: &continuity.of_aggregates(&aggregates, matrix),
     };
-    let coarse = galerkin::coarse(product, &mut prolongator, (nodes, ranks));
+    let (coarse, scaling) = galerkin::coarse(product, (nodes, ranks));
     let transfer = Transfer {
-        prolongator,
-        transpose,
+        prolongator: Arc::new(prolongator),
+        scaling,
     };
     Ok((Below::Level(transfer), Some(coarse)))
 }

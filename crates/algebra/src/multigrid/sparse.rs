@@ -147,7 +147,22 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
         sum_up(offset);
         set_length(columns, offset[rows], 0);
         set_length(blocks, offset[rows], [[0.0; L]; M]);
-        let tasks = RowOwnership::even(rows, rows_per_task);
+        self.fill(rows_per_task, scratch, fill);
+    }
+
+    /// Lets `fill` write rows, as [`Self::build`] does, in a matrix that has their lengths.
+    pub(super) fn fill<S>(
+        &mut self,
+        rows_per_task: usize,
+        scratch: impl Fn() -> S + Sync + Send,
+        fill: impl Fn(&mut S, usize, &mut [u32], &mut [[[f32; L]; M]]) + Sync + Send,
+    ) {
+        let tasks = RowOwnership::even(self.rows(), rows_per_task);
+        let Self {
+            offset,
+            columns,
+            blocks,
+        } = self;
         let shares = tasks.split(columns, offset);
         let shares = shares.into_par_iter().zip(tasks.split(blocks, offset));
         let vectorised = pulp::Arch::new();
@@ -169,14 +184,27 @@ impl<const M: usize, const L: usize> Sparse<M, L> {
 
 impl<const M: usize, const L: usize> Sparse<M, L> {
     /// Some rows, ascending.
-    pub(super) fn only(mut self, rows: &[u32]) -> Self {
+    pub(super) fn only(self, rows: &[u32]) -> Self {
+        self.packed(rows.iter().map(|&row| (row as usize, true)))
+    }
+
+    /// All rows, those that are not kept empty.
+    pub(super) fn kept(self, is_kept: impl Fn(usize) -> bool) -> Self {
+        let rows = 0..self.rows();
+        self.packed(rows.map(|row| (row, is_kept(row))))
+    }
+
+    /// Some rows, ascending, those that are not to be kept empty.
+    fn packed(mut self, rows: impl Iterator<Item = (usize, bool)>) -> Self {
         let mut offset = vec![0];
         let mut end = 0;
-        for &row in rows {
-            let range = self.range(row as usize);
-            self.columns.copy_within(range.clone(), end);
-            self.blocks.copy_within(range.clone(), end);
-            end += range.len();
+        for (row, is_kept) in rows {
+            if is_kept {
+                let range = self.range(row);
+                self.columns.copy_within(range.clone(), end);
+                self.blocks.copy_within(range.clone(), end);
+                end += range.len();
+            }
             offset.push(end);
         }
         self.columns.truncate(end);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::cycle::Prolongator;
 use super::sparse::{Accumulator, Sparse, Transpose, rows_per_task};
 use crate::division::Communicator;
 use crate::lists::sum_up;
@@ -11,7 +12,7 @@ use crate::small::{add, add_columns, add_product, widen};
 
 /// Rows of a batch, fixed so that no result depends on the number of threads. `A P` of one is kept.
 const fn batch<const N: usize>() -> usize {
-    if N == 3 { 1 << 16 } else { 1 << 14 }
+    if N == 3 { 1 << 15 } else { 1 << 13 }
 }
 
 /// A 6x6 block as rows.
@@ -33,10 +34,13 @@ impl PartialProduct {
     /// `is_wanted`, in batches.
     pub(super) fn of_rows<const N: usize>(
         matrix: &Sparse<N, N>,
-        prolongator: &Sparse<N, 6>,
-        transpose: &Transpose,
+        prolongator: &Prolongator<N>,
         is_wanted: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Self> {
+        let Prolongator {
+            rows: prolongator,
+            transpose,
+        } = prolongator;
         let rows = matrix.rows();
         let mut image = Sparse::empty();
         let starts = (0..rows).step_by(batch::<N>());

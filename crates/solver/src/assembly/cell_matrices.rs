@@ -162,16 +162,15 @@ impl<'a> CellMatrices<'a> {
             }
             let (own, others) = visits.split_at(slots.len());
             visits = others;
-            let neighbours = pattern.neighbours.of(node);
-            let mut length = 0;
-            for &other in neighbours {
+            let (mut length, mut is_plain) = (0, true);
+            for other in pattern.around(node, points) {
                 place[other as usize] = length;
                 length += points.of_node(other as usize).len() as u32;
+                is_plain &= self.is_plain[other as usize];
             }
             rows.clear();
             rows.resize(points.of_node(node).len() * length as usize, DMat3::ZERO);
-            let is_plain = |&other: &u32| self.is_plain[other as usize];
-            if neighbours.iter().all(is_plain) {
+            if is_plain {
                 self.add_plain(slots, own, rows, place);
             } else {
                 self.add_general(node, slots, own, rows, place);

@@ -35,7 +35,7 @@ pub(crate) fn nodes(space: Space<'_>) -> Vec<bool> {
     };
     (0..problem.mesh.nodes.len())
         .into_par_iter()
-        .map(|node| all || pattern.slots.of(node).iter().all(is_tetrahedron))
+        .map(|node| all || pattern.slots_of(node).iter().all(is_tetrahedron))
         .collect()
 }
 
@@ -133,7 +133,7 @@ impl<'a> Tetrahedra<'a> {
             for (number, &column) in columns.iter().enumerate() {
                 scratch.place[column as usize] = number as u32;
             }
-            let (here, others) = visits.split_at(pattern.slots.of(node).len());
+            let (here, others) = visits.split_at(pattern.slots_of(node).len());
             visits = others;
             let mut rows = Rows {
                 first: own.start,
@@ -142,7 +142,7 @@ impl<'a> Tetrahedra<'a> {
                 place: &scratch.place,
             };
             self.sum(&scratch.cells, here, &mut rows);
-            for &other in pattern.neighbours.of(node) {
+            for other in pattern.around(node, points) {
                 if !(self.is_plain[node] && self.is_plain[other as usize]) {
                     self.enrich(node, other as usize, &mut rows);
                 }
@@ -239,7 +239,7 @@ impl CellScratch {
         self.visits.clear();
         let mut count = 0;
         for node in nodes {
-            let slots = pattern.slots.of(node);
+            let slots = pattern.slots_of(node);
             self.firsts.resize(count as usize + slots.len() + 1, 0);
             self.visits.extend(slots.iter().map(|&slot| {
                 let (cell, own) = pattern.cell_of_slot.locate(slot, &problem.mesh.cells);

@@ -7,7 +7,6 @@ use kluft_algebra::Lists;
 use rayon::prelude::*;
 
 use crate::problem::Problem;
-use crate::space::pattern::Pattern;
 use crate::system::Discretisation;
 
 /// No group.
@@ -36,9 +35,10 @@ struct Corner {
 }
 
 impl CornerGroups {
-    pub(super) fn of(problem: &Problem, discretisation: &Discretisation) -> Self {
+    /// From the slots of each node.
+    pub(super) fn of(problem: &Problem, discretisation: &Discretisation, slots: &Lists) -> Self {
         let (mesh, cells) = (&problem.mesh, &problem.mesh.cells);
-        let of_tasks = sorted(problem, discretisation);
+        let of_tasks = sorted(problem, discretisation, slots);
         let grouped: Vec<_> = of_tasks.par_iter().map(|task| lengths(task)).collect();
         let slots = cells.nodes.par_iter();
         let of_slot: Vec<AtomicU32> = slots.map(|_| AtomicU32::new(NONE)).collect();
@@ -66,15 +66,11 @@ impl CornerGroups {
 }
 
 /// The corners of successive nodes, ascending.
-fn sorted(problem: &Problem, discretisation: &Discretisation) -> Vec<Vec<Corner>> {
+fn sorted(problem: &Problem, discretisation: &Discretisation, slots: &Lists) -> Vec<Vec<Corner>> {
     let cells = &problem.mesh.cells;
     let of_cell_node = &discretisation.points.of_cell_node;
     let materials = problem.material_of_cell();
-    let Pattern {
-        slots,
-        cell_of_slot,
-        ..
-    } = &discretisation.pattern;
+    let cell_of_slot = &discretisation.pattern.cell_of_slot;
     let corner = |&slot: &u32| {
         let (cell, own) = cell_of_slot.locate(slot, cells);
         let is_corner = slot as usize - own.start < cells.shapes[cell].corner_count();

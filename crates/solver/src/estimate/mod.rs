@@ -33,6 +33,10 @@ pub use sizes::target_sizes;
 /// hardly different from those of an exact `z`, which takes several times the iterations.
 const ROUGH: f64 = 0.1;
 
+/// Cells whose stresses are recovered at once. Polynomials at the borders of such pieces are fitted
+/// twice; samples and polynomials of all cells take more memory than anything else then.
+const CELLS_AT_ONCE: usize = 1 << 18;
+
 /// Memory (bytes) that estimates on a mesh take: patches, samples, polynomials, and what is known
 /// of each cell of two states.
 pub(crate) fn estimate_bytes(mesh: &Mesh) -> usize {
@@ -135,12 +139,12 @@ impl Estimator {
         let ranks = communicator.size();
         let starts = (0..=ranks).map(|rank| rank * cells / ranks);
         let division = communicator.divide(RowOwnership::of_starts(starts.collect()));
+        let (mesh, discretisation) = (&system.problem.mesh, &system.discretisation);
+        let pattern = &discretisation.pattern;
+        let slots = pattern.slots(mesh, &discretisation.points);
         let (patches, nearest_fracture) = rayon::join(
-            || Patches::of(system.problem, &system.discretisation, division.own()),
-            || {
-                let pattern = &system.discretisation.pattern;
-                nearest_fracture::nearest_fracture(&system.problem.mesh, pattern)
-            },
+            || Patches::of(system.problem, (discretisation, &slots), division.own()),
+            || nearest_fracture::nearest_fracture(mesh, (&slots, &pattern.cell_of_slot)),
         );
         Self {
             division,
@@ -164,14 +168,18 @@ impl Estimator {
         let mesh = &system.problem.mesh;
         let points = &system.discretisation.points;
         let deformed = || DeformedCell::of(system.problem, points, deformations);
-        let recovered = self.patches.recover(&mesh.cells, deformed);
-        let cells = self.division.own().into_par_iter();
-        let of_cells: Vec<CellErrors<S>> = cells
-            .map_init(deformed, |deformed, cell| {
+        let own = self.division.own();
+        let mut of_cells: Vec<CellErrors<S>> = Vec::with_capacity(own.len());
+        for start in own.clone().step_by(CELLS_AT_ONCE) {
+            let piece = start..own.end.min(start + CELLS_AT_ONCE);
+            let cells = (&mesh.cells, piece.clone());
+            let recovered = self.patches.recover(cells, deformed);
+            let found = piece.into_par_iter().map_init(deformed, |deformed, cell| {
                 let rock = system.problem.rock(cell);
                 self.of_cell(&recovered, deformed, (cell, rock))
-            })
-            .collect();
+            });
+            of_cells.par_extend(found);
+        }
         let gathered = |of: &(dyn Fn(&CellErrors<S>) -> f64 + Sync)| {
             let own = of_cells.par_iter().map(of);
             self.division.gathered(own.collect::<Vec<f64>>())

@@ -1,15 +1,19 @@
 //! Which fracture each cell is nearest to, counted in cells.
 
+use kluft_algebra::Lists;
 use kluft_mesh::Mesh;
 
-use crate::space::pattern::Pattern;
+use crate::space::pattern::CellOfSlot;
 
 /// No fracture.
 const NONE: u32 = u32::MAX;
 
 /// The fracture that the fewest cells lie between it and each cell, the first of several; beyond
 /// all numbers where there is none.
-pub(super) fn nearest_fracture(mesh: &Mesh, pattern: &Pattern) -> Vec<u32> {
+pub(super) fn nearest_fracture(
+    mesh: &Mesh,
+    (slots, cell_of_slot): (&Lists, &CellOfSlot),
+) -> Vec<u32> {
     let facets = &mesh.facets;
     let mut of_node = vec![NONE; mesh.nodes.len()];
     for facet in 0..facets.elements.len() {
@@ -25,8 +29,8 @@ pub(super) fn nearest_fracture(mesh: &Mesh, pattern: &Pattern) -> Vec<u32> {
     while !front.is_empty() {
         let mut reached = Vec::new();
         for &node in &front {
-            for &slot in pattern.slots.of(node as usize) {
-                let (cell, _) = pattern.cell_of_slot.locate(slot, &mesh.cells);
+            for &slot in slots.of(node as usize) {
+                let (cell, _) = cell_of_slot.locate(slot, &mesh.cells);
                 if of_cell[cell] == NONE {
                     of_cell[cell] = of_node[node as usize];
                     reached.push(cell);

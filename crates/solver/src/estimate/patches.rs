@@ -45,12 +45,16 @@ pub(super) struct Patches {
     sample_offset: Vec<usize>,
     /// Number of terms of the polynomials: quadratic ones if any cell is quadratic.
     terms: usize,
-    /// Patches of the cells that count, and cells that these may be fitted to.
+}
+
+/// What the recovery in some cells asks for.
+struct Selection {
+    /// Patches of these cells.
     is_fitted: Vec<bool>,
+    /// Cells that these patches may be fitted to.
     is_sampled: Vec<bool>,
 }
 
-/// No patch.
 /// `S` recovered stresses: for each patch the coefficients of each component (Pa), term by term.
 pub(super) struct Recovered<const S: usize> {
     coefficients: Vec<[SymmetricStress; S]>,
@@ -58,10 +62,10 @@ pub(super) struct Recovered<const S: usize> {
 
 impl Patches {
     /// The patches of a mesh: one for each point that is a corner and each rock around it. Stresses
-    /// are recovered in the cells `wanted`.
+    /// can be recovered in the cells `wanted`. `slots` are those of each node.
     pub(super) fn of(
         problem: &Problem,
-        discretisation: &Discretisation,
+        (discretisation, slots): (&Discretisation, &Lists),
         wanted: Range<usize>,
     ) -> Self {
         let (mesh, cells) = (&problem.mesh, &problem.mesh.cells);
@@ -69,7 +73,7 @@ impl Patches {
             of_slot,
             cells: around,
             middles,
-        } = CornerGroups::of(problem, discretisation);
+        } = CornerGroups::of(problem, discretisation, slots);
         let mut patches = Self {
             of_slot,
             cells: around,
@@ -77,26 +81,24 @@ impl Patches {
             sample_offset: sample_offset(cells),
             samples: Vec::new(),
             terms: terms(cells),
-            is_fitted: Vec::new(),
-            is_sampled: Vec::new(),
         };
-        patches.restrict(cells, wanted);
+        let selection = patches.selection(cells, wanted);
         let middles = middles.into_par_iter().enumerate();
-        let frame = |(patch, middle): (usize, DVec3)| match patches.is_fitted[patch] {
+        let frame = |(patch, middle): (usize, DVec3)| match selection.is_fitted[patch] {
             true => (middle, patches.size(mesh, patch, middle)),
             false => (middle, 0.0),
         };
         patches.frames = middles.map(frame).collect();
         patches.samples = patches.sampled(
-            cells,
+            (cells, &selection.is_sampled),
             || [DVec3::ZERO; MAX_NODES],
             |nodes, cell, point| kernel::position(point, positions(mesh, cell, nodes)),
         );
         patches
     }
 
-    /// Restricts what is fitted to what some cells ask for.
-    fn restrict(&mut self, cells: &Elements, wanted: Range<usize>) {
+    /// What the recovery in the cells `wanted` asks for.
+    fn selection(&self, cells: &Elements, wanted: Range<usize>) -> Selection {
         let patches_of = |is_wanted: &dyn Fn(usize) -> bool| {
             let mut is_met = vec![false; self.len()];
             for cell in (0..cells.len()).filter(|&cell| is_wanted(cell)) {
@@ -113,15 +115,19 @@ impl Patches {
             is_beside
         };
         if wanted.len() == cells.len() {
-            let all = (vec![true; self.len()], vec![true; cells.len()]);
-            (self.is_fitted, self.is_sampled) = all;
-            return;
+            return Selection {
+                is_fitted: vec![true; self.len()],
+                is_sampled: vec![true; cells.len()],
+            };
         }
         let is_fitted = patches_of(&|cell| wanted.contains(&cell));
         let own = cells_of(&is_fitted);
         // Patches beside lend their cells to those with too few.
         let is_sampled = cells_of(&patches_of(&|cell| own[cell]));
-        (self.is_fitted, self.is_sampled) = (is_fitted, is_sampled);
+        Selection {
+            is_fitted,
+            is_sampled,
+        }
     }
 
     fn len(&self) -> usize {
@@ -136,11 +142,11 @@ impl Patches {
         self.sample_offset[cell]..self.sample_offset[cell + 1]
     }
 
-    /// Values at all samples, cell by cell, found with a workspace; zero in cells that no patch is
-    /// fitted to.
+    /// Values at all samples, cell by cell, found with a workspace; zero in cells that are not
+    /// `is_sampled`.
     fn sampled<T: Send + Clone + Zero, W>(
         &self,
-        cells: &Elements,
+        (cells, is_sampled): (&Elements, &[bool]),
         workspace: impl Fn() -> W + Sync,
         value: impl Fn(&mut W, usize, &RulePoint) -> T + Sync,
     ) -> Vec<T> {
@@ -153,7 +159,7 @@ impl Patches {
                 let samples = &recovery_rule(cells.shapes[cell]).samples;
                 let (own, tail) = rest.split_at_mut(samples.len());
                 rest = tail;
-                if !self.is_sampled[cell] {
+                if !is_sampled[cell] {
                     continue;
                 }
                 for (target, sample) in own.iter_mut().zip(samples) {
@@ -175,19 +181,23 @@ impl Patches {
     }
 
     /// Fits polynomials to the stresses of cells, which each task looks at by one of `deformed`, in
-    /// every patch.
+    /// every patch that the cells `wanted` ask for: some of those that the patches were made for.
     pub(super) fn recover<'a, const S: usize>(
         &self,
-        cells: &Elements,
+        (cells, wanted): (&Elements, Range<usize>),
         deformed: impl Fn() -> DeformedCell<'a, S> + Sync,
     ) -> Recovered<S> {
-        let stresses = self.sampled(cells, deformed, |deformed, cell, sample| {
+        let Selection {
+            is_fitted,
+            is_sampled,
+        } = self.selection(cells, wanted);
+        let stresses = self.sampled((cells, &is_sampled), deformed, |deformed, cell, sample| {
             deformed.look_at(cell);
             deformed.stresses(sample).0
         });
         let mut coefficients = vec![[[0.0; 6]; S]; self.terms * self.len()];
         let patches = coefficients.par_chunks_mut(self.terms).enumerate();
-        let fitted = patches.filter(|(patch, _)| self.is_fitted[*patch]);
+        let fitted = patches.filter(|(patch, _)| is_fitted[*patch]);
         fitted.for_each(|(patch, coefficients)| match self.terms {
             QUADRATIC => {
                 let fit = self.fit::<QUADRATIC, S>(cells, &stresses, patch);

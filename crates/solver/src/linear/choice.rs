@@ -56,8 +56,8 @@ impl Plan {
         let mut predictions = vec![iterative];
         let mut analyses = Vec::new();
         if !analysed.is_empty() {
-            let graph = &unknowns.pattern.neighbours;
-            let order = NodeOrder::of(graph, &unknowns.points.offset)?;
+            let graph = unknowns.pattern.node_graph(unknowns.points);
+            let order = NodeOrder::of(&graph, &unknowns.points.offset)?;
             for method in analysed {
                 let analysis = analysis(unknowns, &order, method)?;
                 predictions.push(predict(unknowns, workload, method, &analysis));

@@ -115,7 +115,7 @@ impl<'a> MovedPoints<'a> {
         } = self.space;
         let cells = &self.space.problem.mesh.cells;
         let (point, _) = self.points[place];
-        let slots = pattern.slots.of(points.node[point as usize] as usize);
+        let slots = pattern.slots_of(points.node[point as usize] as usize);
         let own = slots
             .iter()
             .filter(move |&&slot| points.of_cell_node[slot as usize] == point);

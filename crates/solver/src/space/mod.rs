@@ -32,7 +32,7 @@ pub(crate) struct Space<'a> {
 impl Space<'_> {
     /// Slots of a node that lie in a range of slots.
     pub(crate) fn slots(&self, node: usize, within: &Range<usize>) -> &[u32] {
-        let slots = self.pattern.slots.of(node);
+        let slots = self.pattern.slots_of(node);
         let start = slots.partition_point(|&slot| (slot as usize) < within.start);
         let end = slots.partition_point(|&slot| (slot as usize) < within.end);
         &slots[start..end]

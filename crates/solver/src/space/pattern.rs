@@ -1,5 +1,6 @@
 //! Who couples with whom: cells around a node, nodes around a node, blocks of the matrix.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use kluft_algebra::{BlockPattern, Lists, RowOwnership, sum_up};
@@ -58,12 +59,10 @@ impl CellOfSlot {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Pattern {
-    /// For each node the slots (positions in the cells' flat node list) where it occurs, ascending.
-    pub slots: Lists,
+    /// See [`Self::slots`]; without lists once only the stored blocks are kept.
+    slots: Lists,
     /// Cell of each slot.
     pub cell_of_slot: CellOfSlot,
-    /// For each node the nodes it shares a cell with, itself included, ascending.
-    pub neighbours: Lists,
     /// The blocks of the matrix, a row for each point.
     pub blocks: BlockPattern,
 }
@@ -72,17 +71,64 @@ impl Pattern {
     /// Pattern of a mesh.
     pub fn of(mesh: &Mesh, points: &SectorNodes) -> Self {
         let nodes = points.moving_nodes(mesh);
-        let slots = Lists::occurrences(&nodes, mesh.nodes.len());
+        let slots = slots(mesh, points);
         let cell_of_slot = CellOfSlot::of(&mesh.cells);
         let neighbours = neighbours((&mesh.cells, &nodes), &slots, &cell_of_slot);
         let blocks = block_pattern(&neighbours, points);
         Self {
             slots,
             cell_of_slot,
-            neighbours,
             blocks,
         }
     }
+
+    /// Keeps these blocks instead of all, and nothing of what only others would ask for.
+    pub(crate) fn keep(&mut self, blocks: BlockPattern) {
+        (self.blocks, self.slots) = (blocks, Lists::default());
+    }
+
+    /// For each node the nodes that it shares a cell with, as [`NodeOrder::of`] takes them.
+    ///
+    /// [`NodeOrder::of`]: kluft_algebra::NodeOrder::of
+    pub fn node_graph(&self, points: &SectorNodes) -> Lists {
+        let nodes = 0..points.offset.len() - 1;
+        let around = nodes.map(|node| self.around(node, points).collect());
+        Lists::collect(&around.collect::<Vec<_>>())
+    }
+
+    /// The nodes with unknowns that a node shares a cell with, itself included, ascending; none
+    /// where it has no unknowns.
+    pub(crate) fn around<'a>(
+        &'a self,
+        node: usize,
+        points: &'a SectorNodes,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let columns = points.of_node(node).next().map(|row| self.blocks.row(row));
+        let columns = &self.blocks.columns[columns.unwrap_or_default()];
+        let nodes = columns
+            .iter()
+            .map(|&column| (column, points.node[column as usize]));
+        let firsts = nodes.filter(|&(column, node)| points.offset[node as usize] == column);
+        firsts.map(|(_, node)| node)
+    }
+
+    /// For each node of a mesh with this pattern the slots (positions in the cells' flat node list)
+    /// where it occurs, ascending.
+    pub fn slots(&self, mesh: &Mesh, points: &SectorNodes) -> Cow<'_, Lists> {
+        match self.slots.offset.is_empty() {
+            false => Cow::Borrowed(&self.slots),
+            true => Cow::Owned(slots(mesh, points)),
+        }
+    }
+
+    /// Those of a node, while all blocks are there.
+    pub(crate) fn slots_of(&self, node: usize) -> &[u32] {
+        self.slots.of(node)
+    }
+}
+
+fn slots(mesh: &Mesh, points: &SectorNodes) -> Lists {
+    Lists::occurrences(&points.moving_nodes(mesh), mesh.nodes.len())
 }
 
 /// For each node the nodes it shares a cell with; `nodes` are those of the cells.

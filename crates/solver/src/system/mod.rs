@@ -286,7 +286,7 @@ impl<'a> System<'a> {
     }
 
     /// Jumps of the walls in a state (m) since that of initial stress, former stages included.
-    pub(crate) fn total_jumps(&self, state: &State) -> Vec<DVec3> {
+    pub fn total_jumps(&self, state: &State) -> Vec<DVec3> {
         let interface = &self.discretisation.interface;
         let mut jumps = interface.jumps(&state.unknowns, &state.load);
         if let Some(carried) = &self.carried {
@@ -337,10 +337,14 @@ impl<'a> System<'a> {
         self.rock.division()
     }
 
-    /// Holds these rows too, ascending, those of whole nodes.
-    pub(crate) fn add_rows(&mut self, rows: &[u32]) {
+    /// Holds of these rows, ascending, those of whole nodes, too what `is_needed` of rows and
+    /// columns. What tells of the pattern of other rows is given up: once these are there, none can
+    /// be added.
+    pub(crate) fn add_rows(&mut self, rows: &[u32], is_needed: impl Fn(u32, u32) -> bool) {
         let space = self.discretisation.space(self.problem);
-        self.rock.add_rows(space, rows);
+        if let Some(blocks) = self.rock.add_rows(space, rows, is_needed) {
+            self.discretisation.pattern.keep(blocks);
+        }
     }
 
     /// Forces by which the rock resists the unknowns (N), `K y`. All ranks must ask for them.

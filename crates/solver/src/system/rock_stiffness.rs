@@ -15,7 +15,8 @@ use crate::space::Space;
 #[derive(Debug, Clone)]
 pub(super) struct RockStiffness {
     division: Division,
-    /// Pattern of the rows that are held, the others being empty there, if not all are held.
+    /// Pattern of the rows that are held, the others being empty there, while not all are held and
+    /// rows may be added.
     pattern: Option<BlockPattern>,
     matrix: BlockMatrix,
     /// Diagonal blocks of the rows beside fractures, if not all rows are held.
@@ -58,11 +59,16 @@ impl RockStiffness {
         &self.division
     }
 
-    /// Holds these rows too, those of whole nodes.
-    pub(super) fn add_rows(&mut self, space: Space<'_>, rows: &[u32]) {
-        let Some(held) = &self.pattern else {
-            return;
-        };
+    /// Holds of these rows, which are those of whole nodes, too what `is_needed` of rows and
+    /// columns. Returns the pattern of what is then held, which serves instead of that of all rows,
+    /// unless all are held or nothing can be added any more.
+    pub(super) fn add_rows(
+        &mut self,
+        space: Space<'_>,
+        rows: &[u32],
+        is_needed: impl Fn(u32, u32) -> bool,
+    ) -> Option<BlockPattern> {
+        let held = self.pattern.take()?;
         let mut is_new = vec![false; nodes(space)];
         for &row in rows
             .iter()
@@ -71,9 +77,11 @@ impl RockStiffness {
             is_new[space.points.node[row as usize] as usize] = true;
         }
         let (pattern, matrix) = some(space, |node| is_new[node], 0..0);
-        let parts = [self.matrix.rows(held), matrix.rows(&pattern)];
+        let added = needed(matrix.rows(&pattern), is_needed);
+        let parts = [self.matrix.rows(&held), added.1.rows(&added.0)];
         let (pattern, matrix) = joined(parts, self.division.own());
-        (self.pattern, self.matrix) = (Some(pattern), matrix);
+        self.matrix = matrix;
+        Some(pattern)
     }
 
     /// The rows that are held, the others being empty; `whole` is the pattern of all.
@@ -145,6 +153,30 @@ fn some(
     let mut matrix = rock::rock_stiffness(space, &is_wanted, &pattern);
     springs::add(space, &pattern, &mut matrix);
     (pattern, matrix)
+}
+
+/// What is needed of rows all of whose blocks are stored, by row and column.
+fn needed(
+    rows: BlockRows<'_>,
+    is_needed: impl Fn(u32, u32) -> bool,
+) -> (BlockPattern, BlockMatrix) {
+    let mut row_offset = vec![0];
+    let (mut columns, mut blocks) = (Vec::new(), Vec::new());
+    for row in 0..rows.rows() {
+        let range = rows.pattern.row(row);
+        let all = rows.pattern.columns[range.clone()].iter();
+        for (&column, &block) in all.zip(&rows.blocks[range]) {
+            if is_needed(row as u32, column) {
+                columns.push(column);
+                blocks.push(block);
+            }
+        }
+        row_offset.push(columns.len());
+    }
+    (
+        BlockPattern::new(row_offset, columns),
+        BlockMatrix { blocks },
+    )
 }
 
 /// Rows of which each is empty in one of two matrices; blocks between the rows `halved` are stored
