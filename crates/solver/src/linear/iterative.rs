@@ -358,16 +358,19 @@ mod tests {
         assert!(remaining(&system, &loose, &solved, &rhs) < 1e-7);
     }
 
+    /// One stiffness (Pa/m) of all facet points, in all directions.
+    fn uniform(system: &System<'_>, size: f64) -> Vec<DMat3> {
+        let interface = &system.discretisation.interface;
+        interface.stiffness(&vec![size * DMat3::IDENTITY; interface.points.len()])
+    }
+
     /// What a step is divided for: the next substep has a tangent of its own.
     #[test]
     fn a_tangent_that_is_refused_leaves_a_solver_for_others() {
         let problem = problem(|z| z);
         let system = system(&problem);
         let interface = &system.discretisation.interface;
-        let stiffness = |size: f64| {
-            let tangents = vec![size * DMat3::IDENTITY; interface.points.len()];
-            interface.stiffness(&tangents)
-        };
+        let stiffness = |size: f64| uniform(&system, size);
         let mut rhs = vec![DVec3::ZERO; system.discretisation.points.len()];
         rhs[interface.unknowns[0] as usize] = DVec3::new(1.0, -2.0, 0.5);
         let fixed = system.fixed_part();
@@ -392,11 +395,7 @@ mod tests {
     fn levels_do_not_depend_on_those_before_them() {
         let problem = problem(|z| z);
         let system = system(&problem);
-        let interface = &system.discretisation.interface;
-        let stiffness = |size: f64| {
-            let tangents = vec![size * DMat3::IDENTITY; interface.points.len()];
-            interface.stiffness(&tangents)
-        };
+        let stiffness = |size: f64| uniform(&system, size);
         let fixed = system.fixed_part();
         let count = system.discretisation.points.len();
         let forces: Vec<DVec3> = (0..count)

@@ -71,7 +71,7 @@ impl Pattern {
     /// Pattern of a mesh.
     pub fn of(mesh: &Mesh, points: &SectorNodes) -> Self {
         let nodes = points.moving_nodes(mesh);
-        let slots = slots(mesh, points);
+        let slots = Lists::occurrences(&nodes, mesh.nodes.len());
         let cell_of_slot = CellOfSlot::of(&mesh.cells);
         let neighbours = neighbours((&mesh.cells, &nodes), &slots, &cell_of_slot);
         let blocks = block_pattern(&neighbours, points);
@@ -117,7 +117,10 @@ impl Pattern {
     pub fn slots(&self, mesh: &Mesh, points: &SectorNodes) -> Cow<'_, Lists> {
         match self.slots.offset.is_empty() {
             false => Cow::Borrowed(&self.slots),
-            true => Cow::Owned(slots(mesh, points)),
+            true => {
+                let nodes = points.moving_nodes(mesh);
+                Cow::Owned(Lists::occurrences(&nodes, mesh.nodes.len()))
+            }
         }
     }
 
@@ -125,10 +128,6 @@ impl Pattern {
     pub(crate) fn slots_of(&self, node: usize) -> &[u32] {
         self.slots.of(node)
     }
-}
-
-fn slots(mesh: &Mesh, points: &SectorNodes) -> Lists {
-    Lists::occurrences(&points.moving_nodes(mesh), mesh.nodes.len())
 }
 
 /// For each node the nodes it shares a cell with; `nodes` are those of the cells.
