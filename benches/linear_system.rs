@@ -118,9 +118,10 @@ fn by_multigrid(system: &System<'_>, right: &[DVec3]) {
 
 fn by_cholesky(system: &System<'_>, right: &[DVec3]) {
     let start = Instant::now();
-    let graph = &system.discretisation().pattern().neighbours;
-    let first_unknown = &system.discretisation().points().offset;
-    let order = NodeOrder::of(graph, first_unknown);
+    let points = system.discretisation().points();
+    let graph = system.discretisation().pattern().node_graph(points);
+    let first_unknown = &points.offset;
+    let order = NodeOrder::of(&graph, first_unknown);
     let order = order.expect("ordered").all(first_unknown);
     let rows = system.rock_rows();
     let analysis =
