@@ -193,14 +193,14 @@ impl Distributed {
         next: NextPart,
     ) -> Result<Levels, LinearFailure> {
         let lower = self.coarsening.levels_below(next, &self.communicator)?;
-        let basis = self.coarsening.basis();
-        let mut movers = vec![u32::MAX; basis.modes().len()];
-        for &row in &self.partition.own {
-            for (node, _) in basis.row(row as usize) {
-                movers[node] = movers[node].min(row);
+        let mut first = vec![u32::MAX; self.coarsening.next_nodes()];
+        for (place, &row) in self.partition.own.iter().enumerate() {
+            for &node in prolongator.movers(place) {
+                let first = &mut first[node as usize];
+                *first = row.min(*first);
             }
         }
-        let owners = self.owners(&movers);
+        let owners = self.owners(&first);
         Ok(Levels::of(&self.world, owners, prolongator, lower)?)
     }
 

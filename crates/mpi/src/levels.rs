@@ -97,7 +97,7 @@ impl Levels {
         mut lower: LowerLevels,
     ) -> Result<Self, PetscFailure> {
         let mut nodes = LevelNodes::of(world, owners);
-        let rows = to_finest.from(&lower, &nodes.own);
+        let rows = to_finest.from(&mut lower, &nodes.own);
         let mut prolongators = vec![transfers(rows, nodes.number())];
         let mut matrices = vec![products(lower.take_rows(0, &nodes.own), nodes.number())];
         for level in 1..lower.count() {

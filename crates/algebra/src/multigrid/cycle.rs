@@ -71,7 +71,7 @@ impl<const N: usize> Prolongator<N> {
 }
 
 /// The way down to the next level, whose unknowns are scaled by `L`, and up again.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Transfer<const N: usize> {
     pub(super) prolongator: Arc<Prolongator<N>>,
     /// `L^-1` of each aggregate, as rows.

@@ -6,20 +6,21 @@
 //! and a bound of its spectrum, the prolongator `L^-1 R P` to these unknowns, and what the rows
 //! give to the matrix of the next level. What all of them give makes the [`LowerLevels`].
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::block_jacobi::{self, Factors};
-use super::cycle::Prolongator;
-use super::galerkin;
+use super::cycle::{Prolongator, Transfer};
 use super::level_rows::{LevelRows, OwnClusters, ProlongatorRows};
 use super::lower_levels::LowerLevels;
 use super::mean_field::{CoarseBasis, MeanField};
 use super::setup::{FixedHierarchy, NodeMatrix};
 use super::sparse::Sparse;
+use super::spectrum;
 use super::sum_rows::SumRows;
 use super::triple_product::PartialProduct;
-use super::{block_step, spectrum};
 use crate::block_pattern::BlockPattern;
 use crate::block_rows::BlockRows;
 use crate::division::{Communicator, Division};
@@ -50,15 +51,20 @@ pub struct LevelPart {
     pub matrix: LevelRows<3>,
     /// Upper bound of its eigenvalues.
     pub largest_eigenvalue: f64,
-    /// `L^-1 R P`; columns are nodes of the next level.
+    /// `L^-1 R P`; columns are nodes of the next level. Once it is gone the next one is made in
+    /// its memory.
     pub prolongator: FirstProlongator,
     /// What they add to the matrix of the next level.
     pub next: NextPart,
 }
 
-/// Rows of the prolongator to the finest level, in unknowns of the next one that are not scaled.
+/// Some rows of the prolongator to the finest level, from unknowns of the next one that are not
+/// scaled.
 #[derive(Debug, Clone)]
-pub struct FirstProlongator(Sparse<3, 6>);
+pub struct FirstProlongator {
+    all: Arc<Prolongator<3>>,
+    own: Vec<u32>,
+}
 
 /// What some rows add to the matrix of the next level.
 #[derive(Debug, Clone)]
@@ -121,9 +127,9 @@ impl FirstCoarsening {
         cluster(row) == cluster(column)
     }
 
-    /// The motions of the next level as if the interface had no stiffness.
-    pub fn basis(&self) -> &CoarseBasis {
-        &self.fixed.basis
+    /// Number of nodes of the next level.
+    pub fn next_nodes(&self) -> usize {
+        self.fixed.basis.modes.len()
     }
 
     /// Whether the next level of a matrix with so many rows is worth having.
@@ -166,30 +172,24 @@ impl FirstCoarsening {
     /// What rows give to the hierarchy. `complete` replaces the entries of a vector that belong to
     /// other rows by what their owners have there.
     pub fn part(&mut self, rows: &OwnRows<'_>, complete: impl FnMut(&mut [[f32; 3]])) -> LevelPart {
-        let columns = self.fixed.basis.modes.len();
-        let rows_of_it = block_step::smoothed_by_blocks(
-            &self.fixed.basis.prolongator,
-            columns,
-            &self.fixed.clusters,
-            &rows.factors,
-        );
-        let prolongator = Prolongator::of(rows_of_it, columns);
+        let is_changed = self.fixed.is_changed(&rows.rows);
+        let prolongator = self.fixed.prolongator(&is_changed, &rows.factors);
         let mut matrix = Sparse::default();
         let is_own = |row: usize| rows.is_own[row];
         let clusters = &self.fixed.clusters;
         block_jacobi::set_matrix(&mut matrix, &rows.rows, clusters, &rows.factors, is_own);
         let next = self
             .fixed
-            .product(&rows.rows, &matrix, &prolongator, is_own);
-        let Prolongator {
-            rows: prolongator, ..
-        } = prolongator;
+            .product(&is_changed, &matrix, &prolongator, is_own);
         let largest_eigenvalue = spectrum::largest_eigenvalue_of_rows(&matrix, complete);
         LevelPart {
             clusters: OwnClusters::of(&self.fixed.clusters, &rows.factors, rows.own),
             matrix: LevelRows::of(matrix, rows.own),
             largest_eigenvalue,
-            prolongator: FirstProlongator(prolongator.only(rows.own)),
+            prolongator: FirstProlongator {
+                all: prolongator,
+                own: rows.own.to_vec(),
+            },
             next: NextPart(next.without_empty()),
         }
     }
@@ -209,9 +209,19 @@ impl FirstCoarsening {
 }
 
 impl FirstProlongator {
-    /// The prolongator from the levels below, of whose first one this process has the nodes `own`.
-    pub fn from(mut self, lower: &LowerLevels, own: &[u32]) -> ProlongatorRows<3> {
-        galerkin::scale_prolongator(&mut self.0, lower.scaling());
-        ProlongatorRows::of(self.0, own, lower.nodes(0))
+    /// Nodes of the next level that move the row with a place among these, ascending.
+    pub fn movers(&self, place: usize) -> &[u32] {
+        let rows = &self.all.rows;
+        &rows.columns[rows.range(self.own[place] as usize)]
+    }
+
+    /// The way from the levels below, of whose first one this process has the nodes `own`. Its
+    /// scaling is no longer there.
+    pub fn from(self, lower: &mut LowerLevels, own: &[u32]) -> ProlongatorRows<3> {
+        let transfer = Transfer {
+            prolongator: self.all,
+            scaling: lower.take_scaling(),
+        };
+        ProlongatorRows::of(transfer, self.own, own)
     }
 }

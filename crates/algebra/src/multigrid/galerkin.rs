@@ -67,18 +67,6 @@ pub(super) fn scaled(
     }
 }
 
-/// `P L^-T`, with `L^-1` of each aggregate.
-pub(super) fn scale_prolongator<const N: usize>(
-    prolongator: &mut Sparse<N, 6>,
-    scaling: &[[[f32; 6]; 6]],
-) {
-    let blocks = prolongator.blocks.par_iter_mut().zip(&prolongator.columns);
-    blocks.for_each(|(block, &column)| {
-        let right = transpose(&widen(&scaling[column as usize]));
-        *block = narrow(&product(&widen(block), &right));
-    });
-}
-
 /// `L^-1 A L^-T` without its diagonal, blocks as columns, from the blocks of `A` right of the
 /// diagonal, blocks as rows: symmetric to the last bit. Rows of other ranks are empty.
 fn scaled_matrix(upper: &Sparse<6, 6>, factors: &[Block6], division: &Division) -> Sparse<6, 6> {

@@ -1,14 +1,18 @@
 //! Rows of a level that one of several processes has: products of its matrix, the way to the next
 //! level and back, and the change to scaled unknowns.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::block_jacobi::{Factors, InverseFactors};
 use super::clusters::Clusters;
+use super::cycle::{Prolongator, Transfer};
 use super::sparse::{Sparse, rows_per_task};
 use super::symmetric::{SymmetricMatrix, rows_per_run};
 use super::unit;
+use crate::block_rows::{DROPPED, numbers};
 use crate::lists::Lists;
 use crate::small::{transpose, widen};
 
@@ -26,7 +30,9 @@ impl<const N: usize> LevelRows<N> {
     pub(super) fn of(matrix: Sparse<N, N>, own: &[u32]) -> Self {
         let columns = matrix.rows();
         let mut matrix = matrix.only(own);
-        let ghosts = number_by_place(&mut matrix.columns, own, columns);
+        let (place, ghosts) = places(matrix.columns.iter().copied(), own, columns);
+        let columns = matrix.columns.par_iter_mut();
+        columns.for_each(|column| *column = place[*column as usize]);
         Self {
             matrix: SymmetricMatrix::of(matrix),
             ghosts,
@@ -86,102 +92,144 @@ impl<const N: usize> LevelRows<N> {
     }
 }
 
-/// Rows of a prolongator `P` to the rows of this process, in single precision. Its columns are
-/// nodes of the next level: those of this process, then its ghosts.
+/// The way to the rows of this process from the unknowns of the next level, and back: some rows of
+/// a prolongator `P L^-T`, with `L^-1` of each node of that level. The nodes are those of this
+/// process, then its ghosts, the others that occur.
 #[derive(Debug, Clone)]
 pub struct ProlongatorRows<const N: usize> {
-    matrix: Sparse<N, 6>,
-    /// Number of columns of this process.
+    /// `P`, at least these rows of it.
+    prolongator: Arc<Prolongator<N>>,
+    /// Which rows of `P` they are, ascending.
+    rows: Vec<u32>,
+    /// Place of each row of `P` among these.
+    place_of_row: Vec<u32>,
+    /// The nodes, and their `L^-1`, as rows.
+    nodes: Vec<(u32, [[f32; 6]; 6])>,
+    /// Place of each node of the next level among these.
+    place_of_node: Vec<u32>,
+    /// Number of nodes of this process.
     own: usize,
     ghosts: Vec<u32>,
 }
 
 impl<const N: usize> ProlongatorRows<N> {
-    /// Of some rows of a prolongator from a level with so many nodes, of which `own`, ascending,
-    /// belong to this process.
-    pub(super) fn of(mut matrix: Sparse<N, 6>, own: &[u32], nodes: usize) -> Self {
-        let ghosts = number_by_place(&mut matrix.columns, own, nodes);
+    /// The rows `rows`, ascending, of the way to a level from the next one, of whose nodes `own`,
+    /// ascending, belong to this process.
+    pub(super) fn of(transfer: Transfer<N>, rows: Vec<u32>, own: &[u32]) -> Self {
+        let Transfer {
+            prolongator,
+            scaling,
+        } = transfer;
+        let all = &prolongator.rows;
+        let columns = rows.iter().flat_map(|&row| {
+            let columns = &all.columns[all.range(row as usize)];
+            columns.iter().copied()
+        });
+        let (place_of_node, ghosts) = places(columns, own, scaling.len());
+        let nodes = own.iter().chain(&ghosts);
         Self {
-            matrix,
+            nodes: nodes.map(|&node| (node, scaling[node as usize])).collect(),
+            place_of_row: numbers(all.rows(), &rows),
+            prolongator,
+            rows,
+            place_of_node,
             own: own.len(),
             ghosts,
         }
     }
 
-    /// Number of rows, and of columns of this process.
+    /// Number of rows, and of nodes of this process.
     pub fn size(&self) -> [usize; 2] {
-        [self.matrix.rows(), self.own]
+        [self.rows.len(), self.own]
     }
 
-    /// The other columns, ascending.
+    /// The other nodes, ascending.
     pub fn ghosts(&self) -> &[u32] {
         &self.ghosts
     }
 
-    /// Sets `fine` to the rows of `P z`, from the entries of `z` in the columns of this process and
-    /// of the ghosts.
+    /// Sets `fine` to the rows of `P L^-T z`, from the entries of `z` at the nodes of this process
+    /// and at the ghosts.
     ///
     /// # Panics
     /// If a vector has not one entry for each.
     pub fn prolong(&self, [own, ghosts]: [&[[f64; 6]]; 2], fine: &mut [[f64; N]]) {
         assert_eq!([fine.len(), own.len()], self.size(), "one entry for each");
         assert_eq!(ghosts.len(), self.ghosts.len(), "one entry a ghost");
-        let coarse: Vec<[f64; 6]> = own.iter().chain(ghosts).copied().collect();
-        let rows = rows_per_task::<N>();
-        let tasks = fine.par_chunks_mut(rows).enumerate();
-        tasks.for_each(|(task, chunk)| {
-            for (place, target) in chunk.iter_mut().enumerate() {
-                *target = [0.0; N];
-                for (column, block) in self.matrix.row(task * rows + place) {
-                    for (target, line) in target.iter_mut().zip(block) {
-                        let both = line.iter().zip(&coarse[column]);
-                        *target += both.map(|(&weight, x)| f64::from(weight) * x).sum::<f64>();
-                    }
+        let entries = own.iter().chain(ghosts).zip(&self.nodes);
+        let coarse: Vec<[f64; 6]> = entries
+            .map(|(entries, (_, scaling))| times_transpose(scaling, entries))
+            .collect();
+        let pairs = fine.par_iter_mut().zip(&self.rows);
+        let pairs = pairs.with_min_len(rows_per_task::<N>());
+        pairs.for_each(|(target, &row)| {
+            *target = [0.0; N];
+            for (node, block) in self.prolongator.rows.row(row as usize) {
+                let entries = &coarse[self.place_of_node[node] as usize];
+                for (target, line) in target.iter_mut().zip(block) {
+                    *target += dot(line, entries);
                 }
             }
         });
     }
 
-    /// Sets `coarse`, columns of this process and then of the ghosts, to what the rows give to
-    /// `P^T r`.
+    /// Sets `coarse`, at the nodes of this process and then at the ghosts, to what the rows give to
+    /// `L^-1 P^T r`.
     ///
     /// # Panics
     /// If a vector has not one entry for each.
     pub fn restrict(&self, fine: &[[f64; N]], coarse: &mut [[f64; 6]]) {
-        assert_eq!(fine.len(), self.matrix.rows(), "one entry a row");
-        let columns = self.own + self.ghosts.len();
-        assert_eq!(coarse.len(), columns, "one entry a column");
-        coarse.fill([0.0; 6]);
-        for (row, entries) in fine.iter().enumerate() {
-            for (column, block) in self.matrix.row(row) {
-                for (line, &x) in block.iter().zip(entries) {
-                    for (target, &weight) in coarse[column].iter_mut().zip(line) {
-                        *target += f64::from(weight) * x;
-                    }
+        assert_eq!(fine.len(), self.rows.len(), "one entry a row");
+        assert_eq!(coarse.len(), self.nodes.len(), "one entry a node");
+        let pairs = coarse.par_iter_mut().zip(&self.nodes);
+        let pairs = pairs.with_min_len(rows_per_task::<6>());
+        pairs.for_each(|(target, (node, scaling))| {
+            let mut sum = [0.0; 6];
+            for &(row, position) in self.prolongator.transpose.column(*node as usize) {
+                let block = &self.prolongator.rows.blocks[position as usize];
+                // Rows of other processes have no place.
+                if let Some(entries) = fine.get(self.place_of_row[row as usize] as usize) {
+                    let part = times_transpose(block, entries);
+                    sum.iter_mut()
+                        .zip(part)
+                        .for_each(|(sum, part)| *sum += part);
                 }
             }
-        }
+            *target = scaling.map(|line| dot(&line, &sum));
+        });
     }
 }
 
-/// Replaces columns, which are below `count`, by their places among `own`, ascending, and the
-/// others that occur, behind these; returns the others, ascending.
-fn number_by_place(columns: &mut [u32], own: &[u32], count: usize) -> Vec<u32> {
-    const UNKNOWN: u32 = u32::MAX;
-    let mut place = vec![UNKNOWN; count];
-    for (at, &row) in own.iter().enumerate() {
-        place[row as usize] = at as u32;
+fn dot(line: &[f32; 6], entries: &[f64; 6]) -> f64 {
+    let both = line.iter().zip(entries);
+    both.map(|(&weight, x)| f64::from(weight) * x).sum()
+}
+
+/// `B^T r`, with the rows of `B`.
+fn times_transpose<const N: usize>(block: &[[f32; 6]; N], entries: &[f64; N]) -> [f64; 6] {
+    let mut product = [0.0; 6];
+    for (line, entry) in block.iter().zip(entries) {
+        for (product, &weight) in product.iter_mut().zip(line) {
+            *product += f64::from(weight) * entry;
+        }
     }
-    let is_unknown = |column: &u32| place[*column as usize] == UNKNOWN;
-    let mut others: Vec<u32> = columns.iter().copied().filter(is_unknown).collect();
-    others.sort_unstable();
-    others.dedup();
+    product
+}
+
+/// Places of columns, which are below `count`, among `own`, ascending, and behind these among the
+/// others that occur; and the others, ascending.
+fn places(columns: impl Iterator<Item = u32>, own: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut place = numbers(count, own);
+    let mut is_other = vec![false; count];
+    for column in columns {
+        is_other[column as usize] = place[column as usize] == DROPPED;
+    }
+    let others = 0..count as u32;
+    let others: Vec<u32> = others.filter(|&other| is_other[other as usize]).collect();
     for (at, &other) in others.iter().enumerate() {
         place[other as usize] = (own.len() + at) as u32;
     }
-    let columns = columns.par_iter_mut();
-    columns.for_each(|column| *column = place[*column as usize]);
-    others
+    (place, others)
 }
 
 /// Whole clusters `C` of rows, with `A_CC = L L^T`.

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::block_list::BlockList;
-use super::cycle::Below;
+use super::cycle::{Below, Prolongator, Transfer};
 use super::galerkin::{self, CoarseNodes};
 use super::level_rows::{LevelRows, ProlongatorRows};
 use super::setup::{self, FullLevel};
@@ -65,10 +65,10 @@ impl LowerLevels {
         self.levels.len()
     }
 
-    /// `L^-1` of the diagonal blocks of the first level before it was scaled: the prolongator to it
-    /// is `P L^-T`.
-    pub(super) fn scaling(&self) -> &[[[f32; 6]; 6]] {
-        &self.scaling
+    /// `L^-1` of the diagonal blocks of the first level before it was scaled, as rows: the
+    /// prolongator to the finest level is `P L^-T`. None of it is left here.
+    pub(super) fn take_scaling(&mut self) -> Vec<[[f32; 6]; 6]> {
+        std::mem::take(&mut self.scaling)
     }
 
     /// Number of nodes of a level.
@@ -114,15 +114,17 @@ impl LowerLevels {
         own: &[u32],
         below: &[u32],
     ) -> ProlongatorRows<6> {
-        match &mut self.levels[level].below {
-            Below::Level(transfer) => {
-                let prolongator = Arc::unwrap_or_clone(std::mem::take(&mut transfer.prolongator));
-                let mut rows = prolongator.rows.only(own);
-                galerkin::scale_prolongator(&mut rows, &transfer.scaling);
-                ProlongatorRows::of(rows, below, self.nodes[level + 1])
-            }
-            _ => ProlongatorRows::of(Sparse::empty(), below, below.len()),
-        }
+        let transfer = match &mut self.levels[level].below {
+            Below::Level(transfer) => std::mem::take(transfer),
+            _ => Transfer::default(),
+        };
+        let all = Arc::unwrap_or_clone(transfer.prolongator);
+        let nodes = transfer.scaling.len();
+        let some = Transfer {
+            prolongator: Arc::new(Prolongator::of(all.rows.only(own), nodes)),
+            scaling: transfer.scaling,
+        };
+        ProlongatorRows::of(some, (0..own.len() as u32).collect(), below)
     }
 
     /// Rows of the pseudo-inverse of the coarsest matrix, if it is solved by that.

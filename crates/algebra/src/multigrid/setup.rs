@@ -122,8 +122,9 @@ impl FixedHierarchy {
         let factors = Factors::of(rows, &self.clusters)?;
         block_jacobi::set_matrix(&mut matrix, rows, &self.clusters, &factors, |_| true);
         let ((matrix, smoother), below, next) = if self.has_next(matrix.rows()) {
-            let prolongator = self.prolongator(rows, &factors);
-            let product = self.product(rows, &matrix, &prolongator, |_| true);
+            let is_changed = self.is_changed(rows);
+            let prolongator = self.prolongator(&is_changed, &factors);
+            let product = self.product(&is_changed, &matrix, &prolongator, |_| true);
             // Before the next level asks for memory.
             let half = halved(matrix)?;
             let nodes = (self.basis.nodes(), &Communicator::alone());
@@ -148,17 +149,20 @@ impl FixedHierarchy {
     }
 
     /// Whether the interface adds to a row of each cluster.
-    fn changed(&self, rows: &SumRows<'_>) -> Vec<bool> {
+    pub(super) fn is_changed(&self, rows: &SumRows<'_>) -> Vec<bool> {
         (0..self.clusters.count())
             .into_par_iter()
             .map(|cluster| rows.is_changed(self.clusters.members.of(cluster)))
             .collect()
     }
 
-    /// The prolongator to the unknowns of a finest level. Levels that have the former one must be
-    /// gone, or it is copied.
-    fn prolongator(&mut self, rows: &SumRows<'_>, factors: &Factors) -> Arc<Prolongator<3>> {
-        let is_changed = self.changed(rows);
+    /// The prolongator to the unknowns of a finest level, whose interface changes some clusters.
+    /// Levels that have the former one must be gone, or it is copied.
+    pub(super) fn prolongator(
+        &mut self,
+        is_changed: &[bool],
+        factors: &Factors,
+    ) -> Arc<Prolongator<3>> {
         let clusters = &self.clusters;
         let is_changed = |row: usize| is_changed[clusters.place[row].0 as usize];
         let columns = self.basis.modes.len();
@@ -176,15 +180,15 @@ impl FixedHierarchy {
         all
     }
 
-    /// What the rows of `A` that are `is_own` give to `P^T A P`.
+    /// What the rows of `A` that are `is_own` give to `P^T A P`, where the interface changes some
+    /// clusters.
     pub(super) fn product(
         &mut self,
-        rows: &SumRows<'_>,
+        is_changed: &[bool],
         matrix: &Sparse<3, 3>,
         prolongator: &Prolongator<3>,
         is_own: impl Fn(usize) -> bool + Sync,
     ) -> PartialProduct {
-        let is_changed = self.changed(rows);
         let is_changed = |row: usize| is_changed[self.clusters.place[row].0 as usize];
         let is_near =
             |row| is_own(row) && (is_changed(row) || matrix.row(row).any(|(at, _)| is_changed(at)));

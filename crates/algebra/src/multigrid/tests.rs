@@ -1,10 +1,13 @@
 //! What the hierarchy promises, on a lattice of springs and on nodes that nothing couples.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 
 use super::aggregation::Reach;
 use super::block_jacobi::Factors;
 use super::clusters::Clusters;
+use super::cycle::{Prolongator, Transfer};
 use super::sparse::Sparse;
 use super::{aggregation, tentative, *};
 use crate::block_matrix::BlockMatrix;
@@ -356,12 +359,26 @@ fn rows_of_a_level_need_their_own_entries_and_those_of_their_ghosts() {
     assert!(whole.as_flattened().iter().all(|entry| *entry != 0.0));
 }
 
+/// A lower triangle without a pattern, as rows.
+fn lower_triangle(node: usize) -> [[f32; 6]; 6] {
+    let entry = |i: usize, j: usize| match i >= j {
+        true => (1 + i + 3 * j + 2 * node) as f32 / 8.0,
+        false => 0.0,
+    };
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}
+
 #[test]
 fn what_is_restricted_is_the_transpose_of_what_is_prolonged() {
-    let rows = ProlongatorRows::of(ring(), &[1, 3], 4);
-    assert_eq!((rows.size(), rows.ghosts()), ([4, 2], &[0_u32, 2][..]));
-    let (coarse, fine) = (numbers::<6>(4), numbers::<6>(4));
-    let (mut up, mut down) = (vec![[0.0; 6]; 4], vec![[0.0; 6]; 4]);
+    let transfer = Transfer {
+        prolongator: Arc::new(Prolongator::of(ring(), 4)),
+        scaling: (0..4).map(lower_triangle).collect(),
+    };
+    // Rows 0, 2 and 3 have blocks in columns 1 and 3, and 0 and 2.
+    let rows = ProlongatorRows::of(transfer, vec![0, 2, 3], &[1, 3]);
+    assert_eq!((rows.size(), rows.ghosts()), ([3, 2], &[0_u32, 2][..]));
+    let (coarse, fine) = (numbers::<6>(4), numbers::<6>(3));
+    let (mut up, mut down) = (vec![[0.0; 6]; 3], vec![[0.0; 6]; 4]);
     rows.prolong([&coarse[..2], &coarse[2..]], &mut up);
     rows.restrict(&fine, &mut down);
     let dot = |a: &[[f64; 6]], b: &[[f64; 6]]| {
