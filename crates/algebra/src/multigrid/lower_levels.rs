@@ -114,10 +114,10 @@ impl LowerLevels {
         own: &[u32],
         below: &[u32],
     ) -> ProlongatorRows<6> {
-        let transfer = match &mut self.levels[level].below {
-            Below::Level(transfer) => std::mem::take(transfer),
-            _ => Transfer::default(),
+        let Below::Level(transfer) = &mut self.levels[level].below else {
+            return ProlongatorRows::of(Transfer::default(), Vec::new(), &[]);
         };
+        let transfer = std::mem::take(transfer);
         let all = Arc::unwrap_or_clone(transfer.prolongator);
         let nodes = transfer.scaling.len();
         let some = Transfer {
